@@ -9,7 +9,7 @@ namespace patina {
 
 /// What a preview shows beside the input, the reconstruction and the normals.
 struct PreviewOptions {
-    std::string title;                ///< added to the first caption, as "frame 12"
+    std::string title{};              ///< added to the first caption, as "frame 12"
     bool depth = false;               ///< a fourth panel with the model's depth
     uint32_t largest_panel_px = 640;  ///< wider panels are scaled down to this width
 };
