@@ -1,5 +1,6 @@
 #include "tools/export/output_folder.h"
 
+#include <algorithm>
 #include <fstream>
 #include <vector>
 
@@ -31,7 +32,7 @@ void put(const fs::path& path, const std::string& text) { std::ofstream(path) <<
 
 TEST(OutputFolder, CreatesMissingParentsAndLeavesNothingBehind) {
     const TemporaryFolder folder;
-    { const OutputFolder out(folder / "a/b/c"); }
+    { const OutputFolder out(folder / "a/b/c/"); }
     EXPECT_TRUE(fs::is_directory(folder / "a/b/c"));
     EXPECT_THAT(files_in(folder.path()), ElementsAre());
 }

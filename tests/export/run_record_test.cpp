@@ -47,10 +47,10 @@ TEST(RunRecord, EveryFieldArrives) {
     EXPECT_EQ(run["frames"]["skipped"][1], ordered_json({{"index", 20}, {"reason", "its pose is <NaN>"}}));
     EXPECT_EQ(run["voxel_pool"],
               ordered_json({{"blocks_used", 18342}, {"blocks_capacity", 65536}, {"blocks_refused", 12}}));
-    EXPECT_EQ(run["memory"]["transient images"], ordered_json({{"bytes", 31457280}, {"used", 5}, {"capacity", 8}}));
+    EXPECT_EQ(run["memory"].at("transient images"), ordered_json({{"bytes", 31457280}, {"used", 5}, {"capacity", 8}}));
     EXPECT_EQ(run["totals"]["triangles"], 1234567);
     EXPECT_EQ(run["warnings"].size(), 1u);
-    EXPECT_EQ(run["passes"]["fusion.integrate"],
+    EXPECT_EQ(run["passes"].at("fusion.integrate"),
               ordered_json({{"count", 298}, {"min_ms", 3.2}, {"median_ms", 4.75}, {"max_ms", 61.0}}));
     EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
 }

@@ -47,7 +47,7 @@ TEST(Trajectory, EqualRotationsGiveEqualLines) {
 }
 
 TEST(Trajectory, ReadsBackWithinItsPrecision) {
-    const glm::dquat rotation = glm::normalize(glm::dquat(0.1, 0.7, -0.3, 0.2));
+    const glm::dquat rotation = glm::normalize(glm::dquat(0.1, -0.7, 0.3, -0.2));
     const TimedPose pose = pose_at(12.345678, {0.1234564, -9.8765432, 3}, rotation);
     std::istringstream line(line_of(pose));
     double time = 0;

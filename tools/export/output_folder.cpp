@@ -40,7 +40,9 @@ void check_writable(const fs::path& folder) {
     std::ofstream file(probe);
     if (!file.put('\n').flush()) throw Error("output folder ", folder, ": cannot be written to");
     file.close();
-    fs::remove(probe);
+    std::error_code failure;
+    if (!fs::remove(probe, failure))
+        throw Error("output folder ", folder, ": files in it cannot be removed: ", failure.message());
 }
 
 void remove_finished_mark(const fs::path& folder) {

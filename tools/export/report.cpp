@@ -32,6 +32,7 @@ p.quiet, figcaption { color: var(--quiet); }
 p.quiet { margin: .3rem 0 0; }
 dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(13rem, 1fr)); gap: .8rem 1.5rem; margin: 1.4rem 0 0; }
 dt { color: var(--quiet); font-size: .85rem; }
+dt::first-letter { text-transform: uppercase; }
 dd { margin: 0; font-weight: 600; overflow-wrap: anywhere; }
 figure { margin: 0 0 1rem; }
 figure img { display: block; width: 100%; height: auto; border-radius: 4px; }
@@ -43,6 +44,8 @@ th { color: var(--quiet); font-weight: 400; font-size: .85rem; }
 .number { text-align: right; white-space: nowrap; }
 td.bar { width: 35%; min-width: 8rem; padding-right: 0; }
 td.bar svg { display: block; width: 100%; height: .8rem; }
+rect.value { fill: var(--bar); }
+rect.range { fill: var(--range); }
 tfoot td { border-bottom: 0; font-weight: 600; }
 .warnings { background: var(--warn-ground); color: var(--warn); border-left: 4px solid var(--warn); padding: .6rem 1rem .6rem 2rem; margin: 0; }
 pre { overflow-x: auto; font-size: .85rem; border: 1px solid var(--line); border-radius: 4px; padding: .8rem; margin: 0; }
@@ -62,8 +65,8 @@ double fraction(double part, double whole) { return whole > 0 ? std::clamp(part 
 std::string bar_svg(double low, double value, double high) {
     return fmt::format(
         "<svg viewBox='0 0 100 8' preserveAspectRatio='none' aria-hidden='true'>"
-        "<rect x='{:.2f}' y='3' width='{:.2f}' height='2' fill='var(--range)'/>"
-        "<rect x='0' y='1' width='{:.2f}' height='6' fill='var(--bar)'/></svg>",
+        "<rect x='{:.2f}' y='3' width='{:.2f}' height='2' class='range'/>"
+        "<rect x='0' y='1' width='{:.2f}' height='6' class='value'/></svg>",
         100 * low, 100 * std::max(0.0, high - low), 100 * value);
 }
 
