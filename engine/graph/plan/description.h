@@ -44,8 +44,8 @@ struct Resource {
     bool operator==(const Resource&) const = default;
 };
 
-/// One access of a pass. Version 0 of an imported resource is what it held before the frame; version 0 of a transient one is
-/// undefined and cannot be read. Every write makes the next version.
+/// One access of a pass. Version 0 of an imported resource is what it held before the frame; version 0 of a transient
+/// one is undefined and cannot be read. Every write makes the next version.
 struct Access {
     uint32_t resource = 0;  ///< index into Description::resources
     uint32_t version = 0;   ///< the version that the pass reads, or that it replaces when it only writes
@@ -70,7 +70,8 @@ struct Keep {
     bool operator==(const Keep&) const = default;
 };
 
-/// A frame as declared: everything compile() needs and nothing of Vulkan. Two equal descriptions compile to equal plans.
+/// A frame as declared: everything compile() needs and nothing of Vulkan. Two equal descriptions compile to equal
+/// plans.
 struct Description {
     std::vector<Resource> resources;
     std::vector<Pass> passes;
