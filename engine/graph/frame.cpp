@@ -91,12 +91,7 @@ BufferId Frame::upload_bytes(BufferId id, uint64_t offset, std::span<const std::
     if (bytes.empty()) return whole ? fill(id, 0) : id;
     const Staging staging = runner_->stage(bytes.size());
     std::memcpy(staging.mapped, bytes.data(), bytes.size());
-    // A partial upload keeps the rest, but as a transfer write it already follows every earlier access; only a
-    // transient without content must be written whole.
-    if (!whole && !description_.resources[id.resource].imported && id.version == 0) {
-        throw Error("the upload to '", name, "' covers a part of a buffer that has no content yet");
-    }
-    add_transfer("upload." + name, id.resource, Use::kTransferWrite,
+    add_transfer("upload." + name, id.resource, whole ? Use::kTransferWrite : Use::kTransferModify,
                  work::Upload{id.resource, offset, bytes.size(), staging});
     return {{id.resource, versions_[id.resource]}};
 }
@@ -125,13 +120,13 @@ BufferId Frame::copy(BufferId source, uint64_t source_offset, BufferId destinati
     if (source.resource == destination.resource) throw Error("the pass '", name, "' copies a buffer onto itself");
     description_.passes.push_back({name,
                                    {{source.resource, source.version, Use::kTransferRead},
-                                    {destination.resource, destination.version, Use::kTransferWrite}}});
+                                    {destination.resource, destination.version, Use::kTransferModify}}});
     work_.push_back(work::Copy{source.resource, destination.resource, source_offset, destination_offset, bytes});
     return {{destination.resource, ++versions_[destination.resource]}};
 }
 
 Readback Frame::read_back(BufferId id, uint64_t offset, uint64_t bytes) {
-    const std::string& name = description_.resources[id.resource].name;
+    const std::string name = description_.resources[id.resource].name;
     if (physical_[id.resource].buffers.size() > 1) throw Error("the read-back of '", name, "' spans several chunks");
     if (offset + bytes > physical_[id.resource].bytes) {
         throw Error("the read-back of '", name, "' ends at byte ", offset + bytes, " of ",

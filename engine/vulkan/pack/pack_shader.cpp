@@ -39,7 +39,7 @@ Module parse(const std::vector<SpvId>& words) {
     return module;
 }
 
-/// The C++ type, in namespace patina::gpu, of a scalar, vector or matrix.
+/// The C++ type of a scalar, vector or matrix.
 std::string cpp_type(spvc_type type) {
     const unsigned rows = spvc_type_get_vector_size(type);
     const unsigned columns = spvc_type_get_columns(type);
@@ -50,8 +50,9 @@ std::string cpp_type(spvc_type type) {
         case SPVC_BASETYPE_INT32: scalar = "int", prefix = "i"; break;
         default: throw std::runtime_error("a shared struct has a member that is not made of 32-bit numbers");
     }
-    if (columns > 1) return "mat" + std::to_string(columns);
-    return rows > 1 ? prefix + "vec" + std::to_string(rows) : scalar;
+    if (columns > 1) return "patina::gpu::mat" + std::to_string(columns);
+    if (rows > 1) return "patina::gpu::" + prefix + "vec" + std::to_string(rows);
+    return scalar == "uint" ? "patina::gpu::uint" : scalar;
 }
 
 /// Emits assertions for every struct reachable from a block's members.
@@ -117,7 +118,7 @@ class LayoutAssertions {
             expected = struct_name(member);
             add_struct(member);
         } else {
-            expected = "patina::gpu::" + cpp_type(member);
+            expected = cpp_type(member);
         }
         for (unsigned d = 0; d < spvc_type_get_num_array_dimensions(member); ++d) {
             expected += "[" + std::to_string(spvc_type_get_array_dimension(member, d)) + "]";
