@@ -78,8 +78,10 @@ TEST(Check, NamesAWriteThatIsNeverMadeAvailable) {
 TEST(Check, IgnoresAccessesOfStagesThatABarrierDoesNotName) {
     Broken broken(make_buffer_frame());
     broken.plan.barriers[1].destination = {kStageTransfer, kAccessStorageRead};
-    EXPECT_THAT(broken.problems(),
-                Contains("pass 'read', which reads 'map', does not wait for pass 'write', which writes 'map'"));
+    const Barrier execution_only{1, 0, kComputeStage, kComputeStage, false};
+    broken.plan.barriers.insert(broken.plan.barriers.begin() + 2, execution_only);
+    EXPECT_THAT(broken.problems(), Contains("pass 'read', which reads 'map', waits for pass 'write', which writes "
+                                            "'map', but does not see what that wrote"));
 }
 
 TEST(Check, NamesAWriteThatDoesNotWaitForAReader) {
@@ -155,11 +157,13 @@ TEST(Check, NamesATransitionThatDoesNotWaitForTheMemorysLastUser) {
                     "pass 'make b', which writes 'b', does not wait for pass 'copy a', which reads 'a'"));
 }
 
-TEST(Check, NamesAFirstUseThatDoesNotWaitForItsTransition) {
+TEST(Check, NamesAccessesThatDoNotWaitForTheTransition) {
     Broken broken(make_image_frame());
     broken.plan.barriers[3].destination = kTransferWrites;
-    EXPECT_THAT(broken.problems(), Contains("pass 'make b', which writes 'b', does not wait for the transition of 'b' "
-                                            "before pass 'make b'"));
+    const std::string transition = "does not wait for the transition of 'b' before pass 'make b'";
+    EXPECT_THAT(broken.problems(), Contains("pass 'make b', which writes 'b', " + transition));
+    EXPECT_THAT(broken.problems(), Contains("pass 'use b', which reads 'b', " + transition))
+        << "the barrier behind 'make b' does not reach back to the transition";
 }
 
 TEST(Check, NamesADiscardOfContentThatIsStillRead) {
