@@ -75,6 +75,15 @@ TEST(Check, NamesAWriteThatIsNeverMadeAvailable) {
                                             "'map', but does not see what that wrote"));
 }
 
+TEST(Check, TakesAWriteForAvailableOnlyThroughItsOwnStage) {
+    Broken broken(make_buffer_frame());
+    broken.plan.barriers[1].source.accesses = kAccessNone;
+    broken.plan.barriers[1].destination.stages |= kStageTransfer;
+    broken.plan.barriers[2].source = {kStageTransfer, kAccessStorageWrite};
+    EXPECT_THAT(broken.problems(), Contains("pass 'replace', which writes 'map', waits for pass 'write', which writes "
+                                            "'map', but does not see what that wrote"));
+}
+
 TEST(Check, IgnoresAccessesOfStagesThatABarrierDoesNotName) {
     Broken broken(make_buffer_frame());
     broken.plan.barriers[1].destination = {kStageTransfer, kAccessStorageRead};
@@ -144,6 +153,20 @@ TEST(Check, NamesATransitionThatDoesNotWaitForEarlierFrames) {
     broken.plan.barriers[1].source = kComputeStage;  // the boundary before the same pass does not help
     EXPECT_THAT(broken.problems(),
                 ElementsAre("the transition of 'a' before pass 'make a' does not wait for earlier frames"));
+}
+
+TEST(Check, NamesATransitionThatDoesNotSeeWhatEarlierFramesWrote) {
+    Broken broken(make_image_frame());
+    broken.plan.barriers[1].source.accesses = kAccessNone;
+    EXPECT_THAT(broken.problems(),
+                ElementsAre("the transition of 'a' before pass 'make a' does not wait for earlier frames"));
+}
+
+TEST(Check, NamesAnImageInTheLayoutOfAnotherOne) {
+    Broken broken(make_image_frame());
+    broken.plan.barriers[3].discard = false;
+    EXPECT_THAT(broken.problems(), ElementsAre("pass 'make b', which writes 'b', finds it in an undefined layout",
+                                               "pass 'use b', which reads 'b', finds it in an undefined layout"));
 }
 
 TEST(Check, NamesATransitionThatDoesNotWaitForTheMemorysLastUser) {
