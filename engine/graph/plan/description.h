@@ -15,12 +15,14 @@ enum class Use : uint8_t {
     kUniform,           ///< uniform buffer, compute stage
     kIndirect,          ///< dispatch arguments
     kTransferRead,      ///< source of a copy
-    kTransferWrite,     ///< destination of a copy or fill
+    kTransferWrite,     ///< destination of a fill, or of a copy over the whole resource
+    kTransferModify,    ///< destination of a copy over a part of the resource
 };
 
 constexpr bool reads(Use use) { return use != Use::kStorageWrite && use != Use::kTransferWrite; }
 constexpr bool writes(Use use) {
-    return use == Use::kStorageWrite || use == Use::kStorageReadWrite || use == Use::kTransferWrite;
+    return use == Use::kStorageWrite || use == Use::kStorageReadWrite || use == Use::kTransferWrite ||
+           use == Use::kTransferModify;
 }
 
 /// Device memory that a transient resource asks for.

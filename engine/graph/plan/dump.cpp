@@ -10,22 +10,15 @@ namespace {
 
 const char* name_of(Use use) {
     switch (use) {
-        case Use::kStorageRead:
-            return "storage_read";
-        case Use::kStorageWrite:
-            return "storage_write";
-        case Use::kStorageReadWrite:
-            return "storage_read_write";
-        case Use::kSampled:
-            return "sampled";
-        case Use::kUniform:
-            return "uniform";
-        case Use::kIndirect:
-            return "indirect";
-        case Use::kTransferRead:
-            return "transfer_read";
-        case Use::kTransferWrite:
-            return "transfer_write";
+        case Use::kStorageRead: return "storage_read";
+        case Use::kStorageWrite: return "storage_write";
+        case Use::kStorageReadWrite: return "storage_read_write";
+        case Use::kSampled: return "sampled";
+        case Use::kUniform: return "uniform";
+        case Use::kIndirect: return "indirect";
+        case Use::kTransferRead: return "transfer_read";
+        case Use::kTransferModify: return "transfer_modify";
+        case Use::kTransferWrite: return "transfer_write";
     }
     PATINA_ASSERT(false, "unknown use ", static_cast<int>(use));
     return "";
