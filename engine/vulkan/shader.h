@@ -15,7 +15,7 @@ enum class BindingKind : uint8_t {
     kUniformBuffer,
     kSampledImage,
     kStorageImage,
-    kUniformTexelBuffer,
+    kTexelBuffer,  ///< imageBuffer: a storage texel buffer, gathered faster than a storage buffer on software devices
 };
 
 /// One binding of descriptor set 0, as reflection found it.
@@ -36,8 +36,8 @@ struct ShaderConstant {
     uint32_t default_value;  ///< bit pattern
 };
 
-/// A compute shader compiled at build time: SPIR-V with what reflection read from it. Every instance is a generated constant
-/// in namespace patina::spirv and lives as long as the program.
+/// A compute shader compiled at build time: SPIR-V with what reflection read from it. Every instance is a generated
+/// constant in namespace patina::spirv and lives as long as the program.
 struct Shader {
     const char* name;  ///< "fusion.integrate"
     std::span<const uint32_t> words;

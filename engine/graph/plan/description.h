@@ -15,12 +15,14 @@ enum class Use : uint8_t {
     kUniform,           ///< uniform buffer, compute stage
     kIndirect,          ///< dispatch arguments
     kTransferRead,      ///< source of a copy
-    kTransferWrite,     ///< destination of a copy or fill
+    kTransferWrite,     ///< destination of a fill, or of a copy over the whole resource
+    kTransferModify,    ///< destination of a copy over a part of the resource
 };
 
 constexpr bool reads(Use use) { return use != Use::kStorageWrite && use != Use::kTransferWrite; }
 constexpr bool writes(Use use) {
-    return use == Use::kStorageWrite || use == Use::kStorageReadWrite || use == Use::kTransferWrite;
+    return use == Use::kStorageWrite || use == Use::kStorageReadWrite || use == Use::kTransferWrite ||
+           use == Use::kTransferModify;
 }
 
 /// Device memory that a transient resource asks for.
@@ -44,8 +46,8 @@ struct Resource {
     bool operator==(const Resource&) const = default;
 };
 
-/// One access of a pass. Version 0 of an imported resource is what it held before the frame; version 0 of a transient one is
-/// undefined and cannot be read. Every write makes the next version.
+/// One access of a pass. Version 0 of an imported resource is what it held before the frame; version 0 of a transient
+/// one is undefined and cannot be read. Every write makes the next version.
 struct Access {
     uint32_t resource = 0;  ///< index into Description::resources
     uint32_t version = 0;   ///< the version that the pass reads, or that it replaces when it only writes
@@ -70,7 +72,8 @@ struct Keep {
     bool operator==(const Keep&) const = default;
 };
 
-/// A frame as declared: everything compile() needs and nothing of Vulkan. Two equal descriptions compile to equal plans.
+/// A frame as declared: everything compile() needs and nothing of Vulkan. Two equal descriptions compile to equal
+/// plans.
 struct Description {
     std::vector<Resource> resources;
     std::vector<Pass> passes;

@@ -35,9 +35,10 @@ struct Scope {
 /// The scope in which a pass performs `use`.
 Scope scope_of(Use use);
 
-/// One dependency, recorded directly before the pass at position `before` of Plan::order. It orders every earlier command
-/// in `source` before every later one in `destination`, for one resource's memory, or for all memory where `resource` is
-/// empty (the frame boundary).
+/// One dependency, recorded directly before the pass at position `before` of Plan::order. It orders every earlier
+/// command in `source` before every later one in `destination`, for one resource's memory, or for all memory where
+/// `resource` is empty (the frame boundary). Barriers with the same `before` are one command: none of them relies on
+/// another.
 struct Barrier {
     uint32_t before = 0;               ///< position in Plan::order
     std::optional<uint32_t> resource;  ///< index into Description::resources
@@ -48,7 +49,7 @@ struct Barrier {
     bool operator==(const Barrier&) const = default;
 };
 
-/// Positions in Plan::order of a resource's first and last use.
+/// Positions in Plan::order of a resource's first and last use; a kept resource lives to the last position.
 struct Lifetime {
     uint32_t first = 0;
     uint32_t last = 0;
@@ -78,17 +79,18 @@ struct Plan {
 };
 
 /// Culls passes that feed nothing kept, keeps the declared order of the others (versions make it a valid one), finds
-/// lifetimes, lets transient resources whose lifetimes do not overlap share memory, and derives the barriers: one at the
-/// frame's start that orders it behind everything submitted before, and no more than needed for each read after write,
-/// write after read, write after write, reuse of memory, and first use of a transient image. All images stay in the general
-/// layout. Pure: no Vulkan call, same description, same plan.
-/// Throws Error on a version read before it was written, a version written twice (a stale id), a read of an undefined
-/// transient, two accesses of one resource in one pass, and a kept version that no pass made.
+/// lifetimes, lets transient resources whose lifetimes do not overlap share memory, and derives the barriers: one at
+/// the frame's start that orders it behind everything submitted before, and no more than needed for each read after
+/// write, write after read, write after write, reuse of memory, and first use of a transient image. All images stay in
+/// the general layout. Pure: no Vulkan call, same description, same plan. Throws Error on a version read before it was
+/// written, a version written twice (a stale id), a read of an undefined transient, two accesses of one resource in one
+/// pass, a transient that asks for no memory, and a kept version that no pass made or that a later live pass replaces.
 Plan compile(const Description& description);
 
-/// A pair of accesses that a plan leaves unordered or an image whose layout it leaves undefined, as one sentence naming both
-/// passes and the resource; empty where the plan is right. Shares no code with compile(): it simulates the plan's barriers
-/// against the description's accesses, including those of memory shared by aliasing and those of the frame before.
+/// A pair of accesses that a plan leaves unordered or an image whose layout it leaves undefined, as one sentence naming
+/// both passes and the resource; empty where the plan is right. Takes descriptions that compile() accepts. Shares no
+/// code with compile(): it simulates the plan's barriers against the description's accesses, including those of memory
+/// shared by aliasing and those of the frame before.
 std::vector<std::string> check(const Description& description, const Plan& plan);
 
 /// The frame as a Graphviz digraph: passes, versioned resources, culled passes dashed, barriers on their edges.

@@ -1,0 +1,177 @@
+#include "engine/graph/frame.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/graph/runner.h"
+#include "engine/vulkan/device.h"
+
+namespace patina::graph {
+
+void Readback::require_ready() const {
+    if (!ready())
+        throw Error("the read-back of '", state_ ? state_->name : "nothing",
+                    "' was used before its frame had finished");
+}
+
+void Readback::deliver(const std::byte* source, uint64_t bytes) {
+    state_->bytes.assign(source, source + bytes);
+    state_->ready = true;
+}
+
+uint32_t Frame::add_resource(Resource resource, Physical physical) {
+    description_.resources.push_back(std::move(resource));
+    physical_.push_back(std::move(physical));
+    versions_.push_back(0);
+    return static_cast<uint32_t>(physical_.size() - 1);
+}
+
+MemoryNeed Frame::need_of(uint64_t bytes) {
+    const auto need = device_->requirement(vulkan::BufferDesc{"", bytes});
+    return {need.bytes, need.alignment};
+}
+
+MemoryNeed Frame::need_of(ImageShape shape) {
+    const auto need = device_->requirement(vulkan::ImageDesc{"", shape.extent, shape.format});
+    return {need.bytes, need.alignment};
+}
+
+BufferId Frame::import(const vulkan::BufferRef& buffer) {
+    const auto [found, fresh] = imported_.try_emplace(buffer->serial(), 0);
+    if (fresh) {
+        found->second =
+            add_resource({buffer->desc().name, ResourceKind::kBuffer, true, {}}, {{buffer}, {}, {}, buffer->bytes()});
+    }
+    return {{found->second, versions_[found->second]}};
+}
+
+BufferId Frame::import(const vulkan::ChunkedBuffer& buffer) {
+    const vulkan::BufferRef& first = buffer.chunks().front();
+    const auto [found, fresh] = imported_.try_emplace(first->serial(), 0);
+    if (fresh) {
+        found->second = add_resource({first->desc().name, ResourceKind::kBuffer, true, {}},
+                                     {buffer.chunks(), {}, {}, buffer.bytes()});
+    }
+    return {{found->second, versions_[found->second]}};
+}
+
+ImageId Frame::import(const vulkan::ImageRef& image) {
+    const auto [found, fresh] = imported_.try_emplace(image->serial(), 0);
+    if (fresh) {
+        const vulkan::ImageDesc& desc = image->desc();
+        found->second =
+            add_resource({desc.name, ResourceKind::kImage, true, {}}, {{}, image, {desc.extent, desc.format}, 0});
+    }
+    return {{found->second, versions_[found->second]}};
+}
+
+BufferId Frame::create_buffer(const std::string& name, uint64_t bytes) {
+    // Vulkan has no empty buffers; an empty list still needs something to bind.
+    const uint64_t held = std::max<uint64_t>(bytes, 16);
+    return {{add_resource({name, ResourceKind::kBuffer, false, need_of(held)}, {{}, {}, {}, held}), 0}};
+}
+
+ImageId Frame::create_image(const std::string& name, ImageShape shape) {
+    if (shape.extent.area() == 0) throw Error("the image '", name, "' has no pixels: ", shape.extent);
+    return {{add_resource({name, ResourceKind::kImage, false, need_of(shape)}, {{}, {}, shape, 0}), 0}};
+}
+
+void Frame::add_transfer(const std::string& name, uint32_t resource, Use use, Work work) {
+    description_.passes.push_back({name, {{resource, versions_[resource], use}}});
+    if (writes(use)) ++versions_[resource];
+    work_.push_back(std::move(work));
+}
+
+BufferId Frame::upload_bytes(BufferId id, uint64_t offset, std::span<const std::byte> bytes, bool whole) {
+    const std::string& name = description_.resources[id.resource].name;
+    if (offset + bytes.size() > physical_[id.resource].bytes) {
+        throw Error("the upload to '", name, "' ends at byte ", offset + bytes.size(), " of ",
+                    physical_[id.resource].bytes);
+    }
+    if (bytes.empty()) return whole ? fill(id, 0) : id;
+    const Staging staging = runner_->stage(bytes.size());
+    std::memcpy(staging.mapped, bytes.data(), bytes.size());
+    add_transfer("upload." + name, id.resource, whole ? Use::kTransferWrite : Use::kTransferModify,
+                 work::Upload{id.resource, offset, bytes.size(), staging});
+    return {{id.resource, versions_[id.resource]}};
+}
+
+ImageId Frame::upload(const std::string& name, ImageShape shape, std::span<const std::byte> pixels) {
+    const uint64_t expected = shape.extent.area() * vulkan::bytes_per_pixel(shape.format);
+    if (pixels.size() != expected)
+        throw Error("the upload to '", name, "' has ", pixels.size(), " bytes, the image ", expected);
+    const ImageId id = create_image(name, shape);
+    const Staging staging = runner_->stage(pixels.size());
+    std::memcpy(staging.mapped, pixels.data(), pixels.size());
+    add_transfer("upload." + name, id.resource, Use::kTransferWrite,
+                 work::Upload{id.resource, 0, pixels.size(), staging});
+    return {{id.resource, versions_[id.resource]}};
+}
+
+BufferId Frame::fill(BufferId id, uint32_t value) {
+    add_transfer("fill." + description_.resources[id.resource].name, id.resource, Use::kTransferWrite,
+                 work::Fill{id.resource, value});
+    return {{id.resource, versions_[id.resource]}};
+}
+
+BufferId Frame::copy(BufferId source, uint64_t source_offset, BufferId destination, uint64_t destination_offset,
+                     uint64_t bytes) {
+    const std::string name = "copy." + description_.resources[destination.resource].name;
+    if (source.resource == destination.resource) throw Error("the pass '", name, "' copies a buffer onto itself");
+    description_.passes.push_back({name,
+                                   {{source.resource, source.version, Use::kTransferRead},
+                                    {destination.resource, destination.version, Use::kTransferModify}}});
+    work_.push_back(work::Copy{source.resource, destination.resource, source_offset, destination_offset, bytes});
+    return {{destination.resource, ++versions_[destination.resource]}};
+}
+
+Readback Frame::read_back(BufferId id, uint64_t offset, uint64_t bytes) {
+    const std::string name = description_.resources[id.resource].name;
+    if (physical_[id.resource].buffers.size() > 1) throw Error("the read-back of '", name, "' spans several chunks");
+    if (offset + bytes > physical_[id.resource].bytes) {
+        throw Error("the read-back of '", name, "' ends at byte ", offset + bytes, " of ",
+                    physical_[id.resource].bytes);
+    }
+    Readback target;
+    target.state_ = std::make_shared<Readback::State>();
+    target.state_->name = name;
+    // The host's buffer is a resource of its own, so that the pass has something to keep.
+    const BufferId host{{add_resource({"read_back." + name, ResourceKind::kBuffer, true, {}}, {}), 0}};
+    description_.passes.push_back(
+        {"read_back." + name,
+         {{id.resource, id.version, Use::kTransferRead}, {host.resource, 0, Use::kTransferWrite}}});
+    ++versions_[host.resource];
+    work_.push_back(work::Download{id.resource, offset, bytes, target});
+    keep({host.resource, 1});
+    return target;
+}
+
+Readback Frame::read_back(BufferId id) { return read_back(id, 0, physical_[id.resource].bytes); }
+
+Readback Frame::read_back(ImageId id) {
+    const ImageShape& image = physical_[id.resource].shape;
+    // Images have no byte size of their own; the check above must not see one.
+    physical_[id.resource].bytes = image.extent.area() * vulkan::bytes_per_pixel(image.format);
+    Readback target = read_back(BufferId{id}, 0, physical_[id.resource].bytes);
+    target.state_->extent = image.extent;
+    return target;
+}
+
+void Frame::keep(ResourceId id) { description_.kept.push_back({id.resource, id.version}); }
+
+ImageShape Frame::shape(ImageId id) const { return physical_[id.resource].shape; }
+
+uint64_t Frame::bytes(BufferId id) const { return physical_[id.resource].bytes; }
+
+Extent2D Frame::common_extent(std::initializer_list<ImageId> ids) const {
+    const ImageId first = *ids.begin();
+    for (const ImageId id : ids) {
+        if (shape(id).extent != shape(first).extent) {
+            throw Error("the image '", description_.resources[id.resource].name, "' has ", shape(id).extent,
+                        " pixels, '", description_.resources[first.resource].name, "' has ", shape(first).extent);
+        }
+    }
+    return shape(first).extent;
+}
+
+}  // namespace patina::graph

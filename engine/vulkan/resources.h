@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/image.h"
+#include "engine/vulkan/format.h"
+
+namespace patina::vulkan {
+
+/// Where a buffer lives.
+enum class MemoryKind : uint8_t {
+    kDevice,    ///< fastest for the device; the host cannot see it
+    kUpload,    ///< written by the host, mapped for its whole life
+    kReadback,  ///< read by the host, mapped for its whole life
+};
+
+struct BufferDesc {
+    std::string name;
+    uint64_t bytes = 0;
+    MemoryKind memory = MemoryKind::kDevice;
+};
+
+/// A two-dimensional image with one level and one layer, always in the general layout once used.
+struct ImageDesc {
+    std::string name;
+    Extent2D extent;
+    Format format = Format::kR32f;
+};
+
+struct MemoryRequirement {
+    uint64_t bytes = 0;
+    uint64_t alignment = 1;
+};
+
+struct BufferObject;
+struct ImageObject;
+struct MemoryObject;
+
+/// A Vulkan buffer, freed when its last reference goes; a frame in flight holds one.
+class Buffer {
+  public:
+    explicit Buffer(std::unique_ptr<BufferObject> object);
+    ~Buffer();
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+
+    const BufferDesc& desc() const { return desc_; }
+    uint64_t bytes() const { return desc_.bytes; }
+    uint64_t serial() const { return serial_; }    ///< never used again by another resource of the device
+    std::byte* mapped() const { return mapped_; }  ///< null for device memory
+    BufferObject& object() const { return *object_; }
+
+  private:
+    std::unique_ptr<BufferObject> object_;
+    BufferDesc desc_;
+    uint64_t serial_;
+    std::byte* mapped_;
+};
+
+/// A Vulkan image with its view; ownership as for Buffer.
+class DeviceImage {
+  public:
+    explicit DeviceImage(std::unique_ptr<ImageObject> object);
+    ~DeviceImage();
+    DeviceImage(const DeviceImage&) = delete;
+    DeviceImage& operator=(const DeviceImage&) = delete;
+
+    const ImageDesc& desc() const { return desc_; }
+    uint64_t serial() const { return serial_; }
+    ImageObject& object() const { return *object_; }
+
+  private:
+    std::unique_ptr<ImageObject> object_;
+    ImageDesc desc_;
+    uint64_t serial_;
+};
+
+using BufferRef = std::shared_ptr<Buffer>;
+using ImageRef = std::shared_ptr<DeviceImage>;
+using MemoryRef = std::shared_ptr<MemoryObject>;
+
+class Device;
+
+/// An array too large for one storage-buffer range, split into buffers of `elements_per_chunk` elements each; element i
+/// lies in chunk i / elements_per_chunk. Shaders bind all chunks as one descriptor array (see shaders/lib/chunks.glsl).
+class ChunkedBuffer {
+  public:
+    ChunkedBuffer() = default;
+    /// The chunk size is a power of two elements, at most 128 MiB; an array that fits takes one chunk of its own size.
+    /// Throws Error when `max_chunks` do not suffice, or memory runs out.
+    ChunkedBuffer(Device& device, const std::string& name, uint64_t elements, uint32_t bytes_per_element,
+                  uint32_t max_chunks);
+
+    const std::vector<BufferRef>& chunks() const { return chunks_; }
+    uint64_t elements() const { return elements_; }
+    uint64_t elements_per_chunk() const { return elements_per_chunk_; }
+    uint64_t bytes() const;
+
+  private:
+    std::vector<BufferRef> chunks_;
+    uint64_t elements_ = 0;
+    uint64_t elements_per_chunk_ = 0;
+};
+
+/// No storage-buffer binding exceeds this: the range that every Vulkan device supports (maxStorageBufferRange is at
+/// least 2^27).
+constexpr uint64_t kMaxChunkBytes = uint64_t{128} << 20;
+
+}  // namespace patina::vulkan

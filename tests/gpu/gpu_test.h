@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/graph/plan/mutate.h"
+#include "engine/graph/runner.h"
+#include "engine/vulkan/device.h"
+
+namespace patina {
+
+/// Opens one device per test program, as PATINA_DEVICE says, with validation and synchronization validation, and fails
+/// any test during which the validation layer said something. Every frame a test submits through run() is also shown to
+/// the graph's own checker, and each of its barriers must be needed.
+class GpuTest : public ::testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    static vulkan::Device& device();
+    graph::Runner& runner() { return runner_; }
+
+    /// Submits and waits.
+    void run(graph::Frame frame);
+
+  private:
+    graph::Runner runner_{device()};
+    size_t messages_before_ = 0;
+};
+
+}  // namespace patina
