@@ -110,8 +110,9 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validatio
         if (validation) {
             using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
             using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-            const vk::DebugUtilsMessengerCreateInfoEXT callback(
-                {}, Severity::eError | Severity::eWarning, Type::eValidation | Type::ePerformance, on_message, log);
+            // Performance advice is left out: it asks for image layouts other than the general one, used here throughout.
+            const vk::DebugUtilsMessengerCreateInfoEXT callback({}, Severity::eError | Severity::eWarning,
+                                                                Type::eValidation, on_message, log);
             *messenger = vk::raii::DebugUtilsMessengerEXT(instance, callback);
         }
         return instance;
@@ -167,7 +168,7 @@ std::vector<std::string> missing_from_floor(const vk::raii::PhysicalDevice& phys
     const auto need = [&](uint64_t has, uint64_t wanted, const char* what) {
         if (has < wanted) missing.push_back(text(what, " of at least ", wanted, " (the device has ", has, ")"));
     };
-    need(caps.max_storage_range, kMaxChunkBytes, "a storage buffer range");
+    need(caps.max_storage_range, uint64_t{128} << 20, "a storage buffer range");
     need(caps.max_push_bytes, 128, "push constants");
     need(caps.max_storage_buffers, 16, "storage buffers per stage");
     need(caps.max_shared_bytes, 16384, "shared memory");

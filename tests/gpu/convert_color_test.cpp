@@ -43,9 +43,9 @@ ColorInput linear(const std::vector<glm::vec3>& pixels, const Intrinsics& camera
     return {std::span<const glm::vec3>(pixels), camera};
 }
 
-void expect_near(const glm::vec4& got, const glm::vec4& expected, const std::string& where) {
+void expect_near(const glm::vec4& got, const glm::vec4& expected, const std::string& where, float tolerance = 0) {
     ASSERT_EQ(got.a, expected.a) << where;
-    for (int i = 0; i < 3; ++i) ASSERT_NEAR(got[i], expected[i], kRelativeTolerance * expected[i]) << where;
+    for (int i = 0; i < 3; ++i) ASSERT_NEAR(got[i], expected[i], kRelativeTolerance * expected[i] + tolerance) << where;
 }
 
 TEST_F(ConvertColorTest, DecodesAllValuesOfSrgb) {
@@ -84,7 +84,8 @@ TEST_F(ConvertColorTest, FloatsAreClampedOrDropped) {
 }
 
 TEST_F(ConvertColorTest, InterpolatesARampExactlyAndDropsWhatLiesOutside) {
-    const Intrinsics camera = distorted_camera({65, 33});
+    Intrinsics camera = distorted_camera({65, 33});
+    camera.distortion[0] = 0.3;  // moves the corners out of the picture
     std::vector<glm::vec3> pixels;
     for (uint32_t y = 0; y < 33; ++y) {
         for (uint32_t x = 0; x < 65; ++x) pixels.emplace_back(10 + x, 10 + y, 30 + 2.0f * x - y * 0.5f);
@@ -101,7 +102,7 @@ TEST_F(ConvertColorTest, InterpolatesARampExactlyAndDropsWhatLiesOutside) {
                 expect_near(color.at(x, y), seen ? ramp : glm::vec4(0), text(x, ' ', y));
             }
         }
-        EXPECT_GT(outside, 20) << "the lens must push corners out of the picture";
+        EXPECT_GT(outside, 20);
     }
 }
 
@@ -136,7 +137,9 @@ TEST_F(ConvertColorTest, AgreesWithTheReference) {
                 for (uint32_t y = 0; y < extent.height; ++y) {
                     for (uint32_t x = 0; x < extent.width; ++x) {
                         if (camera.distorted() && at_rounding_limit(distorted_px(camera, x, y))) continue;
-                        expect_near(got.at(x, y), expected.at(x, y), text(extent, " at ", x, ' ', y));
+                        // Single precision places a pixel to 1e-4; neighbours here differ by up to 4.
+                        expect_near(got.at(x, y), expected.at(x, y), text(extent, " at ", x, ' ', y),
+                                    camera.distorted() ? 4e-4f : 0.0f);
                         if (HasFatalFailure()) return;
                     }
                 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "passes/model/camera.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 
@@ -18,10 +19,9 @@ struct Recording {
         for (auto& pixel : color) pixel = glm::u8vec3(random(), random(), random());
     }
     InputImages add(graph::Frame& frame) const {
-        const glm::vec4 focal_center(depth_camera.fx, depth_camera.fy, depth_camera.cx, depth_camera.cy);
         return add_input(frame, {std::span<const uint16_t>(depth), depth_camera},
                          {std::span<const glm::u8vec3>(color), color_camera},
-                         {glm::mat4(1), focal_center, {100, 80}, 0, 0});
+                         make_camera(depth_camera, RigidTransform(1.0)));
     }
 
     Intrinsics depth_camera = distorted_camera({100, 80});

@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
 
+#include "passes/model/camera.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 #include "tests/reference/unproject_depth.h"
@@ -21,18 +22,13 @@ RigidTransform test_pose() {
     return pose;
 }
 
-gpu::Camera gpu_camera(const Intrinsics& camera, const RigidTransform& world_from_camera) {
-    return {glm::mat4(rigid_inverse(world_from_camera)), glm::vec4(camera.fx, camera.fy, camera.cx, camera.cy),
-            glm::uvec2(camera.extent.width, camera.extent.height), 0, 0};
-}
-
 class UnprojectDepthTest : public GpuTest {
   protected:
     reference::Surface unproject(const Image<float>& depth_m, const Intrinsics& camera) {
         graph::Frame frame = runner().begin();
         const auto id = frame.upload("depth_m", {depth_m.extent(), vulkan::Format::kR32f},
                                      std::as_bytes(std::span(depth_m.pixels())));
-        const UnprojectedDepth surface = add_unproject_depth(frame, id, gpu_camera(camera, test_pose()));
+        const UnprojectedDepth surface = add_unproject_depth(frame, id, make_camera(camera, test_pose()));
         const graph::Readback position_m = frame.read_back(surface.position_m);
         const graph::Readback normal = frame.read_back(surface.normal);
         run(std::move(frame));
@@ -133,7 +129,7 @@ TEST_F(UnprojectDepthTest, AnotherExtentThanTheCamerasIsAnError) {
     const auto id = frame.create_image("depth_m", {{4, 5}, vulkan::Format::kR32f});
     EXPECT_THAT(
         [&] {
-            add_unproject_depth(frame, id, gpu_camera(pinhole_camera({5, 4}), test_pose()));
+            add_unproject_depth(frame, id, make_camera(pinhole_camera({5, 4}), test_pose()));
         },
         ::testing::ThrowsMessage<Error>(
             "the pass 'input.unproject_depth' got a depth image of 4 x 5 from a camera of 5 x 4"));
