@@ -24,20 +24,18 @@ void main() {
     const float down = imageLoad(depth_m, ivec2(pixel.x, high.y)).x;
 
     const bool valid = z > 0.0;
-    const vec3 position = to_world_direction(params.camera, unproject(params.camera, vec2(pixel)) * z);
-    const vec4 world = vec4(position + camera_center_m(params.camera), 1.0);
-    imageStore(position_m, pixel, valid ? world : vec4(0.0));
+    const vec3 ray = unproject(params.camera, vec2(pixel));
+    const vec3 world = to_world_direction(params.camera, ray * z) + camera_center_m(params.camera);
+    imageStore(position_m, pixel, valid ? vec4(world, 1.0) : vec4(0.0));
 
     const vec4 neighbors = vec4(left, right, up, down);
     const bool inside = all(equal(high - low, ivec2(2)));
     const float max_jump_m = params.jump_floor_m + params.jump_relative * z;
-    const bool smooth_here = valid && inside && all(greaterThan(neighbors, vec4(0.0))) &&
-                             all(lessThanEqual(abs(neighbors - z), vec4(max_jump_m)));
-    const vec3 across = unproject(params.camera, vec2(pixel + ivec2(1, 0))) * right -
-                        unproject(params.camera, vec2(pixel - ivec2(1, 0))) * left;
-    const vec3 along = unproject(params.camera, vec2(pixel + ivec2(0, 1))) * down -
-                       unproject(params.camera, vec2(pixel - ivec2(0, 1))) * up;
-    // Four points on the rays around this pixel's always turn this side of their cross product to the camera.
-    const vec3 facing = to_world_direction(params.camera, normalize(cross(along, across)));
-    imageStore(normal, pixel, smooth_here ? vec4(facing, 0.0) : vec4(0.0));
+    const bool on_one_surface = valid && inside && all(greaterThan(neighbors, vec4(0.0))) &&
+                                all(lessThanEqual(abs(neighbors - z), vec4(max_jump_m)));
+    // The cross product (down - up) x (right - left) of the unprojected neighbours, divided by the length of each
+    // pair's step along the picture plane. Its dot product with the ray is -1: it always faces the camera.
+    const vec2 slope = params.camera.focal_center_px.xy * (neighbors.yw - neighbors.xz) / (neighbors.yw + neighbors.xz);
+    const vec3 facing = normalize(vec3(slope, -1.0 - dot(slope, ray.xy)));
+    imageStore(normal, pixel, on_one_surface ? vec4(to_world_direction(params.camera, facing), 0.0) : vec4(0.0));
 }
