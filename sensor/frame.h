@@ -36,6 +36,7 @@ struct Frame {
     ColorImage color;
     DepthImage depth;
     std::optional<RigidTransform> world_from_camera;  ///< of the depth camera; empty where the sequence has no pose
+    double pose_defect = 0;  ///< rotation_defect of the pose as recorded; readers repair small ones
     Exposure exposure;
 };
 

@@ -1,0 +1,47 @@
+#include "sensor/ledger.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace patina::sensor {
+
+void Ledger::note(const Reading& reading) {
+    ++read_;
+    if (const auto* skipped = std::get_if<Skipped>(&reading)) skip(skipped->index, skipped->reason);
+}
+
+void Ledger::use(uint32_t index) {
+    ++used_;
+    settle(index);
+}
+
+void Ledger::skip(uint32_t index, std::string reason) {
+    skipped_.push_back({index, std::move(reason)});
+    settle(index);
+}
+
+void Ledger::settle(uint32_t index) {
+    if (index >= settled_.size()) settled_.resize(size_t{index} + 1);
+    ++settled_[index];
+}
+
+std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
+    if (read_ != info.frames) {
+        return text(info.name, " has ", info.frames, " frames, but ", read_,
+                    " were read: ", read_ < info.frames ? info.frames - read_ : read_ - info.frames,
+                    read_ < info.frames ? " missing" : " too many");
+    }
+    const size_t settled = used_ + skipped_.size();
+    if (settled != read_) {
+        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ", skipped_.size(),
+                    " skipped: ", settled < read_ ? read_ - settled : settled - read_,
+                    settled < read_ ? " unaccounted for" : " too many");
+    }
+    const auto repeated = std::find_if(settled_.begin(), settled_.end(), [](uint32_t count) { return count > 1; });
+    if (repeated == settled_.end()) return std::nullopt;
+    return text(info.name, ": frame ", repeated - settled_.begin(), " was used or skipped ", *repeated,
+                " times instead of once");
+}
+
+}  // namespace patina::sensor

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sensor/source.h"
+
+namespace patina::sensor {
+
+/// What became of a sequence's frames. Every reading is noted once when it arrives, and every frame once more when it
+/// was used or could not be.
+class Ledger {
+  public:
+    /// Notes that a source yielded a frame or skipped one; a skipped one is settled with that.
+    void note(const Reading& reading);
+
+    /// Notes that a frame was used.
+    void use(uint32_t index);
+
+    /// Notes that a frame could not be used, and why.
+    void skip(uint32_t index, std::string reason);
+
+    uint32_t read() const { return read_; }
+    uint32_t used() const { return used_; }
+    const std::vector<Skipped>& skipped() const { return skipped_; }
+
+    /// Empty when every frame of the sequence was read once, and used or skipped once; otherwise one sentence that says
+    /// by how much the numbers disagree.
+    std::optional<std::string> discrepancy(const SequenceInfo& info) const;
+
+  private:
+    void settle(uint32_t index);
+
+    uint32_t read_ = 0;
+    uint32_t used_ = 0;
+    std::vector<Skipped> skipped_;
+    std::vector<uint32_t> settled_;  ///< how often, by frame index
+};
+
+}  // namespace patina::sensor

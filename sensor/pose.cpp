@@ -1,0 +1,142 @@
+#include "sensor/pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/core/error.h"
+
+namespace patina::sensor {
+namespace {
+
+constexpr const char* kTrajectoryColumns = "timestamp tx ty tz qx qy qz qw";
+
+bool all_infinite(const RigidTransform& matrix) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isinf(matrix[column][row])) return false;
+        }
+    }
+    return true;
+}
+
+void expect_finite(const RigidTransform& matrix, const std::string& where) {
+    if (all_infinite(matrix)) throw Error(where, ": tracking was lost, every entry of the pose is infinite");
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            const double value = matrix[column][row];
+            if (!std::isfinite(value)) {
+                throw Error(where, ": row ", row + 1, ", column ", column + 1, " of the pose is ", value,
+                            ", must be finite");
+            }
+        }
+    }
+}
+
+[[noreturn]] void fail_not_rigid(const std::string& where, double defect) {
+    throw Error(where, ": the pose is not rigid, its rotation is off by ", defect, ", at most ", kRepairablePoseDefect,
+                " is accepted");
+}
+
+/// The pose in a line of a trajectory.
+CheckedPose pose_in(const TextLine& line) {
+    const auto infinite = [&](size_t column) { return std::isinf(line.number(column)); };
+    if (infinite(1) && infinite(2) && infinite(3))
+        throw Error(line.where(), ": tracking was lost, the position is infinite");
+    const glm::dvec3 position(line.finite(1), line.finite(2), line.finite(3));
+    const glm::dquat rotation(line.finite(7), line.finite(4), line.finite(5), line.finite(6));
+    const double defect = std::abs(glm::dot(rotation, rotation) - 1);
+    if (defect > kRepairablePoseDefect) fail_not_rigid(line.where(), defect);
+    RigidTransform transform(glm::mat3_cast(glm::normalize(rotation)));
+    transform[3] = glm::dvec4(position, 1.0);
+    return {transform, defect};
+}
+
+}  // namespace
+
+CheckedPose checked_pose(const RigidTransform& recorded, const std::string& where) {
+    expect_finite(recorded, where);
+    const double defect = rotation_defect(recorded);
+    if (defect > kRepairablePoseDefect) fail_not_rigid(where, defect);
+    for (int column = 0; column < 4; ++column) {
+        const double expected = column == 3 ? 1 : 0;
+        const double value = recorded[column][3];
+        if (std::abs(value - expected) > kRepairablePoseDefect) {
+            throw Error(where, ": row 4, column ", column + 1, " of the pose is ", value, ", must be ", expected);
+        }
+    }
+    return {orthonormalised(recorded), defect};
+}
+
+RigidTransform read_matrix(const std::filesystem::path& file) {
+    std::vector<double> values;
+    for (const TextLine& line : read_lines(file)) {
+        for (size_t column = 0; column < line.size(); ++column) values.push_back(line.number(column));
+    }
+    if (values.size() != 16) throw Error(file.string(), " has ", values.size(), " numbers, must have 16 (4 x 4)");
+    RigidTransform matrix(1.0);
+    for (int i = 0; i < 16; ++i) matrix[i % 4][i / 4] = values[static_cast<size_t>(i)];
+    return matrix;
+}
+
+FramePoses::FramePoses(const std::filesystem::path& file, std::span<const double> frame_timestamps_s, double limit_s)
+    : lines_(read_lines(file)) {
+    std::vector<double> timestamps_s;
+    for (const TextLine& line : lines_) {
+        line.expect_columns(kTrajectoryColumns);
+        timestamps_s.push_back(line.finite(0));
+        for (size_t column = 1; column < line.size(); ++column) line.number(column);
+    }
+    line_of_frame_ = associate(frame_timestamps_s, timestamps_s, limit_s);
+    if (std::none_of(line_of_frame_.begin(), line_of_frame_.end(), [](auto line) { return line.has_value(); })) {
+        throw Error(file.string(), " has ", lines_.size(), " poses, but none lies within ", limit_s,
+                    " s of one of the ", frame_timestamps_s.size(), " frames' timestamps");
+    }
+}
+
+std::optional<CheckedPose> FramePoses::of_frame(uint32_t frame) const {
+    if (empty() || !line_of_frame_.at(frame)) return std::nullopt;
+    return pose_in(lines_[*line_of_frame_[frame]]);
+}
+
+void write_trajectory(const std::filesystem::path& file, std::span<const StampedPose> poses) {
+    std::string content = std::string("# ") + kTrajectoryColumns + "\n";
+    for (const auto& [timestamp_s, world_from_camera] : poses) {
+        const glm::dquat q = glm::quat_cast(glm::dmat3(world_from_camera));
+        const glm::dvec4 t = world_from_camera[3];
+        content += shortest(timestamp_s);
+        for (const double value : {t.x, t.y, t.z, q.x, q.y, q.z, q.w}) content += " " + shortest(value);
+        content += "\n";
+    }
+    write_bytes(file, content);
+}
+
+std::vector<std::optional<size_t>> associate(std::span<const double> a, std::span<const double> b, double limit_s) {
+    std::vector<size_t> by_time(b.size());
+    std::iota(by_time.begin(), by_time.end(), size_t{0});
+    std::sort(by_time.begin(), by_time.end(), [&](size_t i, size_t j) { return b[i] < b[j]; });
+
+    std::vector<std::tuple<double, size_t, size_t>> pairs;  // distance first: sorts nearest first, ties by index
+    for (size_t i = 0; i < a.size(); ++i) {
+        const auto before = [&](size_t j, double time) { return b[j] < time; };
+        auto candidate = std::lower_bound(by_time.begin(), by_time.end(), a[i] - limit_s, before);
+        for (; candidate != by_time.end() && b[*candidate] <= a[i] + limit_s; ++candidate) {
+            pairs.emplace_back(std::abs(b[*candidate] - a[i]), i, *candidate);
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+
+    std::vector<std::optional<size_t>> partner(a.size());
+    std::vector<bool> taken(b.size());
+    for (const auto& [distance, i, j] : pairs) {
+        if (partner[i] || taken[j]) continue;
+        partner[i] = j;
+        taken[j] = true;
+    }
+    return partner;
+}
+
+}  // namespace patina::sensor

@@ -1,0 +1,40 @@
+#include "sensor/readers/folder_source.h"
+
+#include "sensor/picture_file.h"
+
+namespace patina::sensor {
+
+std::optional<Reading> FolderSource::next() {
+    if (next_ == info_.frames) return std::nullopt;
+    const uint32_t index = next_++;
+    try {
+        return decode(index);
+    } catch (const Error& error) {
+        return Skipped{index, error.what()};
+    }
+}
+
+void set_pose(Frame& frame, const std::optional<CheckedPose>& pose) {
+    if (!pose) return;
+    frame.world_from_camera = pose->transform;
+    frame.pose_defect = pose->defect;
+}
+
+std::string folder_name(const std::filesystem::path& folder) {
+    const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
+    return (absolute.has_filename() ? absolute.filename() : absolute.parent_path().filename()).string();
+}
+
+Extent2D first_readable_extent(const std::vector<std::filesystem::path>& pictures) {
+    std::string reason;
+    for (const std::filesystem::path& picture : pictures) {
+        try {
+            return picture_extent(picture);
+        } catch (const Error& error) {
+            if (reason.empty()) reason = error.what();
+        }
+    }
+    throw Error("none of ", pictures.size(), " pictures can be read, the first because ", reason);
+}
+
+}  // namespace patina::sensor

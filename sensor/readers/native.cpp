@@ -1,0 +1,189 @@
+#include "sensor/readers/native.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sensor/json_file.h"
+#include "sensor/picture_file.h"
+#include "sensor/pose.h"
+#include "sensor/readers/folder_source.h"
+#include "sensor/text_file.h"
+
+namespace patina::sensor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kAssociationLimit_s = 0.02;  // TUM's own limit for its trajectories
+
+struct SequenceFile {
+    SequenceInfo info;
+    Exposure exposure;
+};
+
+Intrinsics read_intrinsics(const JsonValue& camera) {
+    Intrinsics intrinsics;
+    intrinsics.extent = {camera.at("width").positive_integer(), camera.at("height").positive_integer()};
+    intrinsics.fx = camera.at("fx").positive();
+    intrinsics.fy = camera.at("fy").positive();
+    intrinsics.cx = camera.at("cx").number();
+    intrinsics.cy = camera.at("cy").number();
+    if (const auto distortion = camera.find("distortion")) {
+        const std::vector<double> values = distortion->numbers(intrinsics.distortion.size());
+        std::copy(values.begin(), values.end(), intrinsics.distortion.begin());
+    }
+    return intrinsics;
+}
+
+RigidTransform read_transform(const JsonValue& value) {
+    const std::vector<double> rows = value.numbers(16);
+    RigidTransform transform(1.0);
+    for (int i = 0; i < 16; ++i) transform[i % 4][i / 4] = rows[static_cast<size_t>(i)];
+    return checked_pose(transform, value.where()).transform;
+}
+
+void expect_format(const JsonValue& root) {
+    const std::string format = root.at("format").string();
+    if (format != "patina-sequence") {
+        throw Error(root.at("format").where(), " is \"", format, "\", must be \"patina-sequence\"");
+    }
+    const uint32_t version = root.at("version").positive_integer();
+    if (version != 1) throw Error(root.at("version").where(), " is ", version, ", but this program reads version 1");
+}
+
+SequenceFile read_sequence_file(const fs::path& file, const std::string& default_name) {
+    const JsonValue root = JsonValue::read(file);
+    expect_format(root);
+    const JsonValue color = root.at("color");
+    const JsonValue depth = root.at("depth");
+    SequenceFile sequence;
+    SequenceInfo& info = sequence.info;
+    info.format = "patina-sequence";
+    info.name = root.find("name") ? root.at("name").string() : default_name;
+    info.fps = root.find("fps") ? root.at("fps").positive() : info.fps;
+    info.frames = root.at("frames").positive_integer();
+    info.color = read_intrinsics(color);
+    info.depth = read_intrinsics(depth);
+    info.metres_per_unit = depth.at("metres_per_unit").positive();
+    if (const auto far = depth.find("max_metres")) info.max_metres = far->positive();
+    if (const auto transform = root.find("depth_to_color")) info.color_from_depth = read_transform(*transform);
+    if (const auto exposure = color.find("exposure_s")) sequence.exposure.exposure_s = exposure->positive();
+    if (const auto gain = color.find("gain")) sequence.exposure.gain = gain->positive();
+    return sequence;
+}
+
+/// Calls use(index, line) for each line of a file of 'index ...' lines; throws Error on an index out of range or given
+/// twice.
+template <class Use>
+void read_indexed_lines(const fs::path& file, std::string_view columns, uint32_t frames, Use use) {
+    std::vector<bool> seen(frames);
+    for (const TextLine& line : read_lines(file)) {
+        line.expect_columns(columns);
+        const uint32_t index = line.index(0);
+        if (index >= frames) throw Error(line.where(), ": index is ", index, ", but there are ", frames, " frames");
+        if (seen[index]) throw Error(line.where(), ": index ", index, " appears a second time");
+        seen[index] = true;
+        use(index, line);
+    }
+}
+
+std::vector<double> read_timestamps(const fs::path& file, const SequenceInfo& info) {
+    std::vector<double> timestamps_s(info.frames, std::nan(""));
+    if (!fs::exists(file)) {
+        for (uint32_t i = 0; i < info.frames; ++i) timestamps_s[i] = i / info.fps;
+        return timestamps_s;
+    }
+    read_indexed_lines(file, "index timestamp", info.frames,
+                       [&](uint32_t index, const TextLine& line) { timestamps_s[index] = line.finite(1); });
+    const auto missing = std::find_if(timestamps_s.begin(), timestamps_s.end(), [](double t) { return std::isnan(t); });
+    if (missing != timestamps_s.end()) {
+        throw Error(file.string(), " has no line for frame ", missing - timestamps_s.begin(), " of ", info.frames);
+    }
+    return timestamps_s;
+}
+
+double positive(const TextLine& line, size_t column) {
+    const double value = line.finite(column);
+    if (!(value > 0)) throw Error(line.where(), ": column ", column + 1, " is ", value, ", must be positive");
+    return value;
+}
+
+std::vector<Exposure> read_exposures(const fs::path& file, uint32_t frames, Exposure common) {
+    std::vector<Exposure> exposures(frames, common);
+    if (!fs::exists(file)) return exposures;
+    read_indexed_lines(file, "index exposure_s gain", frames, [&](uint32_t index, const TextLine& line) {
+        exposures[index] = {positive(line, 1), positive(line, 2)};
+    });
+    return exposures;
+}
+
+/// The file of a frame's picture, whichever of the format's file types it is.
+fs::path picture_path(const fs::path& folder, uint32_t index) {
+    const std::string stem = picture_stem(index);
+    for (const char* extension : {".png", ".jpg", ".jpeg", ".exr"}) {
+        if (fs::path path = folder / (stem + extension); fs::exists(path)) return path;
+    }
+    throw Error((folder / stem).string(), " is missing, as .png, .jpg, .jpeg and .exr");
+}
+
+/// Throws Error when the pictures at both ends of the sequence agree on another size than sequence.json's: then that
+/// file, not one picture, is wrong. A single picture of another size is left to its frame.
+void expect_pictures_of_size(const fs::path& folder, Extent2D expected, uint32_t frames, const char* key) {
+    if (!fs::is_directory(folder))
+        throw Error(folder.string(), " is missing, but sequence.json promises ", frames, " frames");
+    std::array<Extent2D, 2> found{expected, expected};
+    std::array<uint32_t, 2> ends{0, frames - 1};
+    for (size_t i = 0; i < ends.size(); ++i) {
+        try {
+            found[i] = picture_extent(picture_path(folder, ends[i]));
+        } catch (const Error&) {
+            return;  // a damaged frame says so itself when its turn comes
+        }
+    }
+    if (found[0] == found[1] && found[0] != expected) {
+        throw Error((folder.parent_path() / "sequence.json").string(), ": ", key, " is ", expected, " pixels, but ",
+                    picture_path(folder, 0).string(), " is ", found[0]);
+    }
+}
+
+class NativeSource : public FolderSource {
+  public:
+    explicit NativeSource(const fs::path& folder) : folder_(folder) {
+        const SequenceFile sequence = read_sequence_file(folder / "sequence.json", folder_name(folder));
+        info_ = sequence.info;
+        expect_pictures_of_size(folder / "color", info_.color.extent, info_.frames, "color");
+        expect_pictures_of_size(folder / "depth", info_.depth.extent, info_.frames, "depth");
+        timestamps_s_ = read_timestamps(folder / "timestamps.txt", info_);
+        exposures_ = read_exposures(folder / "exposures.txt", info_.frames, sequence.exposure);
+        if (const fs::path trajectory = folder / "trajectory.txt"; fs::exists(trajectory)) {
+            poses_ = FramePoses(trajectory, timestamps_s_, std::min(kAssociationLimit_s, 0.5 / info_.fps));
+        }
+        info_.has_poses = !poses_.empty();
+    }
+
+  private:
+    Frame decode(uint32_t index) const override {
+        Frame frame;
+        frame.index = index;
+        frame.timestamp_s = timestamps_s_[index];
+        frame.exposure = exposures_[index];
+        set_pose(frame, poses_.of_frame(index));
+        frame.color = read_color(picture_path(folder_ / "color", index), info_.color.extent);
+        frame.depth = read_depth(picture_path(folder_ / "depth", index), info_.depth.extent);
+        return frame;
+    }
+
+    fs::path folder_;
+    std::vector<double> timestamps_s_;
+    std::vector<Exposure> exposures_;
+    FramePoses poses_;
+};
+
+}  // namespace
+
+bool is_native_sequence(const fs::path& folder) { return fs::exists(folder / "sequence.json"); }
+
+std::unique_ptr<Source> open_native(const fs::path& folder) { return std::make_unique<NativeSource>(folder); }
+
+}  // namespace patina::sensor

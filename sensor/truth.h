@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <glm/glm.hpp>
+
+namespace patina::sensor {
+
+/// A point light: the radiance arriving at distance r is intensity / r^2, in the sequence's linear pixel values.
+struct PointLight {
+    glm::dvec3 position_m{0};  ///< world
+    glm::dvec3 intensity{0};   ///< RGB
+};
+
+/// A Ward material (paper, Eq. 2-4).
+struct Material {
+    uint32_t id = 0;
+    std::string name;
+    std::optional<glm::dvec3> kd;  ///< RGB albedo; empty where it varies over the surface
+    glm::dvec3 ks{0};              ///< RGB albedo
+    double alpha = 1;              ///< roughness, in (0, 1]
+};
+
+/// Write lights.json and materials.json of the sequence format. Throw Error when the file cannot be written.
+void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights);
+void write_materials(const std::filesystem::path& file, std::span<const Material> materials);
+
+}  // namespace patina::sensor

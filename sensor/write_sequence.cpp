@@ -1,0 +1,168 @@
+#include "sensor/write_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "sensor/picture_file.h"
+#include "sensor/text_file.h"
+
+namespace patina::sensor {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// IEC 61966-2-1: linear 0..1 to an 8-bit code.
+uint8_t srgb_code(float linear) {
+    const double v = std::isnan(linear) ? 0.0 : std::clamp(static_cast<double>(linear), 0.0, 1.0);
+    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    return static_cast<uint8_t>(std::lround(255 * encoded));
+}
+
+Image<SrgbPixel> encoded(const Image<glm::vec3>& linear) {
+    Image<SrgbPixel> codes(linear.extent());
+    std::transform(linear.pixels().begin(), linear.pixels().end(), codes.pixels().begin(),
+                   [](glm::vec3 v) { return SrgbPixel(srgb_code(v.r), srgb_code(v.g), srgb_code(v.b)); });
+    return codes;
+}
+const Image<SrgbPixel>& encoded(const Image<SrgbPixel>& codes) { return codes; }
+
+Image<uint16_t> in_units(const Image<float>& depth_m, double metres_per_unit) {
+    Image<uint16_t> units(depth_m.extent());
+    std::transform(depth_m.pixels().begin(), depth_m.pixels().end(), units.pixels().begin(), [&](float z) {
+        const double unit = std::round(z / metres_per_unit);
+        return unit > 0 && unit <= 65535 ? static_cast<uint16_t>(unit) : uint16_t{0};  // false for NaN, too
+    });
+    return units;
+}
+const Image<uint16_t>& in_units(const Image<uint16_t>& units, double) { return units; }
+
+void expect_extent(const fs::path& file, Extent2D extent, Extent2D expected) {
+    if (extent != expected)
+        throw Error(file.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
+}
+
+fs::path without_trailing_slash(const fs::path& folder) {
+    const fs::path absolute = fs::absolute(folder).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+void expect_free(const fs::path& folder) {
+    if (!fs::exists(folder)) return;
+    if (!fs::is_directory(folder)) throw Error(folder.string(), " is a file, so that no sequence can be written there");
+    if (!fs::is_empty(folder))
+        throw Error(folder.string(), " exists and is not empty; a sequence is written to a new folder");
+}
+
+Json to_json(const Intrinsics& camera) {
+    return {{"width", camera.extent.width},
+            {"height", camera.extent.height},
+            {"fx", camera.fx},
+            {"fy", camera.fy},
+            {"cx", camera.cx},
+            {"cy", camera.cy},
+            {"distortion", camera.distortion}};
+}
+
+Json to_json(const RigidTransform& transform) {
+    Json rows = Json::array();
+    for (int i = 0; i < 16; ++i) rows.push_back(transform[i % 4][i / 4]);
+    return rows;
+}
+
+}  // namespace
+
+SequenceWriter::SequenceWriter(fs::path folder, SequenceInfo info)
+    : folder_(without_trailing_slash(folder)),
+      partial_(text(folder_.string(), ".partial-", getpid())),
+      info_(std::move(info)) {
+    expect_free(folder_);
+    if (fs::exists(partial_))
+        throw Error(partial_.string(), " exists already: another writer's, or left over; remove it");
+    std::error_code failure;
+    for (const char* part : {"color", "depth"}) {
+        fs::create_directories(partial_ / part, failure);
+        if (failure) throw Error((partial_ / part).string(), " cannot be created: ", failure.message());
+    }
+}
+
+SequenceWriter::~SequenceWriter() {
+    std::error_code ignored;
+    if (!finished_) fs::remove_all(partial_, ignored);
+}
+
+void SequenceWriter::write(const Frame& frame) {
+    PATINA_ASSERT(!finished_, "frame ", frame.index, " of ", folder_.string());
+    if (frame.index != timestamps_s_.size()) {
+        throw Error(folder_.string(), ": frame ", frame.index, " was to be written, but ", timestamps_s_.size(),
+                    " is next");
+    }
+    const fs::path color = partial_ / "color" / (picture_stem(frame.index) + ".png");
+    const fs::path depth = partial_ / "depth" / (picture_stem(frame.index) + ".png");
+    std::visit(
+        [&](const auto& image) {
+            expect_extent(color, image.extent(), info_.color.extent);
+            write_png(color, encoded(image));
+        },
+        frame.color);
+    std::visit(
+        [&](const auto& image) {
+            expect_extent(depth, image.extent(), info_.depth.extent);
+            write_png(depth, in_units(image, info_.metres_per_unit));
+        },
+        frame.depth);
+    timestamps_s_.push_back(frame.timestamp_s);
+    exposures_.push_back(frame.exposure);
+    if (frame.world_from_camera) poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+}
+
+void SequenceWriter::finish() {
+    PATINA_ASSERT(!finished_, folder_.string());
+    if (timestamps_s_.empty()) throw Error(folder_.string(), " would have 0 frames; at least 1 must be written");
+    write_lists();
+    write_sequence_file();
+    std::error_code failure;
+    fs::rename(partial_, folder_, failure);
+    if (failure) throw Error(partial_.string(), " cannot be renamed to ", folder_.string(), ": ", failure.message());
+    finished_ = true;
+}
+
+void SequenceWriter::write_lists() const {
+    bool regular = true;
+    std::string timestamps = "# index timestamp\n";
+    std::string exposures = "# index exposure_s gain\n";
+    for (size_t i = 0; i < timestamps_s_.size(); ++i) {
+        regular = regular && timestamps_s_[i] == static_cast<double>(i) / info_.fps;
+        timestamps += text(i, " ", shortest(timestamps_s_[i]), "\n");
+        exposures += text(i, " ", shortest(exposures_[i].exposure_s), " ", shortest(exposures_[i].gain), "\n");
+    }
+    if (!regular) write_bytes(partial_ / "timestamps.txt", timestamps);
+    const bool varies =
+        std::adjacent_find(exposures_.begin(), exposures_.end(), std::not_equal_to{}) != exposures_.end();
+    if (varies) write_bytes(partial_ / "exposures.txt", exposures);
+    if (!poses_.empty()) write_trajectory(partial_ / "trajectory.txt", poses_);
+}
+
+void SequenceWriter::write_sequence_file() const {
+    Json color = to_json(info_.color);
+    color["exposure_s"] = exposures_.front().exposure_s;
+    color["gain"] = exposures_.front().gain;
+    Json depth = to_json(info_.depth);
+    depth["metres_per_unit"] = info_.metres_per_unit;
+    depth["max_metres"] = info_.max_metres;
+    const Json root{{"format", "patina-sequence"},
+                    {"version", 1},
+                    {"name", info_.name},
+                    {"fps", info_.fps},
+                    {"frames", timestamps_s_.size()},
+                    {"color", color},
+                    {"depth", depth},
+                    {"depth_to_color", to_json(info_.color_from_depth)}};
+    write_bytes(partial_ / "sequence.json", root.dump(2) + "\n");
+}
+
+}  // namespace patina::sensor
