@@ -71,14 +71,12 @@ CheckedPose checked_pose(const RigidTransform& recorded, const std::string& wher
     return {orthonormalised(recorded), defect};
 }
 
-RigidTransform read_matrix(const std::filesystem::path& file) {
-    std::vector<double> values;
-    for (const TextLine& line : read_lines(file)) {
-        for (size_t column = 0; column < line.size(); ++column) values.push_back(line.number(column));
-    }
-    if (values.size() != 16) throw Error(file.string(), " has ", values.size(), " numbers, must have 16 (4 x 4)");
+RigidTransform read_matrix(const std::filesystem::path& file) { return matrix_from_rows(read_numbers(file, 16)); }
+
+RigidTransform matrix_from_rows(std::span<const double> rows) {
+    PATINA_ASSERT(rows.size() == 16, "numbers ", rows.size());
     RigidTransform matrix(1.0);
-    for (int i = 0; i < 16; ++i) matrix[i % 4][i / 4] = values[static_cast<size_t>(i)];
+    for (int i = 0; i < 16; ++i) matrix[i % 4][i / 4] = rows[static_cast<size_t>(i)];
     return matrix;
 }
 

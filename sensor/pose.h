@@ -24,6 +24,9 @@ struct CheckedPose {
 /// finite (nothing but infinities mean that tracking was lost) or the transform is too far from rigid.
 CheckedPose checked_pose(const RigidTransform& recorded, const std::string& where);
 
+/// A 4 x 4 matrix from its 16 entries, row by row.
+RigidTransform matrix_from_rows(std::span<const double> rows);
+
 /// Reads a 4 x 4 matrix, row by row, from a text file of exactly 16 numbers. Throws Error when there are others; inf
 /// and nan pass.
 RigidTransform read_matrix(const std::filesystem::path& file);

@@ -84,6 +84,15 @@ std::vector<TextLine> read_lines(const std::filesystem::path& file) {
     return lines;
 }
 
+std::vector<double> read_numbers(const std::filesystem::path& file, size_t count) {
+    std::vector<double> numbers;
+    for (const TextLine& line : read_lines(file)) {
+        for (size_t column = 0; column < line.size(); ++column) numbers.push_back(line.number(column));
+    }
+    if (numbers.size() != count) throw Error(file.string(), " has ", numbers.size(), " numbers, must have ", count);
+    return numbers;
+}
+
 std::vector<uint8_t> read_bytes(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) throw Error(file.string(), " is missing");
     if (!std::filesystem::is_regular_file(file)) throw Error(file.string(), " is not a file");

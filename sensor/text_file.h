@@ -40,6 +40,9 @@ class TextLine {
 /// The lines of a text file that hold something; '#' starts a comment. Throws Error when the file cannot be read.
 std::vector<TextLine> read_lines(const std::filesystem::path& file);
 
+/// The numbers of a text file, across lines; inf and nan pass. Throws Error when there are not exactly `count`.
+std::vector<double> read_numbers(const std::filesystem::path& file, size_t count);
+
 /// All bytes of a file. Throws Error when it is missing or cannot be read.
 std::vector<uint8_t> read_bytes(const std::filesystem::path& file);
 

@@ -103,17 +103,17 @@ class Recorder {
         std::vector<vk::ImageMemoryBarrier2> images;
         for (const Barrier& b : barriers) {
             const auto source = vk_stages(b.source.stages), destination = vk_stages(b.destination.stages);
-            if (b.discard) {
-                images.emplace_back(source, vk_accesses(b.source.accesses), destination,
-                                    vk_accesses(b.destination.accesses), vk::ImageLayout::eUndefined,
-                                    vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
-                                    *image(*b.resource).object().image, kWholeImage);
-                continue;
-            }
+            // An image barrier speaks of accesses through that image alone; what used its memory before is covered
+            // here.
             memory.srcStageMask |= source;
             memory.srcAccessMask |= vk_accesses(b.source.accesses);
             memory.dstStageMask |= destination;
             memory.dstAccessMask |= vk_accesses(b.destination.accesses);
+            if (!b.discard) continue;
+            images.emplace_back(source, vk_accesses(b.source.accesses), destination,
+                                vk_accesses(b.destination.accesses), vk::ImageLayout::eUndefined,
+                                vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
+                                *image(*b.resource).object().image, kWholeImage);
         }
         vk::DependencyInfo info;
         if (memory.srcStageMask) info.setMemoryBarriers(memory);

@@ -1,7 +1,6 @@
 #include "engine/vulkan/device.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "engine/vulkan/context.h"
 
@@ -204,15 +203,17 @@ std::vector<std::string> Device::validation_messages() const {
 }
 
 ChunkedBuffer::ChunkedBuffer(Device& device, const std::string& name, uint64_t elements, uint32_t bytes_per_element,
-                             uint32_t max_chunks)
-    : elements_(elements), elements_per_chunk_(std::bit_floor(kMaxChunkBytes / bytes_per_element)) {
-    const uint64_t needed = std::max<uint64_t>((elements + elements_per_chunk_ - 1) / elements_per_chunk_, 1);
-    if (needed > max_chunks) {
-        throw Error("the array '", name, "' needs ", needed, " chunks of ", kMaxChunkBytes >> 20, " MiB, at most ",
-                    max_chunks, " can be bound");
+                             uint64_t chunk_elements, uint32_t max_chunks) {
+    const uint64_t chunk_bytes = chunk_elements * bytes_per_element;
+    if (chunk_bytes > device.caps().max_storage_range) {
+        throw Error("a chunk of the array '", name, "' takes ", chunk_bytes, " bytes, the device binds at most ",
+                    device.caps().max_storage_range);
     }
+    const uint64_t needed = std::max<uint64_t>((elements + chunk_elements - 1) / chunk_elements, 1);
+    if (needed > max_chunks)
+        throw Error("the array '", name, "' needs ", needed, " chunks, at most ", max_chunks, " can be bound");
     for (uint64_t i = 0; i < needed; ++i) {
-        const uint64_t here = std::min(elements_per_chunk_, elements - i * elements_per_chunk_);
+        const uint64_t here = std::min(chunk_elements, elements - i * chunk_elements);
         chunks_.push_back(device.create_buffer({text(name, '[', i, ']'), here * bytes_per_element}));
     }
 }

@@ -167,7 +167,7 @@ std::vector<std::string> missing_from_floor(const vk::raii::PhysicalDevice& phys
     const auto need = [&](uint64_t has, uint64_t wanted, const char* what) {
         if (has < wanted) missing.push_back(text(what, " of at least ", wanted, " (the device has ", has, ")"));
     };
-    need(caps.max_storage_range, kMaxChunkBytes, "a storage buffer range");
+    need(caps.max_storage_range, uint64_t{128} << 20, "a storage buffer range");
     need(caps.max_push_bytes, 128, "push constants");
     need(caps.max_storage_buffers, 16, "storage buffers per stage");
     need(caps.max_shared_bytes, 16384, "shared memory");

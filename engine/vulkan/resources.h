@@ -85,29 +85,21 @@ using MemoryRef = std::shared_ptr<MemoryObject>;
 
 class Device;
 
-/// An array too large for one storage-buffer range, split into buffers of `elements_per_chunk` elements each; element i
-/// lies in chunk i / elements_per_chunk. Shaders bind all chunks as one descriptor array (see shaders/lib/chunks.glsl).
+/// An array too large for one storage-buffer range, split into buffers of `chunk_elements` elements each (the last one
+/// shorter); element i lies in chunk i / chunk_elements. Shaders bind all chunks as one array of buffers.
 class ChunkedBuffer {
   public:
     ChunkedBuffer() = default;
-    /// The chunk size is a power of two elements, at most 128 MiB; an array that fits takes one chunk of its own size.
-    /// Throws Error when `max_chunks` do not suffice, or memory runs out.
+    /// Throws Error when a chunk exceeds the device's storage-buffer range, `max_chunks` do not suffice, or memory runs
+    /// out.
     ChunkedBuffer(Device& device, const std::string& name, uint64_t elements, uint32_t bytes_per_element,
-                  uint32_t max_chunks);
+                  uint64_t chunk_elements, uint32_t max_chunks);
 
     const std::vector<BufferRef>& chunks() const { return chunks_; }
-    uint64_t elements() const { return elements_; }
-    uint64_t elements_per_chunk() const { return elements_per_chunk_; }
     uint64_t bytes() const;
 
   private:
     std::vector<BufferRef> chunks_;
-    uint64_t elements_ = 0;
-    uint64_t elements_per_chunk_ = 0;
 };
-
-/// No storage-buffer binding exceeds this: the range that every Vulkan device supports (maxStorageBufferRange is at
-/// least 2^27).
-constexpr uint64_t kMaxChunkBytes = uint64_t{128} << 20;
 
 }  // namespace patina::vulkan

@@ -37,10 +37,7 @@ Intrinsics read_intrinsics(const JsonValue& camera) {
 }
 
 RigidTransform read_transform(const JsonValue& value) {
-    const std::vector<double> rows = value.numbers(16);
-    RigidTransform transform(1.0);
-    for (int i = 0; i < 16; ++i) transform[i % 4][i / 4] = rows[static_cast<size_t>(i)];
-    return checked_pose(transform, value.where()).transform;
+    return checked_pose(matrix_from_rows(value.numbers(16)), value.where()).transform;
 }
 
 void expect_format(const JsonValue& root) {

@@ -1,7 +1,7 @@
 #include "sensor/readers/seven_scenes.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <set>
 
 #include "sensor/picture_file.h"
@@ -49,13 +49,12 @@ std::vector<std::string> frame_numbers(const fs::path& folder) {
 
 /// Reads fx 0 cx, 0 fy cy, 0 0 1.
 Intrinsics read_camera_matrix(const fs::path& file, Extent2D extent) {
-    std::vector<double> values;
-    for (const TextLine& line : read_lines(file)) {
-        for (size_t column = 0; column < line.size(); ++column) values.push_back(line.finite(column));
-    }
-    if (values.size() != 9) throw Error(file.string(), " has ", values.size(), " numbers, must have 9 (3 x 3)");
-    for (const size_t i : {size_t{0}, size_t{4}}) {
-        if (!(values[i] > 0)) throw Error(file.string(), ": the focal length is ", values[i], ", must be positive");
+    const std::vector<double> values = read_numbers(file, 9);
+    for (size_t i = 0; i < values.size(); ++i) {
+        const bool focal_length = i == 0 || i == 4;
+        if (std::isfinite(values[i]) && (values[i] > 0 || !focal_length)) continue;
+        throw Error(file.string(), ": number ", i + 1, " is ", values[i], ", must be ",
+                    focal_length ? "positive" : "finite");
     }
     return {extent, values[0], values[4], values[2], values[5], {}};
 }

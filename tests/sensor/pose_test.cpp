@@ -36,6 +36,8 @@ TEST(Associate, TakesTheNearestPairsFirstAndEachOnce) {
     EXPECT_EQ(associate(a, std::vector<double>{0.75}, 0.5), (Partners{std::nullopt, 0, std::nullopt}));
     EXPECT_EQ(associate(a, std::vector<double>{0.5, 0.75}, 0.5),
               (Partners{0, 1, std::nullopt}));  // the limit counts as within
+    EXPECT_EQ(associate(std::vector<double>{0.0, 0.25, 0.5}, std::vector<double>{0.25}, 0.5),
+              (Partners{std::nullopt, 0, std::nullopt}));
     EXPECT_EQ(associate(a, {}, 0.5), (Partners(3)));
     EXPECT_EQ(associate({}, a, 0.5), Partners{});
 }

@@ -265,6 +265,13 @@ TEST(SevenScenesReader, ReadsFramesInOrderOfTheirNumbersWithTheKinectsCalibratio
     EXPECT_DOUBLE_EQ((*frame_at(readings, 2).world_from_camera)[3].x, 0.2);
 }
 
+TEST(SevenScenesReader, TheKinectsInvalidDepthBecomesZero) {
+    const TemporaryFolder folder;
+    write_seven_scenes(folder / "a", {0});
+    write_png(folder / "a/frame-000000.depth.png", Image<uint16_t>({640, 480}, 65535));
+    EXPECT_EQ(units(frame_at(read_all(*open_sequence(folder / "a")), 0)).at(5, 5), 0);
+}
+
 TEST(SevenScenesReader, OtherIntrinsicsMeanARegisteredCamera) {
     const TemporaryFolder folder;
     write_seven_scenes(folder / "a", {0});
@@ -283,6 +290,10 @@ TEST(SevenScenesReader, BadOrMissingIntrinsicsAreErrors) {
     write_seven_scenes(folder / "a", {0});
     write_text(folder / "a/camera-intrinsics.txt", "585 0 320\n0 585 240\n");
     EXPECT_THAT(open_error(folder / "a"), HasSubstr("camera-intrinsics.txt has 6 numbers, must have 9"));
+    write_text(folder / "a/camera-intrinsics.txt", "585 0 320\n0 -585 240\n0 0 1\n");
+    EXPECT_THAT(open_error(folder / "a"), HasSubstr("camera-intrinsics.txt: number 5 is -585, must be positive"));
+    write_text(folder / "a/camera-intrinsics.txt", "585 0 nan\n0 585 240\n0 0 1\n");
+    EXPECT_THAT(open_error(folder / "a"), HasSubstr("camera-intrinsics.txt: number 3 is nan, must be finite"));
     fs::remove(folder / "a/camera-intrinsics.txt");
     write_png(folder / "a/frame-000000.depth.png", Image<uint16_t>({320, 240}));
     EXPECT_THAT(open_error(folder / "a"),

@@ -140,18 +140,12 @@ std::vector<Cell> find_cells(const Description& description, const Plan& plan) {
 
 // ---- execution ----
 
-/// The barriers of a frame, by the position before which they are recorded.
-class Commands {
-  public:
-    explicit Commands(const Plan& plan) : barriers_(plan.barriers) {}
-    std::span<const Barrier> before(uint32_t position) const {
-        const auto range = std::ranges::equal_range(barriers_, position, {}, &Barrier::before);
-        return {range.begin(), range.end()};
-    }
-
-  private:
-    const std::vector<Barrier>& barriers_;
-};
+/// The barriers recorded before the pass at `position`.
+std::span<const Barrier> command_before(const Plan& plan, uint32_t position) {
+    const auto begin = std::ranges::lower_bound(plan.barriers, position, {}, &Barrier::before);
+    const auto end = std::ranges::upper_bound(plan.barriers, position, {}, &Barrier::before);
+    return {begin, end};
+}
 
 /// Runs the frame for one cell and notes what goes wrong.
 class CellSimulation {
@@ -160,17 +154,16 @@ class CellSimulation {
                    std::vector<std::string>& problems)
         : description_(description), plan_(plan), cell_(cell), problems_(problems) {
         const uint32_t all_stages = kStageCompute | kStageTransfer | kStageIndirect;
-        past_.push_back({"earlier frames", {all_stages, accesses_of(all_stages)}, true});
+        past_.push_back({Kind::kEarlierFrames, nullptr, 0, {all_stages, accesses_of(all_stages)}});
         for (uint32_t resource = 0; resource < cell.size(); ++resource) {
             if (cell[resource] && description.resources[resource].imported) content_ = {resource, 0};
         }
     }
 
     void run() {
-        const Commands commands(plan_);
         for (uint32_t position = 0; position < plan_.order.size(); ++position) {
             const Pass& pass = description_.passes[plan_.order[position]];
-            execute(commands.before(position), pass);
+            execute(command_before(plan_, position), pass);
             for (const Access& access : pass.accesses) {
                 if (cell_[access.resource]) execute(access, pass);
             }
@@ -183,10 +176,13 @@ class CellSimulation {
     }
 
   private:
+    enum class Kind : uint8_t { kEarlierFrames, kTransition, kAccess };
+    /// Something that happened to the cell.
     struct Past {
-        std::string what;
-        Scope scope;
-        bool earlier_frames = false;
+        Kind kind = Kind::kAccess;
+        const Pass* pass = nullptr;  ///< the pass that made the access, or that follows the transition
+        uint32_t resource = 0;       ///< through which it happened
+        Scope scope;                 ///< no stages for a transition, which happens between them
         uint32_t ordered = kStageNone;
         bool available = false;
         uint32_t visible = kAccessNone;
@@ -198,10 +194,9 @@ class CellSimulation {
         bool operator==(const Content&) const = default;
     };
 
-    /// Whether the source of `barrier` has the stages of `past` itself. A transition has none: it is reached by chains
-    /// only.
+    /// Whether the source of `barrier` has the stages of `past` itself; a transition is reached by chains only.
     static bool reaches_directly(const Past& past, const Barrier& barrier) {
-        return past.scope.stages != kStageNone && contains(barrier.source.stages, past.scope.stages);
+        return past.kind != Kind::kTransition && contains(barrier.source.stages, past.scope.stages);
     }
 
     /// The state of `past` behind `barrier`, as far as that barrier alone goes.
@@ -229,7 +224,7 @@ class CellSimulation {
         for (const Barrier& barrier : command) {
             if (barrier.resource && !cell_[*barrier.resource]) continue;
             for (size_t i = 0; i < past_.size(); ++i) {
-                if (past_[i].earlier_frames && barrier.resource) continue;
+                if (past_[i].kind == Kind::kEarlierFrames && barrier.resource) continue;
                 const Past after = advanced(past_[i], barrier);
                 next[i].ordered |= after.ordered;
                 next[i].available |= after.available;
@@ -242,50 +237,55 @@ class CellSimulation {
 
     /// Discards the cell's content and checks that this comes after all that happened before.
     Past transition(const Barrier& barrier, const Pass& pass) {
-        const std::string what =
-            text("the transition of '", name(*barrier.resource), "' before pass '", pass.name, "'");
+        Past now{Kind::kTransition, &pass, *barrier.resource, {kStageNone, kAllWrites}};
         for (const Past& past : past_) {
-            if (!reaches_transition(past, barrier)) report(what, " does not wait for ", past.what);
+            if (!reaches_transition(past, barrier)) report(describe(now), " does not wait for ", describe(past));
         }
         content_.reset();
         layout_of_ = barrier.resource;
-        Past done{what, {kStageNone, kAllWrites}};
-        done.ordered = barrier.destination.stages;
-        done.available = true;
-        done.visible = barrier.destination.accesses & accesses_of(barrier.destination.stages);
-        return done;
+        now.ordered = barrier.destination.stages;
+        now.available = true;
+        now.visible = barrier.destination.accesses & accesses_of(barrier.destination.stages);
+        return now;
     }
 
     void execute(const Access& access, const Pass& pass) {
-        const std::string what = text("pass '", pass.name, "', which ", writes(access.use) ? "writes '" : "reads '",
-                                      name(access.resource), "'");
-        const Scope scope = scope_of(access.use);
-        for (const Past& past : past_) check_pair(past, scope, what);
-        check_layout(access, what);
-        if (reads(access.use)) check_content(access, what);
+        const Past now{Kind::kAccess, &pass, access.resource, scope_of(access.use)};
+        for (const Past& past : past_) check_pair(past, now);
+        check_layout(now);
+        if (reads(access.use)) check_content(now, {access.resource, access.version});
         if (writes(access.use)) content_ = Content{access.resource, access.version + 1};
-        past_.push_back({what, scope});
+        past_.push_back(now);
     }
 
-    void check_pair(const Past& past, const Scope& scope, const std::string& what) {
+    void check_pair(const Past& past, const Past& now) {
         const uint32_t written = past.scope.accesses & kAllWrites;
-        if (!written && !(scope.accesses & kAllWrites)) return;
-        if (!contains(past.ordered, scope.stages)) {
-            report(what, ", does not wait for ", past.what);
-        } else if (written && !contains(past.visible, scope.accesses)) {
-            report(what, ", waits for ", past.what, ", but does not see what that wrote");
+        if (!written && !(now.scope.accesses & kAllWrites)) return;
+        if (!contains(past.ordered, now.scope.stages)) {
+            report(describe(now), ", does not wait for ", describe(past));
+        } else if (written && !contains(past.visible, now.scope.accesses)) {
+            report(describe(now), ", waits for ", describe(past), ", but does not see what that wrote");
         }
     }
 
-    void check_layout(const Access& access, const std::string& what) {
-        const Resource& resource = description_.resources[access.resource];
-        if (resource.kind != ResourceKind::kImage || resource.imported || layout_of_ == access.resource) return;
-        report(what, ", finds it in an undefined layout");
+    void check_layout(const Past& now) {
+        const Resource& resource = description_.resources[now.resource];
+        if (resource.kind != ResourceKind::kImage || resource.imported || layout_of_ == now.resource) return;
+        report(describe(now), ", finds it in an undefined layout");
     }
 
-    void check_content(const Access& access, const std::string& what) {
-        if (content_ == Content{access.resource, access.version}) return;
-        report(what, ", wants version ", access.version, " of it and finds ", content_text());
+    void check_content(const Past& now, const Content& wanted) {
+        if (content_ == wanted) return;
+        report(describe(now), ", wants version ", wanted.version, " of it and finds ", content_text());
+    }
+
+    std::string describe(const Past& past) const {
+        if (past.kind == Kind::kEarlierFrames) return "earlier frames";
+        if (past.kind == Kind::kTransition) {
+            return text("the transition of '", name(past.resource), "' before pass '", past.pass->name, "'");
+        }
+        const char* verb = past.scope.accesses & kAllWrites ? "writes" : "reads";
+        return text("pass '", past.pass->name, "', which ", verb, " '", name(past.resource), "'");
     }
 
     std::string content_text() const {

@@ -1,0 +1,67 @@
+#include "passes/fusion/allocate_blocks.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& settings,
+                                     const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
+                                     uint32_t frame_index) {
+    const float voxel_m = map.settings().voxel_m;
+    gpu::FusionParams params{};
+    params.grid = map.grid();
+    params.depth_camera = depth_camera;
+    params.color_camera = color_camera;
+    params.truncation_m = std::max(settings.truncation_m, 3 * voxel_m);
+    params.truncation_slope = settings.truncation_slope;
+    params.max_depth_m = settings.max_depth_m;
+    const float widest_m = params.truncation_m + params.truncation_slope * params.max_depth_m;
+    if (widest_m > gpu::kSdfRangeVox * voxel_m) {
+        throw Error("the truncation band is ", widest_m, " m wide at ", settings.max_depth_m, " m, voxels of ", voxel_m,
+                    " m hold at most ", gpu::kSdfRangeVox * voxel_m, " m");
+    }
+    params.max_weight = static_cast<float>(settings.max_weight);
+    // Marching cubes interpolates colour between voxels up to one voxel off the surface; oblique views see these
+    // farther off along the optical axis.
+    params.color_band_m = 3 * voxel_m;
+    params.max_color_weight = static_cast<float>(settings.max_color_weight);
+    params.stride_px = std::max(settings.allocation_stride_px, 1u);
+    // A permutation of the stride^2 phases: neighbours in time are apart in space.
+    params.phase = frame_index * 5u % (params.stride_px * params.stride_px);
+    params.max_table_keys = map.table_slots() / 2;
+    return params;
+}
+
+void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
+                         graph::BufferId params, uint32_t stride_px) {
+    auto touch = frame.compute("fusion.touch_blocks", spirv::touch_blocks);
+    touch.read("depth_m", depth_m).read("Fusion", params);
+    ids.keys = touch.modify("Keys", ids.keys);
+    ids.new_slots = touch.write("NewSlots", ids.new_slots);
+    ids.counters = touch.modify("Counters", ids.counters);
+    const Extent2D extent = frame.shape(depth_m).extent;
+    touch.dispatch_covering(
+        Extent2D{(extent.width + stride_px - 1) / stride_px, (extent.height + stride_px - 1) / stride_px});
+
+    auto select = frame.compute("fusion.select_blocks", spirv::select_blocks);
+    select.read("Keys", ids.keys).read("NewSlots", ids.new_slots).read("Fusion", params);
+    ids.counters = select.modify("Counters", ids.counters);
+    ids.assign_arguments = select.write("AssignArguments", ids.assign_arguments);
+    ids.block_arguments = select.write("BlockArguments", ids.block_arguments);
+    select.dispatch(1);
+
+    auto assign = frame.compute("fusion.assign_blocks", spirv::assign_blocks);
+    assign.read("Keys", ids.keys).read("NewSlots", ids.new_slots).read("FreeList", ids.free_list).push(map.grid());
+    assign.specialise("kTsdfChunks", map.tsdf_chunks()).specialise("kColorChunks", map.color_chunks());
+    ids.counters = assign.modify("Counters", ids.counters);
+    ids.blocks = assign.modify("Blocks", ids.blocks);
+    ids.block_keys = assign.modify("BlockKeys", ids.block_keys);
+    ids.tsdf = assign.modify("Tsdf", ids.tsdf);
+    ids.color = assign.modify("Color", ids.color);
+    assign.dispatch_indirect(ids.assign_arguments);
+}
+
+}  // namespace patina

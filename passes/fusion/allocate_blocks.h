@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/graph/frame.h"
+#include "passes/model/voxel_map.h"
+#include "shared/allocate_blocks.h"
+
+namespace patina {
+
+/// How depth and colour are fused.
+struct FusionSettings {
+    float truncation_m = 0.02f;       ///< t(z) = truncation_m + truncation_slope * z, at least 3 voxels
+    float truncation_slope = 0.005f;  ///< grows with the sensor's noise
+    float max_depth_m = 4.0f;         ///< farther readings are not fused
+    uint32_t max_weight = 128;        ///< samples after which a voxel's distance becomes a sliding average
+    uint32_t max_color_weight = 64;
+    uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
+};
+
+/// The parameters that one frame's fusion passes share. `color_camera` may be the depth camera where there is no
+/// colour. Throws Error when the truncation band is wider than a voxel's distance can express at max_depth_m.
+gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& settings,
+                                     const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
+                                     uint32_t frame_index);
+
+/// Makes sure that every block touched by a reading's truncation band is in the map, as far as the pool reaches: touch
+/// (insert keys by compare-and-swap), select (which new keys get a block when the pool runs short, by hash of the key),
+/// assign (pop ids, clear voxels). `depth_m` is W x H r32f, metres along the optical axis, 0 where there is no reading;
+/// `params` holds gpu::FusionParams. A full pool or table leaves existing blocks alone and counts what was refused
+/// (gpu::MapCounters). Voxel hashing after Niessner et al. 2013, with the two-phase allocation of Kaehler et al. 2015.
+void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
+                         graph::BufferId params, uint32_t stride_px);
+
+}  // namespace patina

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/graph/frame.h"
+#include "passes/fusion/visible_blocks.h"
+#include "passes/model/voxel_map.h"
+
+namespace patina {
+
+/// Fuses a depth image, and colour where it is given, into the visible blocks: the running average of Curless and Levoy
+/// 1996 over the projective distance d - z, truncated at t(z) in front of the surface and left alone behind it.
+/// `params` holds gpu::FusionParams; `depth_m` is W x H r32f (0: no reading); `color_linear` is the colour camera's
+/// rgba16f image (a = 0: no reading), sampled at the nearest pixel through that camera's own intrinsics and pose, by
+/// voxels within color_band_m of the surface.
+void add_integrate(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
+                   graph::BufferId params, graph::ImageId depth_m, std::optional<graph::ImageId> color_linear);
+
+}  // namespace patina

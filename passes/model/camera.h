@@ -1,0 +1,12 @@
+#pragma once
+
+#include "engine/core/camera.h"
+#include "shared/camera.h"
+
+namespace patina {
+
+/// A camera at a pose, as shaders take it. Lens distortion must have been removed from its images before; it is not
+/// carried over.
+gpu::Camera make_camera(const Intrinsics& intrinsics, const RigidTransform& world_from_camera);
+
+}  // namespace patina

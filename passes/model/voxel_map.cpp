@@ -1,0 +1,98 @@
+#include "passes/model/voxel_map.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "engine/core/error.h"
+
+namespace patina {
+
+namespace {
+
+constexpr uint32_t kTsdfBytes = gpu::kBlockVoxels * 4;   // of a block
+constexpr uint32_t kColorBytes = gpu::kBlockVoxels * 8;  // of a block
+
+/// Blocks per chunk of colours, a power of two; a chunk of distances holds twice as many in the same space.
+uint32_t color_chunk_blocks(const vulkan::DeviceCaps& caps) {
+    constexpr uint64_t kLargest = uint64_t{1} << 30;  // beyond a GiB devices differ in what one allocation may hold
+    return static_cast<uint32_t>(std::bit_floor(std::min(caps.max_storage_range, kLargest)) / kColorBytes);
+}
+
+}  // namespace
+
+VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : settings_(settings) {
+    const uint32_t capacity = settings.capacity_blocks;
+    const uint32_t chunk_blocks = color_chunk_blocks(device.caps());
+    const uint32_t most_blocks = chunk_blocks * gpu::kMaxColorChunks;
+    if (capacity == 0 || capacity > most_blocks) {
+        throw Error("the voxel pool's capacity is ", capacity, " blocks, it must be 1 to ", most_blocks,
+                    " on this device");
+    }
+    if (!(settings.voxel_m >= 1e-4f && settings.voxel_m <= 1.0f)) {
+        throw Error("the voxel size is ", settings.voxel_m, " m, it must be 0.0001 to 1");
+    }
+    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets.
+    table_slots_ = std::bit_ceil(std::max(capacity, 16u)) * 4;
+    grid_.voxel_m = settings.voxel_m;
+    grid_.bucket_mask = table_slots_ / gpu::kBucketSlots - 1;
+    grid_.capacity = capacity;
+    grid_.chunk_shift = static_cast<uint32_t>(std::countr_zero(chunk_blocks)) + 1;
+
+    const auto buffer = [&](const char* name, uint64_t bytes) { return device.create_buffer({name, bytes}); };
+    keys_ = buffer("map.keys", table_slots_ * 4u);
+    blocks_ = buffer("map.blocks", table_slots_ * 4u);
+    new_slots_ = buffer("map.new_slots", table_slots_ * 4u);
+    block_keys_ = buffer("map.block_keys", capacity * 4u);
+    free_list_ = buffer("map.free_list", capacity * 4u);
+    counters_ = buffer("map.counters", sizeof(gpu::MapCounters));
+    assign_arguments_ = buffer("map.assign_arguments", 16);
+    block_arguments_ = buffer("map.block_arguments", 16);
+    tsdf_ = {device, "map.tsdf", capacity, kTsdfBytes, chunk_blocks * 2u, gpu::kMaxTsdfChunks};
+    color_ = {device, "map.color", capacity, kColorBytes, chunk_blocks, gpu::kMaxColorChunks};
+}
+
+void VoxelMap::reset(graph::Frame& frame, glm::dvec3 center_m) {
+    grid_.origin_block = glm::ivec4(glm::ivec3(glm::floor(center_m / double(settings_.voxel_m * gpu::kBlockEdge))), 0);
+    std::vector<uint32_t> stack(settings_.capacity_blocks);
+    std::iota(stack.rbegin(), stack.rend(), 0u);  // popped from the end: 0 first
+    gpu::MapCounters counters{};
+    counters.free_blocks = settings_.capacity_blocks;
+
+    VoxelMapIds ids = import(frame);
+    ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
+    ids.block_keys = frame.fill(ids.block_keys, gpu::kEmptyKey);
+    ids.block_arguments = frame.fill(ids.block_arguments, 0);
+    ids.free_list = frame.upload_bytes(ids.free_list, 0, std::as_bytes(std::span(stack)), true);
+    ids.counters = frame.upload_bytes(ids.counters, 0, std::as_bytes(std::span(&counters, 1)), true);
+    keep(frame, ids);
+}
+
+VoxelMapIds VoxelMap::import(graph::Frame& frame) const {
+    return {frame.import(keys_),
+            frame.import(blocks_),
+            frame.import(block_keys_),
+            frame.import(free_list_),
+            frame.import(new_slots_),
+            frame.import(counters_),
+            frame.import(assign_arguments_),
+            frame.import(block_arguments_),
+            frame.import(tsdf_),
+            frame.import(color_)};
+}
+
+void VoxelMap::keep(graph::Frame& frame, const VoxelMapIds& ids) {
+    for (const graph::BufferId id : {ids.keys, ids.blocks, ids.block_keys, ids.free_list, ids.counters,
+                                     ids.block_arguments, ids.tsdf, ids.color}) {
+        frame.keep(id);
+    }
+}
+
+std::vector<VoxelMap::PoolBytes> VoxelMap::memory() const {
+    return {{"voxel distances", tsdf_.bytes()},
+            {"voxel colours", color_.bytes()},
+            {"voxel table", keys_->bytes() + blocks_->bytes() + new_slots_->bytes()},
+            {"voxel block lists", block_keys_->bytes() + free_list_->bytes()}};
+}
+
+}  // namespace patina

@@ -1,0 +1,47 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One workgroup per new key: pops a block from the free list, clears its voxels, and enters it in the table; or leaves the key
+// without a block when it was not among those accepted.
+#include "lib/voxel_map.glsl"
+#include "lib/voxel_chunks.glsl"
+#include "shared/allocate_blocks.h"
+
+layout(local_size_x = kAssignGroup) in;
+layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };
+layout(std430, binding = 1) readonly buffer NewSlots { uint new_slots[]; };
+layout(std430, binding = 2) readonly buffer FreeList { uint free_list[]; };
+layout(std430, binding = 3) buffer Counters { MapCounters counters; };
+layout(std430, binding = 4) buffer Blocks { uint blocks[]; };
+layout(std430, binding = 5) buffer BlockKeys { uint block_keys[]; };
+layout(std430, binding = 6) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
+layout(std430, binding = 7) buffer Color { uvec4 pairs[]; } color[kMaxColorChunks];
+layout(push_constant) uniform Push { VoxelGrid grid; };
+
+shared uint block;
+
+void claim(uint slot) {
+    const uint key = keys[slot];
+    block = kNoBlock;
+    if (hash_of_key(key) / (0xffffffffu / kAcceptBins + 1u) < counters.accepted_bins) {
+        block = free_list[counters.claim_base - 1u - atomicAdd(counters.claimed, 1u)];
+        block_keys[block] = key;
+    }
+    blocks[slot] = block;
+}
+
+void main() {
+    const uint item = group_item(gl_WorkGroupID);
+    if (item >= counters.assign_keys) return;
+    if (gl_LocalInvocationIndex == 0u) claim(new_slots[item]);
+    barrier();
+    if (block == kNoBlock) return;
+    const uint first_quad = index_in_tsdf_chunk(grid, block) * (kBlockVoxels / 4u);
+    const uint first_pair = index_in_color_chunk(grid, block) * (kBlockVoxels / 2u);
+    const uint lane = gl_LocalInvocationIndex;
+#define CLEAR_TSDF(C) \
+    for (uint i = lane; i < kBlockVoxels / 4u; i += kAssignGroup) tsdf[C].quads[first_quad + i] = uvec4(0u)
+#define CLEAR_COLOR(C) \
+    for (uint i = lane; i < kBlockVoxels / 2u; i += kAssignGroup) color[C].pairs[first_pair + i] = uvec4(0u)
+    WITH_TSDF_CHUNK(grid, block, CLEAR_TSDF)
+    WITH_COLOR_CHUNK(grid, block, CLEAR_COLOR)
+}

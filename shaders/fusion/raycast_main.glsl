@@ -1,0 +1,129 @@
+// Body of the ray casting shaders. The includer declares the map's table and distances and how to load them:
+//   KEYS(bucket)    uvec4, the keys of a bucket
+//   BLOCK(slot)     uint, the block id of a table slot
+//   VOXEL(C, i)     uint, voxel i of the literal chunk C
+// The march reads nearest voxels in a short loop without branches; interpolation happens once, at the hit: on software
+// devices a divergent branch costs as much as its longest path.
+#include "lib/camera.glsl"
+#include "lib/voxel_chunks.glsl"
+#include "lib/voxel_map.glsl"
+#include "shared/raycast.h"
+
+layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
+layout(std140, binding = 0) uniform View { ViewParams view; };
+layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
+layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
+layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
+
+uint cached_key = kEmptyKey;
+uint cached_block = kNoBlock;
+
+// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one block.
+uint find_block(ivec3 coordinates) {
+    const uint key = key_of_block(view.grid, coordinates);
+    if (key != cached_key) {
+        uint slot = kNoBlock;
+        uint bucket = hash_of_key(key) & view.grid.bucket_mask;
+        for (uint probe = 0u; probe < kMaxProbes; ++probe) {
+            const uvec4 keys = KEYS(bucket);
+            const bvec4 same = equal(keys, uvec4(key));
+            const uint first = bucket * kBucketSlots;
+            slot = same.x ? first : same.y ? first + 1u : same.z ? first + 2u : same.w ? first + 3u : slot;
+            if (slot != kNoBlock || keys.w == kEmptyKey) break;
+            bucket = (bucket + 1u) & view.grid.bucket_mask;
+        }
+        cached_key = key;
+        cached_block = slot == kNoBlock || key == kEmptyKey ? kNoBlock : BLOCK(slot);
+    }
+    return cached_block;
+}
+
+// The voxel at voxel coordinates; 0 (weight 0) where there is no block.
+uint load_voxel(ivec3 coordinates) {
+    const uint block = find_block(coordinates >> 3);
+    const ivec3 within = coordinates & 7;
+    const uint safe = block == kNoBlock ? 0u : block;
+    const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    uint voxel;
+#define LOAD_VOXEL(C) voxel = VOXEL(C, index)
+    WITH_TSDF_CHUNK(view.grid, safe, LOAD_VOXEL)
+    return block == kNoBlock ? 0u : voxel;
+}
+
+struct Cell {
+    bool complete;  // all eight corners have been seen
+    float sdf;
+    vec3 gradient;  // of the trilinear interpolant, per voxel
+};
+
+// The trilinear interpolant of the eight voxels around a point (voxel units, voxel centres at integers).
+Cell interpolate(vec3 point_vox) {
+    const ivec3 low = ivec3(floor(point_vox));
+    const vec3 t = point_vox - vec3(low);
+    float f[8];
+    uint least_weight = 0xffffu;
+    [[unroll]] for (int i = 0; i < 8; ++i) {
+        const uint voxel = load_voxel(low + ivec3(i & 1, i >> 1 & 1, i >> 2));
+        least_weight = min(least_weight, voxel_weight(voxel));
+        f[i] = voxel_sdf(voxel);
+    }
+    const vec4 at_x = mix(vec4(f[0], f[2], f[4], f[6]), vec4(f[1], f[3], f[5], f[7]), t.x);
+    const vec4 slope_x = vec4(f[1], f[3], f[5], f[7]) - vec4(f[0], f[2], f[4], f[6]);
+    const vec2 at_y = mix(at_x.xz, at_x.yw, t.y);
+    const vec2 slope_y = at_x.yw - at_x.xz;
+    const vec2 slope_xy = mix(slope_x.xz, slope_x.yw, t.y);
+    Cell cell;
+    cell.complete = least_weight > 0u;
+    cell.sdf = mix(at_y.x, at_y.y, t.z);
+    cell.gradient = vec3(mix(slope_xy.x, slope_xy.y, t.z), mix(slope_y.x, slope_y.y, t.z), at_y.y - at_y.x);
+    return cell;
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(view.camera.extent)))) return;
+    const TileRange range = tiles[uint(pixel.y) / kTileEdge * view.tiles.x + uint(pixel.x) / kTileEdge];
+    const float far = min(uintBitsToFloat(~range.far_bits_inverted), view.far_m);
+    // The ray in voxel units, by depth along the optical axis.
+    const float inverse_voxel = 1.0 / view.grid.voxel_m;
+    const vec3 in_camera = unproject(view.camera, vec2(pixel));
+    const vec3 origin = camera_center_m(view.camera) * inverse_voxel;
+    const vec3 direction = to_world_direction(view.camera, in_camera) * inverse_voxel;
+    const float depth_per_vox = view.grid.voxel_m / length(in_camera);
+
+    float depth = range.near_bits == 0xffffffffu ? far + 1.0 : max(uintBitsToFloat(range.near_bits), view.near_m);
+    float before_depth = depth;
+    float here = 1.0, before = 1.0;  // distances in units of kSdfRangeVox; 1 stands for unknown space
+    bool seen_before = false;
+    bool marching = depth < far;
+    for (uint step_index = 0u; marching && step_index < kMaxRaySteps; ++step_index) {
+        const ivec3 at = ivec3(floor(origin + direction * depth));
+        const uint voxel = load_voxel(at);
+        const bool seen = voxel_weight(voxel) > 0u;
+        here = seen ? voxel_sdf(voxel) : 1.0;
+        const bool inside = here <= 0.0;
+        const float step_vox = seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : cached_block == kNoBlock ? kUnknownStepVox : 1.0;
+        before_depth = inside ? before_depth : depth;
+        before = inside ? before : here;
+        seen_before = inside ? seen_before : seen;
+        depth = inside ? depth : depth + step_vox * depth_per_vox;
+        marching = !inside && depth < far;
+    }
+
+    vec4 hit_position = vec4(0.0);
+    vec4 hit_normal = vec4(0.0);
+    // A step from unknown space into the inside meets the back of a surface, or one that nobody saw from the front.
+    if (here <= 0.0 && seen_before) {
+        const float estimate = mix(before_depth, depth, before / (before - here));
+        Cell cell = interpolate(origin + direction * estimate - 0.5);
+        // One Newton step along the ray from the secant of nearest values, within the two steps that bracket the surface.
+        const float slope = dot(cell.gradient, direction);
+        float hit = cell.complete && slope < 0.0 ? estimate - cell.sdf / slope : estimate;
+        hit = clamp(hit, before_depth - depth_per_vox, depth + depth_per_vox);
+        hit_position = vec4((origin + direction * hit) * view.grid.voxel_m, hit);
+        const float steepness = length(cell.gradient);
+        if (cell.complete && steepness > 0.0) hit_normal = vec4(cell.gradient / steepness, 0.0);
+    }
+    imageStore(position_m, pixel, hit_position);
+    imageStore(normal, pixel, hit_normal);
+}

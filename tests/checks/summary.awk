@@ -1,0 +1,26 @@
+# Shortens `ctest --verbose`: one line per test, the output of tests that failed, the reason of tests that were skipped, and
+# ctest's summary unchanged.
+/^(test [0-9]+|UpdateCTestConfiguration|Constructing|Updating test list|Test timeout|Working Directory|Environment variables|Test command)/ { next }
+/^[0-9]+: / {
+    number = $1 + 0
+    output[number] = output[number] $0 "\n"
+    if (after_skip[number]) {
+        reason[number] = reason[number] " " substr($0, length($1) + 2)
+        after_skip[number] = 0
+    }
+    if (/: Skipped$/) after_skip[number] = 1
+    if (/^[0-9]+: Skipped: /) reason[number] = substr($0, index($0, "Skipped: ") + 8)
+    next
+}
+/ Test +#[0-9]+: / {
+    print
+    match($0, /#[0-9]+/)
+    number = substr($0, RSTART + 1, RLENGTH - 1) + 0
+    if (/\*\*\*Skipped/) print "          skipped:" reason[number]
+    else if (/\*\*\*/) printf "%s", output[number]
+    delete output[number]
+    fflush()
+    next
+}
+/tests passed,|^No tests/ { summary = 1 }
+summary || NF

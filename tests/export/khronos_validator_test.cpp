@@ -1,0 +1,97 @@
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "tests/export/temporary_folder.h"
+#include "tests/export/test_meshes.h"
+#include "tools/export/write_glb.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using test::wavy_sheet;
+
+const fs::path kSource = PATINA_SOURCE_DIR;
+
+/// What a shell command printed, and its exit status.
+struct Outcome {
+    std::string output;
+    int status;
+};
+
+Outcome run(const std::string& command) {
+    Outcome outcome{{}, -1};
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    if (!pipe) return outcome;
+    std::array<char, 4096> chunk;
+    for (size_t got; (got = fread(chunk.data(), 1, chunk.size(), pipe)) > 0;) outcome.output.append(chunk.data(), got);
+    outcome.status = WEXITSTATUS(pclose(pipe));
+    return outcome;
+}
+
+Outcome validate(const fs::path& file) {
+    return run("node '" + (kSource / "tools/validate_gltf.mjs").string() + "' '" + file.string() + "'");
+}
+
+class KhronosValidator : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (run("node --version").status != 0) GTEST_SKIP() << "node is not installed";
+        if (!fs::exists(kSource / "node_modules/gltf-validator")) {
+            GTEST_SKIP() << "node_modules/gltf-validator is missing: run npm ci in " << kSource;
+        }
+    }
+
+    void expect_valid(const Mesh& mesh) {
+        const fs::path file = folder_ / "scene.glb";
+        write_glb(file, mesh, {.version = "0.0"});
+        const Outcome outcome = validate(file);
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        EXPECT_NE(outcome.output.find(" 0 errors, 0 warnings,"), std::string::npos) << outcome.output;
+    }
+
+    const TemporaryFolder folder_;
+};
+
+TEST_F(KhronosValidator, AcceptsASmallScene) { expect_valid(wavy_sheet(3, 3)); }
+
+TEST_F(KhronosValidator, AcceptsAnOddNumberOfShortIndices) {
+    Mesh mesh = wavy_sheet(2, 2);
+    mesh.triangles.pop_back();
+    expect_valid(mesh);
+}
+
+TEST_F(KhronosValidator, AcceptsTheMostVerticesOfShortIndices) { expect_valid(wavy_sheet(21845, 3)); }
+
+TEST_F(KhronosValidator, AcceptsWideIndices) { expect_valid(wavy_sheet(300, 300)); }
+
+TEST_F(KhronosValidator, AcceptsAnEmptyScene) { expect_valid({}); }
+
+TEST_F(KhronosValidator, AcceptsDegenerateInput) {
+    Mesh mesh = wavy_sheet(3, 3);
+    mesh.triangles.push_back({0, 0, 1});
+    mesh.normals.assign(9, glm::vec3(0));
+    expect_valid(mesh);
+}
+
+TEST_F(KhronosValidator, RejectsADamagedScene) {
+    const fs::path file = folder_ / "scene.glb";
+    write_glb(file, wavy_sheet(3, 3), {.version = "0.0"});
+    std::string bytes = test::bytes_of(file);
+    const size_t at = bytes.find("\"max\":[");
+    ASSERT_NE(at, std::string::npos);
+    bytes[at + 7] = '7';
+    std::ofstream(file, std::ios::binary) << bytes;
+    const Outcome outcome = validate(file);
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find("ACCESSOR_MAX_MISMATCH"), std::string::npos) << outcome.output;
+    EXPECT_EQ(validate(folder_ / "missing.glb").status, 2);
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,99 @@
+#include "tools/export/report.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/export/test_record.h"
+#include "tools/export/html.h"
+
+namespace patina {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string report() {
+    const std::vector<ReportPicture> pictures = {{"frame 12 & \"more\"", std::string("\x89PNG\0", 5)}};
+    return report_html(test::full_record(), pictures);
+}
+
+size_t count_of(const std::string& text, const std::string& part) {
+    size_t count = 0;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+TEST(Html, EscapesWhatHasAMeaning) {
+    EXPECT_EQ(html_escaped("<b class=\"x\">'&amp;'</b>"), "&lt;b class=&quot;x&quot;&gt;&#39;&amp;amp;&#39;&lt;/b&gt;");
+    EXPECT_EQ(html_escaped("K\xc3\xbc"
+                           "che 5 mm"),
+              "K\xc3\xbc"
+              "che 5 mm");
+}
+
+// The vectors of RFC 4648, section 10, and bytes above 127.
+TEST(Html, Base64FollowsTheRfc) {
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foo"), "Zm9v");
+    EXPECT_EQ(base64("foob"), "Zm9vYg==");
+    EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64(std::string_view("\xff\xfe\x00", 3)), "//4A");
+}
+
+TEST(Report, SaysWhatTheRunDid) {
+    const std::string html = report();
+    EXPECT_THAT(html, HasSubstr("<title>red &lt;kitchen&gt; &middot; Patina</title>"));
+    EXPECT_THAT(html, HasSubstr("298 of 300"));
+    EXPECT_THAT(html, HasSubstr("1&#8239;234&#8239;567"));
+    EXPECT_THAT(html, HasSubstr("61.25 s"));
+    EXPECT_THAT(html, HasSubstr("12 block requests were refused"));
+    EXPECT_THAT(html, HasSubstr("fusion.integrate</td>"));
+    EXPECT_THAT(html, HasSubstr("24.125"));
+    EXPECT_THAT(html, HasSubstr("30.125"));  // the sum of the medians
+    EXPECT_THAT(html, HasSubstr("128.0 MiB"));
+    EXPECT_THAT(html, HasSubstr("frame-000017.color.png is truncated"));
+    EXPECT_THAT(html, HasSubstr("&quot;voxel_mm&quot;: 5"));
+}
+
+TEST(Report, BarsAreInProportion) {
+    // The longest median, 24.125 ms, takes half the width; fusion.integrate's 4.75 ms the corresponding part.
+    EXPECT_THAT(report(), HasSubstr("width='50.00' height='6'"));
+    EXPECT_THAT(report(), HasSubstr("width='9.84' height='6'"));
+    EXPECT_THAT(report(), HasSubstr("width='27.99' height='6'"));  // 18342 of 65536 voxel blocks
+}
+
+TEST(Report, EscapesWhatItIsTold) {
+    const std::string html = report();
+    EXPECT_THAT(html, Not(HasSubstr("<kitchen>")));
+    EXPECT_THAT(html, Not(HasSubstr("<NaN>")));
+    EXPECT_THAT(html, HasSubstr("alt=\"frame 12 &amp; &quot;more&quot;\""));
+    EXPECT_THAT(html, HasSubstr("a &lt; b &amp; \\&quot;c\\&quot;"));
+}
+
+TEST(Report, NeedsNoOtherFileAndNoNetwork) {
+    const std::string html = report();
+    EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,iVBORwA=\""));
+    EXPECT_EQ(count_of(html, "src="), 1u);
+    for (const char* outside : {"http:", "https:", "href=", "url(", "@import", "<script", "<link"}) {
+        EXPECT_THAT(html, Not(HasSubstr(outside)));
+    }
+}
+
+TEST(Report, SuitsDarkThemesAndPaper) {
+    EXPECT_THAT(report(), HasSubstr("@media (prefers-color-scheme: dark)"));
+    EXPECT_THAT(report(), HasSubstr("@media print"));
+}
+
+TEST(Report, LeavesOutWhatThereIsNot) {
+    const std::string html = report_html({}, {});
+    for (const char* absent :
+         {"Warnings", "Pictures", "GPU time", "Device memory", "Skipped frames", "<h2>Settings", "refused"}) {
+        EXPECT_THAT(html, Not(HasSubstr(absent)));
+    }
+    EXPECT_THAT(html, HasSubstr("0 of 0"));
+}
+
+}  // namespace
+}  // namespace patina

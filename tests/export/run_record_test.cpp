@@ -1,0 +1,89 @@
+#include "tools/export/run_record.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "tests/export/test_record.h"
+
+namespace patina {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> keys(const ordered_json& object) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : object.items()) names.push_back(key);
+    return names;
+}
+
+TEST(RunRecord, KeysKeepTheirOrder) {
+    const ordered_json run = ordered_json::parse(run_json(test::full_record()));
+    EXPECT_THAT(keys(run), ElementsAre("format", "version", "device", "driver", "seed", "settings", "sequence",
+                                       "frames", "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
+    EXPECT_THAT(keys(run["settings"]), ElementsAre("voxel_mm", "truncation_vox", "note"));
+    EXPECT_THAT(keys(run["passes"]), ElementsAre("input.filter_depth", "fusion.integrate", "fusion.raycast"));
+    EXPECT_THAT(keys(ordered_json::parse(run_json({}))), keys(run));
+}
+
+TEST(RunRecord, EveryFieldArrives) {
+    const ordered_json run = ordered_json::parse(run_json(test::full_record()));
+    EXPECT_EQ(run["format"], "patina-run");
+    EXPECT_EQ(run["version"], "0.1.0");
+    EXPECT_EQ(
+        run["device"],
+        ordered_json({{"name", "llvmpipe (LLVM 15.0.6, 256 bits)"}, {"type", "software"}, {"vulkan", "1.3.230"}}));
+    EXPECT_EQ(run["driver"], "Mesa 22.3.6");
+    EXPECT_EQ(run["seed"], 42);
+    EXPECT_EQ(run["settings"]["note"], "a < b & \"c\"");
+    EXPECT_EQ(run["sequence"]["name"], "red <kitchen>");
+    EXPECT_EQ(run["sequence"]["frames"], 300);
+    EXPECT_EQ(run["sequence"]["color"]["width"], 640);
+    EXPECT_EQ(run["sequence"]["has_poses"], true);
+    EXPECT_EQ(run["frames"]["read"], 299);
+    EXPECT_EQ(run["frames"]["used"], 298);
+    EXPECT_EQ(run["frames"]["skipped"][1], ordered_json({{"index", 20}, {"reason", "its pose is <NaN>"}}));
+    EXPECT_EQ(run["voxel_pool"],
+              ordered_json({{"blocks_used", 18342}, {"blocks_capacity", 65536}, {"blocks_refused", 12}}));
+    EXPECT_EQ(run["memory"].at("transient images"), ordered_json({{"bytes", 31457280}, {"used", 5}, {"capacity", 8}}));
+    EXPECT_EQ(run["totals"]["triangles"], 1234567);
+    EXPECT_EQ(run["warnings"].size(), 1u);
+    EXPECT_EQ(run["passes"].at("fusion.integrate"),
+              ordered_json({{"count", 298}, {"min_ms", 3.2}, {"median_ms", 4.75}, {"max_ms", 61.0}}));
+    EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
+}
+
+std::string without_times(const std::string& text) {
+    ordered_json run = ordered_json::parse(text);
+    run.erase("times");
+    run.erase("passes");
+    return run.dump();
+}
+
+TEST(RunRecord, TwoRunsDifferInTimesAndPassesOnly) {
+    RunRecord other = test::full_record();
+    for (PassTime& pass : other.passes)
+        pass = {pass.name, pass.count, pass.min_ms * 2, pass.median_ms * 2, pass.max_ms * 2};
+    for (auto& [name, seconds] : other.times_s) seconds *= 2;
+    const std::string first = run_json(test::full_record()), second = run_json(other);
+    EXPECT_EQ(first, run_json(test::full_record()));
+    EXPECT_NE(first, second);
+    EXPECT_EQ(without_times(first), without_times(second));
+}
+
+TEST(RunRecord, StaysJsonWhateverItIsTold) {
+    RunRecord record;
+    record.warnings = {"not UTF-8: \xff\xfe", "a\nline\tand \"quotes\""};
+    record.times_s = {{"total", std::numeric_limits<double>::quiet_NaN()}};
+    const std::string text = run_json(record);
+    const ordered_json run = ordered_json::parse(text);
+    EXPECT_TRUE(run["times"]["total_s"].is_null());
+    EXPECT_THAT(run["warnings"][0].get<std::string>(), HasSubstr("not UTF-8: \xef\xbf\xbd"));
+    EXPECT_EQ(run["warnings"][1], "a\nline\tand \"quotes\"");
+    EXPECT_EQ(text.back(), '\n');
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "sensor/source.h"
+
+namespace patina {
+
+/// The Vulkan device a run used.
+struct DeviceRecord {
+    std::string name;
+    std::string type;            ///< "discrete", "integrated", "virtual", "software"
+    std::string vulkan_version;  ///< "1.3.250"
+    std::string driver;          ///< name and version
+};
+
+/// What became of the sequence's frames: used plus skipped is the number of frames that were due.
+struct FrameLedger {
+    uint64_t read = 0;  ///< decoded without a fault
+    uint64_t used = 0;  ///< fused into the model
+    std::vector<sensor::Skipped> skipped;
+};
+
+/// How full the pool of voxel blocks was at the end.
+struct VoxelPoolRecord {
+    uint64_t blocks_used = 0;
+    uint64_t blocks_capacity = 0;
+    uint64_t blocks_refused = 0;  ///< block requests that found the pool full
+};
+
+/// One pool of device memory; `used` and `capacity` count its elements.
+struct MemoryRecord {
+    std::string name;
+    uint64_t bytes = 0;
+    uint64_t used = 0;
+    uint64_t capacity = 0;
+};
+
+/// GPU time of one pass over the run.
+struct PassTime {
+    std::string name;
+    uint64_t count = 0;  ///< how often it ran
+    double min_ms = 0;
+    double median_ms = 0;
+    double max_ms = 0;
+};
+
+/// Everything that run.json and report.html say about a finished run. Durations belong into `passes` and `times_s`
+/// only: all the rest is equal between two runs of the same input on the same device.
+struct RunRecord {
+    std::string version;  ///< of Patina
+    DeviceRecord device;
+    uint64_t seed = 0;
+    nlohmann::ordered_json settings = nlohmann::ordered_json::object();  ///< as given and defaulted, in reading order
+    sensor::SequenceInfo sequence;
+    FrameLedger frames;
+    VoxelPoolRecord voxel_pool;
+    std::vector<MemoryRecord> memory;
+    std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
+    std::vector<std::string> warnings;
+    std::vector<PassTime> passes;                         ///< in the order of execution
+    std::vector<std::pair<std::string, double>> times_s;  ///< wall times in seconds, as {"reading", 1.5}
+};
+
+/// The text of run.json: two-space indented JSON whose keys keep one order. All durations stand in the top-level
+/// objects "passes" and "times"; without these two, the text is equal between two runs that did the same. Numbers that
+/// are not finite become null; text that is not UTF-8 has its bad bytes replaced.
+std::string run_json(const RunRecord& record);
+
+}  // namespace patina

@@ -1,0 +1,90 @@
+#include "tools/export/write_exr.h"
+
+#include <exception>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+#include "engine/core/error.h"
+
+namespace patina {
+namespace {
+
+void check_channels(const std::filesystem::path& path, std::span<const ExrChannel> channels) {
+    if (channels.empty()) throw Error(path, ": a picture without channels cannot be written");
+    const ExrChannel& first = channels.front();
+    for (const ExrChannel& channel : channels) {
+        if (channel.extent.area() == 0) throw Error(path, ": channel ", channel.name, " is empty: ", channel.extent);
+        if (channel.extent != first.extent) {
+            throw Error(path, ": channel ", channel.name, " is ", channel.extent, " but ", first.name, " is ",
+                        first.extent);
+        }
+    }
+}
+
+Imf::Slice slice_of(const ExrChannel& channel) {
+    const size_t pixel_bytes = channel.step * sizeof(float);
+    const Imath::Box2i window(
+        {0, 0}, {static_cast<int>(channel.extent.width) - 1, static_cast<int>(channel.extent.height) - 1});
+    return Imf::Slice::Make(Imf::FLOAT, channel.first, window, pixel_bytes, pixel_bytes * channel.extent.width);
+}
+
+void add_channel(const std::filesystem::path& path, const ExrChannel& channel, Imf::Header& header,
+                 Imf::FrameBuffer& pixels) {
+    if (header.channels().findChannel(channel.name)) throw Error(path, ": channel ", channel.name, " is given twice");
+    header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+    pixels.insert(channel.name, slice_of(channel));
+}
+
+std::vector<ExrChannel> vector_channels(const std::string& name, const Image<glm::vec3>& image,
+                                        const char* components) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    std::vector<ExrChannel> channels;
+    for (size_t i = 0; i < 3; ++i) {
+        const float* first = image.empty() ? nullptr : &image.pixels().front().x + i;
+        channels.push_back({name + "." + components[i], image.extent(), first, 3});
+    }
+    return channels;
+}
+
+}  // namespace
+
+ExrChannel scalar_channel(const std::string& name, const Image<float>& image) {
+    return {name, image.extent(), image.pixels().data(), 1};
+}
+
+std::vector<ExrChannel> rgb_channels(const std::string& name, const Image<glm::vec3>& image) {
+    return vector_channels(name, image, "RGB");
+}
+
+std::vector<ExrChannel> xyz_channels(const std::string& name, const Image<glm::vec3>& image) {
+    return vector_channels(name, image, "XYZ");
+}
+
+void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels) {
+    check_channels(path, channels);
+    const Extent2D extent = channels.front().extent;
+    Imf::Header header(static_cast<int>(extent.width), static_cast<int>(extent.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer pixels;
+    for (const ExrChannel& channel : channels) add_channel(path, channel, header, pixels);
+    try {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(pixels);
+        file.writePixels(static_cast<int>(extent.height));
+    } catch (const std::exception& failure) {
+        throw Error(path, ": cannot be written: ", failure.what());
+    }
+}
+
+std::vector<ExrChannel> channels_of(const FrameDump& frame) {
+    std::vector<ExrChannel> channels = rgb_channels("rgb", frame.rgb);
+    channels.push_back(scalar_channel("depth", frame.depth_m));
+    for (ExrChannel& channel : xyz_channels("normal", frame.normal)) channels.push_back(std::move(channel));
+    channels.push_back(scalar_channel("valid", frame.valid));
+    return channels;
+}
+
+}  // namespace patina

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/image.h"
+
+namespace patina {
+
+/// One float channel of a picture in memory, which must outlive the list that names it.
+struct ExrChannel {
+    std::string name;  ///< as in the file, "rgb.R"
+    Extent2D extent;
+    const float* first = nullptr;  ///< row by row from the top left pixel
+    size_t step = 1;               ///< floats from one pixel to the next
+};
+
+/// The channels of one picture, under names the OpenEXR way: a scalar is `name`; a vector is `name` with .R .G .B for
+/// colours or .X .Y .Z for directions.
+ExrChannel scalar_channel(const std::string& name, const Image<float>& image);
+std::vector<ExrChannel> rgb_channels(const std::string& name, const Image<glm::vec3>& image);
+std::vector<ExrChannel> xyz_channels(const std::string& name, const Image<glm::vec3>& image);
+
+/// Writes one multi-channel OpenEXR: float32, ZIP compressed. The file lists channels by name, whatever order they are
+/// given in. The same pixels give the same bytes. Throws Error for no channel, an empty picture, extents that differ, a
+/// name given twice, or a disk that refuses.
+void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels);
+
+/// What a run saw of its model from one colour camera; all pictures have one extent.
+struct FrameDump {
+    Image<glm::vec3> rgb;     ///< linear
+    Image<float> depth_m;     ///< along the camera's z axis; 0 where the model was not hit
+    Image<glm::vec3> normal;  ///< world, unit length; zero where the model was not hit
+    Image<float> valid;       ///< 1 where the model was hit, else 0
+};
+
+/// The channels rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid; further groups may be appended.
+std::vector<ExrChannel> channels_of(const FrameDump& frame);
+
+}  // namespace patina
