@@ -83,9 +83,9 @@ Scene make_cubes() {
     add_floor(scene);
     add_upright_cubes(scene);
     add_balanced_cubes(scene);
-    scene.lights = {{at_height(-1.6, 2.4, -1.9), glm::dvec3(18.0, 17.0, 15.8)},
-                    {at_height(2.3, 2.2, -0.4), glm::dvec3(14.4, 14.9, 15.6)},
-                    {at_height(-0.5, 2.6, 2.2), glm::dvec3(16.2, 15.8, 15.5)}};
+    scene.lights = {{at_height(-1.6, 2.4, -1.9), glm::dvec3(16.0, 15.2, 14.1)},
+                    {at_height(2.3, 2.2, -0.4), glm::dvec3(12.8, 13.2, 13.9)},
+                    {at_height(-0.5, 2.6, 2.2), glm::dvec3(14.4, 14.0, 13.7)}};
     // At most 1.0 m/s and 15 degrees/s: a person walking around the scene with a hand-held camera.
     scene.path = {.target_m = at_height(0, 0.2, 0),
                   .distance_m = 4,
