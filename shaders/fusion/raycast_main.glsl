@@ -3,6 +3,7 @@
 //   BLOCK(slot)     uint, the block id of a table slot
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 // The march reads nearest voxels; interpolation happens once, at the hit.
+#include "lib/block_lookup.glsl"
 #include "lib/camera.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -14,32 +15,9 @@ layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
 layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
 layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
 
-uint cached_key = kEmptyKey;
-uint cached_block = kNoBlock;
-
-// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one block.
-uint find_block(ivec3 coordinates) {
-    const uint key = key_of_block(view.grid, coordinates);
-    if (key != cached_key) {
-        uint slot = kNoBlock;
-        uint bucket = hash_of_key(key) & view.grid.bucket_mask;
-        for (uint probe = 0u; probe < kMaxProbes; ++probe) {
-            const uvec4 keys = KEYS(bucket);
-            const bvec4 same = equal(keys, uvec4(key));
-            const uint first = bucket * kBucketSlots;
-            slot = same.x ? first : same.y ? first + 1u : same.z ? first + 2u : same.w ? first + 3u : slot;
-            if (slot != kNoBlock || keys.w == kEmptyKey) break;
-            bucket = (bucket + 1u) & view.grid.bucket_mask;
-        }
-        cached_key = key;
-        cached_block = slot == kNoBlock || key == kEmptyKey ? kNoBlock : BLOCK(slot);
-    }
-    return cached_block;
-}
-
 // The voxel at voxel coordinates; 0 (weight 0) where there is no block.
 uint load_voxel(ivec3 coordinates) {
-    const uint block = find_block(coordinates >> 3);
+    const uint block = find_block(view.grid, coordinates >> 3);
     const ivec3 within = coordinates & 7;
     const uint safe = block == kNoBlock ? 0u : block;
     const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
