@@ -22,5 +22,7 @@
     fflush()
     next
 }
+/^The following tests passed:/ { passed = 1 }
 /tests passed,|^No tests/ { summary = 1 }
+passed && !summary { next }
 summary || NF
