@@ -110,8 +110,9 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validatio
         if (validation) {
             using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
             using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-            const vk::DebugUtilsMessengerCreateInfoEXT callback(
-                {}, Severity::eError | Severity::eWarning, Type::eValidation | Type::ePerformance, on_message, log);
+            // Not its performance advice: that objects to the general layout, in which our images stay on purpose.
+            const vk::DebugUtilsMessengerCreateInfoEXT callback({}, Severity::eError | Severity::eWarning,
+                                                                Type::eValidation, on_message, log);
             *messenger = vk::raii::DebugUtilsMessengerEXT(instance, callback);
         }
         return instance;
