@@ -18,12 +18,10 @@ namespace patina::vulkan {
 vk::Format vk_format(Format format) {
     switch (format) {
         case Format::kR32f: return vk::Format::eR32Sfloat;
-        case Format::kRg32f: return vk::Format::eR32G32Sfloat;
         case Format::kRgba32f: return vk::Format::eR32G32B32A32Sfloat;
         case Format::kRgba16f: return vk::Format::eR16G16B16A16Sfloat;
         case Format::kRgba8: return vk::Format::eR8G8B8A8Unorm;
         case Format::kR32u: return vk::Format::eR32Uint;
-        case Format::kRg32u: return vk::Format::eR32G32Uint;
         case Format::kRgba32u: return vk::Format::eR32G32B32A32Uint;
     }
     return vk::Format::eUndefined;

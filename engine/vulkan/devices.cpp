@@ -110,7 +110,7 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validatio
         if (validation) {
             using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
             using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-            // No performance advice: it asks for image layouts other than the general one.
+            // Not its performance advice: that objects to the general layout, in which our images stay on purpose.
             const vk::DebugUtilsMessengerCreateInfoEXT callback({}, Severity::eError | Severity::eWarning,
                                                                 Type::eValidation, on_message, log);
             *messenger = vk::raii::DebugUtilsMessengerEXT(instance, callback);

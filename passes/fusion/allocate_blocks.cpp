@@ -24,9 +24,8 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
                     " m hold at most ", gpu::kSdfRangeVox * voxel_m, " m");
     }
     params.max_weight = static_cast<float>(settings.max_weight);
-    // Marching cubes interpolates colour between voxels up to one voxel off the surface; oblique views see these
-    // farther off along the optical axis.
-    params.color_band_m = 3 * voxel_m;
+    // Marching cubes and ray casting interpolate colour between voxels up to a cell's diagonal off the surface.
+    params.color_band_m = 1.8f * voxel_m;
     params.max_color_weight = static_cast<float>(settings.max_color_weight);
     params.stride_px = std::max(settings.allocation_stride_px, 1u);
     // A permutation of the stride^2 phases: neighbours in time are apart in space.

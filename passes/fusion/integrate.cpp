@@ -5,12 +5,14 @@
 namespace patina {
 
 void add_integrate(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
-                   graph::BufferId params, graph::ImageId depth_m, std::optional<graph::ImageId> color_linear) {
+                   graph::BufferId params, graph::ImageId depth_m, graph::ImageId slope,
+                   std::optional<graph::ImageId> color_linear) {
     auto pass = frame.compute("fusion.integrate", color_linear ? spirv::integrate_color : spirv::integrate);
     pass.read("Visible", visible.list)
         .read("BlockKeys", ids.block_keys)
         .read("Fusion", params)
-        .read("depth_m", depth_m);
+        .read("depth_m", depth_m)
+        .read("slope", slope);
     pass.specialise("kTsdfChunks", map.tsdf_chunks());
     ids.tsdf = pass.modify("Tsdf", ids.tsdf);
     if (color_linear) {

@@ -39,7 +39,7 @@ Image<glm::uvec2> SyntheticSource::render(const RigidTransform& world_from_camer
     const graph::Readback encoded = frame.read_back(add_encode_frame(frame, traced, scene_.metres_per_unit));
     runner_.submit(std::move(frame));
     runner_.wait();
-    return encoded.image<glm::uvec2>();
+    return {scene_.camera.extent, encoded.as<glm::uvec2>()};
 }
 
 std::optional<Reading> SyntheticSource::next() {

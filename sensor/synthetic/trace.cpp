@@ -109,11 +109,11 @@ TracedImages add_trace_scene(graph::Frame& frame, const SceneBuffers& scene, con
     return out;
 }
 
-graph::ImageId add_encode_frame(graph::Frame& frame, const TracedImages& traced, double metres_per_unit) {
+graph::BufferId add_encode_frame(graph::Frame& frame, const TracedImages& traced, double metres_per_unit) {
     const Extent2D extent = frame.common_extent({traced.radiance, traced.depth_m, traced.object_id});
     auto pass = frame.compute("synthetic.encode_frame", spirv::encode_frame);
     pass.read("radiance", traced.radiance).read("depth_m", traced.depth_m).read("object_id", traced.object_id);
-    const graph::ImageId encoded = pass.create("encoded", {extent, vulkan::Format::kRg32u});
+    const graph::BufferId encoded = pass.create("Encoded", extent.area() * sizeof(glm::uvec2));
     pass.push(gpu::EncodeFrameParams{{extent.width, extent.height}, static_cast<float>(1 / metres_per_unit), 0});
     pass.dispatch_covering(extent);
     return encoded;

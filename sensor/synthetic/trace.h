@@ -35,8 +35,9 @@ struct TracedImages {
 TracedImages add_trace_scene(graph::Frame& frame, const SceneBuffers& scene, const Intrinsics& camera,
                              const RigidTransform& world_from_camera, Shadows shadows = Shadows::kNone);
 
-/// Encodes traced images as a recorded sequence holds them. Returns W x H rg32ui: 8-bit sRGB codes r | g << 8 | b << 16
-/// (clipped at 255), and depth in units of `metres_per_unit` | object id << 16. Depth beyond 65535 units becomes 0.
-graph::ImageId add_encode_frame(graph::Frame& frame, const TracedImages& traced, double metres_per_unit);
+/// Encodes traced images as a recorded sequence holds them. Returns two u32 per pixel, row by row: 8-bit sRGB codes r |
+/// g << 8 | b << 16 (clipped at 255), and depth in units of `metres_per_unit` | object id << 16. Depth beyond 65535
+/// units becomes 0.
+graph::BufferId add_encode_frame(graph::Frame& frame, const TracedImages& traced, double metres_per_unit);
 
 }  // namespace patina::sensor

@@ -1,6 +1,8 @@
 // Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block, four voxels along
-// x per invocation (one 16-byte load and store). Curless and Levoy's running average of the projective distance d - z.
+// x per invocation (one 16-byte load and store). Curless and Levoy's running average of the distance from the plane through the
+// reading: the projective distance d - z would depend on the viewing direction, and blur what several views see.
 #include "lib/camera.glsl"
+#include "lib/slope.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
 #include "shared/allocate_blocks.h"
@@ -11,35 +13,47 @@ layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform Fusion { FusionParams fusion; };
 layout(binding = 3, r32f) uniform readonly image2D depth_m;
-layout(std430, binding = 4) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
+layout(binding = 4, r32ui) uniform readonly uimage2D slope;
+layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
 #if PATINA_WITH_COLOR
-layout(binding = 5, rgba16f) uniform readonly image2D color_linear;
-layout(std430, binding = 6) buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
+layout(binding = 6, rgba16f) uniform readonly image2D color_linear;
+layout(std430, binding = 7) buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
 #endif
 
 struct Sample {
     bool valid;
-    float signed_m;  // along the optical axis, positive in front of the surface
+    float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
+    float weight;    // kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
 };
 
 Sample sample_depth(vec3 point_m) {
     const vec2 pixel = project(fusion.depth_camera, vec3(point_m.xy, max(point_m.z, 1e-3)));
-    const ivec2 nearest = ivec2(floor(pixel + 0.5));
-    const ivec2 inside = clamp(nearest, ivec2(0), ivec2(fusion.depth_camera.extent) - 1);
-    const float depth = imageLoad(depth_m, inside).x;
-    const float truncation = fusion.truncation_m + fusion.truncation_slope * depth;
+    const vec2 nearest = floor(pixel + 0.5);
+    const ivec2 inside = clamp(ivec2(nearest), ivec2(0), ivec2(fusion.depth_camera.extent) - 1);
+    const float reading = imageLoad(depth_m, inside).x;
+    const uint inclination = imageLoad(slope, inside).x;
+    const float plane_factor = slope_plane_factor(inclination);
+    const float depth = reading + dot(slope_depth_per_px(inclination), pixel - nearest);
+    // Behind the surface a reading speaks for a stretch of the ray as long as the truncation band, however inclined: at a limb
+    // the ray soon leaves the object again.
+    const float along_m = depth - point_m.z;
+    const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
     Sample result;
-    result.signed_m = min(depth - point_m.z, truncation);
-    result.valid = nearest == inside && point_m.z > 1e-3 && depth > 0.0 && depth <= fusion.max_depth_m &&
-                   result.signed_m >= -truncation;
+    result.signed_m = min(along_m * plane_factor, truncation);
+    // Behind the surface a reading knows less and less: beyond an edge or a limb there is free space that other views see.
+    const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
+    result.weight = max(float(kWeightOne) * plane_factor * trust * trust, 1.0);
+    result.valid = ivec2(nearest) == inside && point_m.z > 1e-3 && reading > 0.0 && reading <= fusion.max_depth_m && plane_factor > 0.0 &&
+                   along_m >= -truncation;
     return result;
 }
 
 uint update_voxel(uint voxel, Sample seen) {
     const float weight = float(voxel_weight(voxel));
     const float scale = 1.0 / (kSdfRangeVox * fusion.grid.voxel_m);
-    const float sdf = (voxel_sdf(voxel) * weight + seen.signed_m * scale) / (weight + 1.0);
-    const uint updated = pack_voxel(sdf, uint(min(weight + 1.0, fusion.max_weight)));
+    const float sum = weight + seen.weight;
+    const float sdf = (voxel_sdf(voxel) * weight + seen.signed_m * scale * seen.weight) / sum;
+    const uint updated = pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight)));
     return seen.valid ? updated : voxel;
 }
 

@@ -2,8 +2,8 @@
 //   KEYS(bucket)    uvec4, the keys of a bucket
 //   BLOCK(slot)     uint, the block id of a table slot
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
-// The march reads nearest voxels in a short loop without branches; interpolation happens once, at the hit: on software
-// devices a divergent branch costs as much as its longest path.
+// The march reads nearest voxels; interpolation happens once, at the hit.
+#include "lib/block_lookup.glsl"
 #include "lib/camera.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -15,32 +15,9 @@ layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
 layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
 layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
 
-uint cached_key = kEmptyKey;
-uint cached_block = kNoBlock;
-
-// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one block.
-uint find_block(ivec3 coordinates) {
-    const uint key = key_of_block(view.grid, coordinates);
-    if (key != cached_key) {
-        uint slot = kNoBlock;
-        uint bucket = hash_of_key(key) & view.grid.bucket_mask;
-        for (uint probe = 0u; probe < kMaxProbes; ++probe) {
-            const uvec4 keys = KEYS(bucket);
-            const bvec4 same = equal(keys, uvec4(key));
-            const uint first = bucket * kBucketSlots;
-            slot = same.x ? first : same.y ? first + 1u : same.z ? first + 2u : same.w ? first + 3u : slot;
-            if (slot != kNoBlock || keys.w == kEmptyKey) break;
-            bucket = (bucket + 1u) & view.grid.bucket_mask;
-        }
-        cached_key = key;
-        cached_block = slot == kNoBlock || key == kEmptyKey ? kNoBlock : BLOCK(slot);
-    }
-    return cached_block;
-}
-
 // The voxel at voxel coordinates; 0 (weight 0) where there is no block.
 uint load_voxel(ivec3 coordinates) {
-    const uint block = find_block(coordinates >> 3);
+    const uint block = find_block(view.grid, coordinates >> 3);
     const ivec3 within = coordinates & 7;
     const uint safe = block == kNoBlock ? 0u : block;
     const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
@@ -79,6 +56,38 @@ Cell interpolate(vec3 point_vox) {
     return cell;
 }
 
+// Two depths between which the nearest voxels change from outside to inside.
+struct Bracket {
+    bool found;
+    float outside_depth;
+    float inside_depth;
+    float outside_share;  // where between them the distances, taken as linear, are zero
+};
+
+// Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent branch
+// costs as much as its longest path.
+Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_per_vox) {
+    float outside_depth = depth;
+    float here = 1.0, outside = 1.0;  // in units of kSdfRangeVox; 1 stands for unknown space
+    bool seen_outside = false;
+    bool marching = true;
+    for (uint i = 0u; marching && i < kMaxRaySteps; ++i) {
+        const uint voxel = load_voxel(ivec3(floor(origin + direction * depth)));
+        const bool seen = voxel_weight(voxel) > 0u;
+        here = seen ? voxel_sdf(voxel) : 1.0;
+        const bool inside = here <= 0.0;
+        const float step_vox =
+            seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : cached_block == kNoBlock ? kUnknownStepVox : 1.0;
+        outside_depth = inside ? outside_depth : depth;
+        outside = inside ? outside : here;
+        seen_outside = inside ? seen_outside : seen;
+        depth = inside ? depth : depth + step_vox * depth_per_vox;
+        marching = !inside && depth < far;
+    }
+    // A step from unknown space into the inside meets the back of a surface, or one that nobody saw from the front.
+    return Bracket(here <= 0.0 && seen_outside, outside_depth, depth, outside / (outside - here));
+}
+
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(view.camera.extent)))) return;
@@ -92,37 +101,29 @@ void main() {
     const float depth_per_vox = view.grid.voxel_m / length(in_camera);
 
     float depth = range.near_bits == 0xffffffffu ? far + 1.0 : max(uintBitsToFloat(range.near_bits), view.near_m);
-    float before_depth = depth;
-    float here = 1.0, before = 1.0;  // distances in units of kSdfRangeVox; 1 stands for unknown space
-    bool seen_before = false;
-    bool marching = depth < far;
-    for (uint step_index = 0u; marching && step_index < kMaxRaySteps; ++step_index) {
-        const ivec3 at = ivec3(floor(origin + direction * depth));
-        const uint voxel = load_voxel(at);
-        const bool seen = voxel_weight(voxel) > 0u;
-        here = seen ? voxel_sdf(voxel) : 1.0;
-        const bool inside = here <= 0.0;
-        const float step_vox = seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : cached_block == kNoBlock ? kUnknownStepVox : 1.0;
-        before_depth = inside ? before_depth : depth;
-        before = inside ? before : here;
-        seen_before = inside ? seen_before : seen;
-        depth = inside ? depth : depth + step_vox * depth_per_vox;
-        marching = !inside && depth < far;
-    }
-
     vec4 hit_position = vec4(0.0);
     vec4 hit_normal = vec4(0.0);
-    // A step from unknown space into the inside meets the back of a surface, or one that nobody saw from the front.
-    if (here <= 0.0 && seen_before) {
-        const float estimate = mix(before_depth, depth, before / (before - here));
-        Cell cell = interpolate(origin + direction * estimate - 0.5);
+    for (uint attempt = 0u; attempt < kMaxAttempts && depth < far; ++attempt) {
+        const Bracket bracket = march(origin, direction, depth, far, depth_per_vox);
+        if (!bracket.found) break;
+        const float estimate = mix(bracket.outside_depth, bracket.inside_depth, bracket.outside_share);
+        const Cell cell = interpolate(origin + direction * estimate - 0.5);
         // One Newton step along the ray from the secant of nearest values, within the two steps that bracket the surface.
         const float slope = dot(cell.gradient, direction);
-        float hit = cell.complete && slope < 0.0 ? estimate - cell.sdf / slope : estimate;
-        hit = clamp(hit, before_depth - depth_per_vox, depth + depth_per_vox);
-        hit_position = vec4((origin + direction * hit) * view.grid.voxel_m, hit);
+        const float newton = estimate - cell.sdf / (slope < 0.0 ? slope : -1e9);
+        const float hit = clamp(newton, bracket.outside_depth - depth_per_vox, bracket.inside_depth + depth_per_vox);
+        // A ray that grazes the surface can pass through a voxel whose centre is inside and yet stay outside.
+        const float residual_vox = (cell.sdf + slope * (hit - estimate)) * kSdfRangeVox;
+        if (cell.complete && abs(residual_vox) > kMaxResidualVox) {
+            depth = bracket.inside_depth + depth_per_vox;
+            continue;
+        }
+        // Where the cell has corners that nobody saw, the nearest voxels have to do.
+        const float accepted = cell.complete ? hit : estimate;
+        hit_position = vec4((origin + direction * accepted) * view.grid.voxel_m, accepted);
         const float steepness = length(cell.gradient);
         if (cell.complete && steepness > 0.0) hit_normal = vec4(cell.gradient / steepness, 0.0);
+        break;
     }
     imageStore(position_m, pixel, hit_position);
     imageStore(normal, pixel, hit_normal);

@@ -14,6 +14,7 @@ INTEROP_CONST uint kMaxTsdfChunks = 4u;     // buffers over which the distances 
 INTEROP_CONST uint kMaxColorChunks = 8u;    // colours take twice the space
 INTEROP_CONST uint kGroupsPerRow = 512u;    // indirect dispatches over a list: group (x, y) takes item 512 y + x
 INTEROP_CONST float kSdfRangeVox = 16.0f;   // a stored distance of 1 means this many voxels
+INTEROP_CONST uint kWeightOne = 16u;        // what one frontal sample adds to a voxel's weight
 INTEROP_CONST float kColorRange = 8.0f;     // the largest linear colour that a voxel can hold
 
 // Where the grid lies. World point p (metres) lies in voxel floor(p / voxel_m); a voxel's value belongs to its centre.

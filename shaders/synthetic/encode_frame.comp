@@ -6,7 +6,7 @@ layout(local_size_x = 32, local_size_y = 4) in;
 layout(rgba32f, binding = 0) uniform readonly image2D radiance;
 layout(r32f, binding = 1) uniform readonly image2D depth_m;
 layout(r32ui, binding = 2) uniform readonly uimage2D object_id;
-layout(rg32ui, binding = 3) uniform writeonly uimage2D encoded;
+layout(std430, binding = 3) writeonly buffer Encoded { uvec2 encoded[]; };
 layout(push_constant) uniform Push { EncodeFrameParams params; };
 
 // IEC 61966-2-1: linear to an 8-bit code; what is above 1 is clipped to 255.
@@ -24,5 +24,5 @@ void main() {
     const float units = floor(imageLoad(depth_m, at).x * params.units_per_metre + 0.5);
     const uint depth = units <= 65535.0 ? uint(units) : 0u;
     const uint color = code.r | code.g << 8u | code.b << 16u;
-    imageStore(encoded, at, uvec4(color, depth | imageLoad(object_id, at).x << 16u, 0u, 0u));
+    encoded[pixel.y * params.extent.x + pixel.x] = uvec2(color, depth | imageLoad(object_id, at).x << 16u);
 }

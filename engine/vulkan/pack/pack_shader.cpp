@@ -143,12 +143,10 @@ struct Binding {
 const char* format_name(SpvImageFormat format) {
     switch (format) {
         case SpvImageFormatR32f: return "kR32f";
-        case SpvImageFormatRg32f: return "kRg32f";
         case SpvImageFormatRgba32f: return "kRgba32f";
         case SpvImageFormatRgba16f: return "kRgba16f";
         case SpvImageFormatRgba8: return "kRgba8";
         case SpvImageFormatR32ui: return "kR32u";
-        case SpvImageFormatRg32ui: return "kRg32u";
         case SpvImageFormatRgba32ui: return "kRgba32u";
         default: throw std::runtime_error("a storage image has a format that engine/vulkan/format.h does not list");
     }
