@@ -6,6 +6,7 @@
 #include "lib/camera.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
+#include "lib/voxel_table.glsl"
 #include "shared/raycast.h"
 
 layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
@@ -21,18 +22,8 @@ uint cached_block = kNoBlock;
 uint find_block(ivec3 coordinates) {
     const uint key = key_of_block(view.grid, coordinates);
     if (key != cached_key) {
-        uint slot = kNoBlock;
-        uint bucket = hash_of_key(key) & view.grid.bucket_mask;
-        for (uint probe = 0u; probe < kMaxProbes; ++probe) {
-            const uvec4 keys = KEYS(bucket);
-            const bvec4 same = equal(keys, uvec4(key));
-            const uint first = bucket * kBucketSlots;
-            slot = same.x ? first : same.y ? first + 1u : same.z ? first + 2u : same.w ? first + 3u : slot;
-            if (slot != kNoBlock || keys.w == kEmptyKey) break;
-            bucket = (bucket + 1u) & view.grid.bucket_mask;
-        }
         cached_key = key;
-        cached_block = slot == kNoBlock || key == kEmptyKey ? kNoBlock : BLOCK(slot);
+        cached_block = block_of_table(view.grid, key);
     }
     return cached_block;
 }
