@@ -88,8 +88,8 @@ std::vector<FaceSegment> face_segments(uint32_t which_case, uint32_t face) {
         // A run of inside corners begins after corner i; cut it off where it ends.
         uint32_t last = i + 1;
         while (is_inside(which_case, corners[(last + 1) % 4])) ++last;
-        segments.push_back({edge_between(corners[i], corners[(i + 1) % 4]),
-                            edge_between(corners[last % 4], corners[(last + 1) % 4])});
+        segments.push_back(
+            {edge_between(corners[i], corners[(i + 1) % 4]), edge_between(corners[last % 4], corners[(last + 1) % 4])});
     }
     return segments;
 }

@@ -150,8 +150,8 @@ std::vector<SurfaceBlock> Extraction::count_elements() {
     const graph::BufferId neighbours = find.write("Neighbours", frame.import(arrays_.neighbours));
     dispatch_items(find, blocks * gpu::kNeighbourStride);
 
-    auto pack = frame.compute("surface.pack_signs",
-                              access_ == MapAccess::kTexel ? spirv::pack_signs_texel : spirv::pack_signs);
+    auto pack =
+        frame.compute("surface.pack_signs", access_ == MapAccess::kTexel ? spirv::pack_signs_texel : spirv::pack_signs);
     pack.read("BlockKeys", ids.block_keys).read("Tsdf", ids.tsdf).push(params(blocks));
     pack.specialise("kTsdfChunks", map_.tsdf_chunks());
     const graph::BufferId inside = pack.write("Inside", frame.import(arrays_.inside));
@@ -179,8 +179,7 @@ std::vector<SurfaceBlock> Extraction::count_elements() {
     return sort_surface_blocks(read_keys.as<uint32_t>(), read_counts.as<gpu::BlockElements>());
 }
 
-void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks,
-                        std::span<const gpu::BlockElements> first) {
+void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first) {
     const gpu::BlockElements batch_first = blocks.front().first;
     const auto [vertex_count, triangle_count] = total_of(blocks);
     std::vector<uint32_t> block_ids;
@@ -201,9 +200,8 @@ void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks,
     const graph::BufferId triangles = list.create("Triangles", triangle_count * sizeof(gpu::SurfaceElement));
     dispatch_items(list, blocks.size() * gpu::kBlockWords);
 
-    auto write_vertices =
-        frame.compute("surface.write_vertices",
-                      access_ == MapAccess::kTexel ? spirv::write_vertices_texel : spirv::write_vertices);
+    auto write_vertices = frame.compute(
+        "surface.write_vertices", access_ == MapAccess::kTexel ? spirv::write_vertices_texel : spirv::write_vertices);
     write_vertices.read("Neighbours", neighbours).read("Vertices", vertices);
     write_vertices.read("Tsdf", ids.tsdf).specialise("kTsdfChunks", map_.tsdf_chunks());
     write_vertices.read("Color", ids.color).specialise("kColorChunks", map_.color_chunks());
@@ -214,8 +212,7 @@ void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks,
     auto write_triangles = frame.compute("surface.write_triangles", spirv::write_triangles);
     write_triangles.read("Neighbours", neighbours).read("Cases", cases).read("Edges", edges);
     write_triangles.read("First", first_id).read("Triangles", triangles).push(params(triangle_count));
-    const graph::BufferId indices =
-        write_triangles.create("Indices", uint64_t{triangle_count} * sizeof(Triangle));
+    const graph::BufferId indices = write_triangles.create("Indices", uint64_t{triangle_count} * sizeof(Triangle));
     dispatch_items(write_triangles, triangle_count);
 
     const uint64_t array_bytes = vertex_count * sizeof(glm::vec3);

@@ -1,17 +1,21 @@
-// Bits of voxels, 32 to a word (shared/extract_surface.h), and the same bits one voxel further: marching cubes looks at 32 cells
-// at a time. The includer declares the blocks' neighbours:
+// Bits of voxels, 32 to a word (shared/extract_surface.h), and the same bits one voxel further: marching cubes looks at
+// 32 cells at a time. The includer declares the blocks' neighbours:
 //   NEIGHBOUR(i)    uint, entry i of the list
 #ifndef PATINA_LIB_SURFACE_WORDS_GLSL
 #define PATINA_LIB_SURFACE_WORDS_GLSL
 #include "shared/extract_surface.h"
 
 // The block that lies by an offset of -1, 0 or 1 a block along each axis from `block`.
-uint neighbour_block(uint block, ivec3 offset) { return NEIGHBOUR(block * kNeighbourStride + uint(offset.z * 9 + offset.y * 3 + offset.x + 13)); }
+uint neighbour_block(uint block, ivec3 offset) {
+    return NEIGHBOUR(block * kNeighbourStride + uint(offset.z * 9 + offset.y * 3 + offset.x + 13));
+}
 
-// The index of the word that lies by an offset (blocks in x, words in y, voxels in z; each -1, 0 or 1) from word `word` of `block`.
+// The index of the word that lies by an offset (blocks in x, words in y, voxels in z; each -1, 0 or 1) from word `word`
+// of `block`.
 uint word_index(uint block, uint word, ivec3 offset) {
     const ivec2 at = ivec2(word & 1u, word >> 1) + offset.yz;
-    return neighbour_block(block, ivec3(offset.x, at.x >> 1, at.y >> 3)) * kBlockWords + uint((at.y & 7) << 1 | (at.x & 1));
+    return neighbour_block(block, ivec3(offset.x, at.x >> 1, at.y >> 3)) * kBlockWords +
+           uint((at.y & 7) << 1 | (at.x & 1));
 }
 
 // Each voxel's neighbour in +x, +y, -x or -y: of a word, and the next one in that direction.
@@ -29,8 +33,8 @@ uint all_of(uvec4 words) { return words.x & words.y & words.z & words.w; }
 uint any_of(uvec4 words) { return words.x | words.y | words.z | words.w; }
 
 // The eight corners' bits of 32 cells: `low` those at z, `high` those at z + 1. WORD(i) loads word i.
-#define CORNERS_AT(WORD, block, word, dz)                                                                               \
-    at_corners(WORD(word_index(block, word, ivec3(0, 0, dz))), WORD(word_index(block, word, ivec3(1, 0, dz))),          \
+#define CORNERS_AT(WORD, block, word, dz)                                                                      \
+    at_corners(WORD(word_index(block, word, ivec3(0, 0, dz))), WORD(word_index(block, word, ivec3(1, 0, dz))), \
                WORD(word_index(block, word, ivec3(0, 1, dz))), WORD(word_index(block, word, ivec3(1, 1, dz))))
 
 // The marching cubes case of the cell at `bit`: bit i is set where corner i (x | y << 1 | z << 2) is inside.

@@ -5,15 +5,15 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kSurfaceGroup = 128u;
-INTEROP_CONST uint kBlockWords = 16u;       // one bit per voxel, 4 rows of 8 to a word: voxel i is bit i & 31 of word i >> 5
+INTEROP_CONST uint kBlockWords = 16u;  // one bit per voxel, 4 rows of 8 to a word: voxel i is bit i & 31 of word i >> 5
 INTEROP_CONST uint kBlockEdgeWords = 48u;   // one bit per lattice edge: axis, then the voxel at its lower end
 INTEROP_CONST uint kNeighbourStride = 32u;  // per block: 27 ids of the blocks around it, x fastest; then its key
 INTEROP_CONST uint kOwnKey = 27u;           // where in that list the key is
 INTEROP_CONST uint kCaseStride = 8u;        // u32 per marching cubes case: how many triangles, then each of them
-INTEROP_CONST uint kMaxCaseTriangles = 7u;
-INTEROP_CONST uint kCornerBits = 3u;        // an edge of a cell is the corner at its lower end | axis << 3
-INTEROP_CONST uint kCaseEdgeBits = 5u;      // a triangle is three such edges, the first in the lowest bits
-INTEROP_CONST float kLeastShare = 0.001f;   // vertices keep this share of an edge from its ends, so that none coincide
+INTEROP_CONST uint kMaxCaseTriangles = 5u;
+INTEROP_CONST uint kCornerBits = 3u;       // an edge of a cell is the corner at its lower end | axis << 3
+INTEROP_CONST uint kCaseEdgeBits = 5u;     // a triangle is three such edges, the first in the lowest bits
+INTEROP_CONST float kLeastShare = 0.001f;  // vertices keep this share of an edge from its ends, so that none coincide
 
 // Push constants of all passes.
 struct SurfaceParams {

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Marks the lattice edges that carry a vertex: those that the surface crosses and that a complete cell uses. Counts the vertices
-// and triangles of every block, and of its words before each word.
+// Marks the lattice edges that carry a vertex: those that the surface crosses and that a complete cell uses. Counts the
+// vertices and triangles of every block, and of its words before each word.
 #include "shared/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };
@@ -32,7 +32,7 @@ uvec3 used_edges(uint block, uint word) {
     const uint yz = complete_at(block, word, ivec3(0, -1, -1));
     const uint xz = complete_at(block, word, ivec3(-1, 0, -1));
     const uint here_or_y = here | last_in_y(here, y);
-    return uvec3(here_or_y | z | last_in_y(z, yz),                //
+    return uvec3(here_or_y | z | last_in_y(z, yz),                  //
                  here | last_in_x(here, x) | z | last_in_x(z, xz),  //
                  here_or_y | last_in_x(here_or_y, x | last_in_y(x, xy)));
 }

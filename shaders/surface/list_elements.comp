@@ -10,8 +10,10 @@ layout(std430, binding = 2) readonly buffer Complete { uint complete[]; };
 layout(std430, binding = 3) readonly buffer Cases { uint cases[]; };
 layout(std430, binding = 4) readonly buffer Edges { EdgeWord edges[]; };
 layout(std430, binding = 5) readonly buffer TriangleOffsets { uint triangle_offsets[]; };
-layout(std430, binding = 6) readonly buffer Batch { uint batch[]; };          // block ids, in the order of their keys
-layout(std430, binding = 7) readonly buffer First { BlockElements first[]; };  // per block: elements of all blocks before it
+layout(std430, binding = 6) readonly buffer Batch { uint batch[]; };  // block ids, in the order of their keys
+layout(std430, binding = 7) readonly buffer First {
+    BlockElements first[];
+};  // per block: elements of all blocks before it
 layout(std430, binding = 8) writeonly buffer Vertices { SurfaceElement vertices[]; };
 layout(std430, binding = 9) writeonly buffer Triangles { SurfaceElement triangles[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };

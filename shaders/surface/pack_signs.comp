@@ -3,6 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Signs of the distances in storage buffers, as every device can bind them.
 #include "shared/voxel_map.h"
-layout(std430, binding = 3) readonly buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
+layout(std430, binding = 3) readonly buffer Tsdf { uvec4 quads[]; }
+tsdf[kMaxTsdfChunks];
 #define QUAD(C, i) tsdf[C].quads[i]
 #include "surface/pack_signs_main.glsl"

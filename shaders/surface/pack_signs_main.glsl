@@ -1,5 +1,5 @@
-// Body of the shaders that pack, for every voxel, whether it is inside (distance <= 0, as in ray casting) and whether it was
-// seen. One invocation per word. The includer says how to load the distances:
+// Body of the shaders that pack, for every voxel, whether it is inside (distance <= 0, as in ray casting) and whether
+// it was seen. One invocation per word. The includer says how to load the distances:
 //   QUAD(C, i)    uvec4, voxels 4 i to 4 i + 3 of the literal chunk C
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -11,7 +11,7 @@ layout(std430, binding = 1) writeonly buffer Inside { uint inside[]; };
 layout(std430, binding = 2) writeonly buffer Seen { uint seen[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 
-uint bits_of(bvec4 flags, uint shift) { 
+uint bits_of(bvec4 flags, uint shift) {
     const uvec4 bits = uvec4(flags) << uvec4(shift, shift + 1u, shift + 2u, shift + 3u);
     return bits.x | bits.y | bits.z | bits.w;
 }

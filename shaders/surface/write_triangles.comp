@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Writes a batch's triangles. A vertex's number follows from its edge: vertices of the blocks before, of its block's words before,
-// of the bits before.
+// Writes a batch's triangles. A vertex's number follows from its edge: vertices of the blocks before, of its block's
+// words before, of the bits before.
 #include "shared/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };

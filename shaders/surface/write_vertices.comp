@@ -4,7 +4,8 @@
 // Vertices with the distances in storage buffers, as every device can bind them.
 #include "shared/extract_surface.h"
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };
-layout(std430, binding = 4) readonly buffer Tsdf { uint voxels[]; } tsdf[kMaxTsdfChunks];
+layout(std430, binding = 4) readonly buffer Tsdf { uint voxels[]; }
+tsdf[kMaxTsdfChunks];
 #define NEIGHBOUR(i) neighbours[i]
 #define VOXEL(C, i) tsdf[C].voxels[i]
 #include "surface/write_vertices_main.glsl"

@@ -1,5 +1,5 @@
-// Body of the shaders that write a batch's vertices: position, normal and colour, each an array of its own within one buffer. The
-// includer says how to load the map:
+// Body of the shaders that write a batch's vertices: position, normal and colour, each an array of its own within one
+// buffer. The includer says how to load the map:
 //   VOXEL(C, i)    uint, voxel i of the literal chunk C
 #include "lib/surface_words.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -7,7 +7,8 @@
 
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 1) readonly buffer Vertices { SurfaceElement vertices[]; };
-layout(std430, binding = 2) readonly buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
+layout(std430, binding = 2) readonly buffer Color { uvec2 voxels[]; }
+color[kMaxColorChunks];
 layout(std430, binding = 3) writeonly buffer Attributes { float attributes[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 
