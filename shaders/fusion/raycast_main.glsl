@@ -12,16 +12,13 @@
 layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
 layout(std140, binding = 0) uniform View { ViewParams view; };
 layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
-layout(binding = 2, rgba32f) uniform writeonly image2D
-    position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
-layout(binding = 3,
-       rgba16f) uniform writeonly image2D normal;  // world, unit length, towards free space; 0 where nothing was hit
+layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
+layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
 
 uint cached_key = kEmptyKey;
 uint cached_block = kNoBlock;
 
-// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one
-// block.
+// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one block.
 uint find_block(ivec3 coordinates) {
     const uint key = key_of_block(view.grid, coordinates);
     if (key != cached_key) {
@@ -36,8 +33,7 @@ uint load_voxel(ivec3 coordinates) {
     const uint block = find_block(coordinates >> 3);
     const ivec3 within = coordinates & 7;
     const uint safe = block == kNoBlock ? 0u : block;
-    const uint index =
-        index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
     WITH_TSDF_CHUNK(view.grid, safe, LOAD_VOXEL)
@@ -81,8 +77,8 @@ struct Bracket {
     float outside_share;  // where between them the distances, taken as linear, are zero
 };
 
-// Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent
-// branch costs as much as its longest path.
+// Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent branch
+// costs as much as its longest path.
 Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_per_vox) {
     float outside_depth = depth;
     float here = 1.0, outside = 1.0;  // in units of kSdfRangeVox; 1 stands for unknown space
@@ -93,9 +89,8 @@ Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_p
         const bool seen = voxel_weight(voxel) > 0u;
         here = seen ? voxel_sdf(voxel) : 1.0;
         const bool inside = here <= 0.0;
-        const float step_vox = seen                       ? max(here * (0.9 * kSdfRangeVox), 1.0)
-                               : cached_block == kNoBlock ? kUnknownStepVox
-                                                          : 1.0;
+        const float step_vox =
+            seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : cached_block == kNoBlock ? kUnknownStepVox : 1.0;
         outside_depth = inside ? outside_depth : depth;
         outside = inside ? outside : here;
         seen_outside = inside ? seen_outside : seen;
@@ -126,8 +121,7 @@ void main() {
         if (!bracket.found) break;
         const float estimate = mix(bracket.outside_depth, bracket.inside_depth, bracket.outside_share);
         const Cell cell = interpolate(origin + direction * estimate - 0.5);
-        // One Newton step along the ray from the secant of nearest values, within the two steps that bracket the
-        // surface.
+        // One Newton step along the ray from the secant of nearest values, within the two steps that bracket the surface.
         const float slope = dot(cell.gradient, direction);
         const float newton = estimate - cell.sdf / (slope < 0.0 ? slope : -1e9);
         const float hit = clamp(newton, bracket.outside_depth - depth_per_vox, bracket.inside_depth + depth_per_vox);
