@@ -29,6 +29,16 @@ Transients::Transients(vulkan::Device& device, const Frame& frame, const Plan& p
     }
 }
 
+bool Transients::fit(const Frame& frame) const {
+    for (uint32_t i = 0; i < images_.size(); ++i) {
+        if (buffers_[i] && buffers_[i]->bytes() != frame.bytes(BufferId{{i}})) return false;
+        if (!images_[i]) continue;
+        const vulkan::ImageDesc& desc = images_[i]->desc();
+        if (frame.shape(ImageId{{i}}) != ImageShape{desc.extent, desc.format}) return false;
+    }
+    return true;
+}
+
 namespace {
 
 vk::PipelineStageFlags2 vk_stages(uint32_t stages) {

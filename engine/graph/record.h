@@ -19,6 +19,10 @@ class Transients {
   public:
     Transients(vulkan::Device& device, const Frame& frame, const Plan& plan);
 
+    /// True when the frame, of the description these were made for, asks for the same sizes and formats: equal needs of
+    /// memory do not imply that.
+    bool fit(const Frame& frame) const;
+
     const vulkan::BufferRef& buffer(uint32_t resource) const { return buffers_[resource]; }
     const vulkan::ImageRef& image(uint32_t resource) const { return images_[resource]; }
     uint64_t bytes() const { return bytes_; }

@@ -179,7 +179,7 @@ const CachedShape& find_shape(Runner::State& state, vulkan::Device& device, cons
                               const Description& description) {
     const size_t hash = hash_of(description);
     for (auto shape = state.shapes.begin(); shape != state.shapes.end(); ++shape) {
-        if (shape->hash == hash && shape->compiled->description == description) {
+        if (shape->hash == hash && shape->compiled->description == description && shape->transients->fit(frame)) {
             state.shapes.splice(state.shapes.begin(), state.shapes, shape);
             return state.shapes.front();
         }

@@ -3,10 +3,10 @@
 //   BLOCK(slot)     uint, the block id of a table slot
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 // The march reads nearest voxels; interpolation happens once, at the hit.
+#include "lib/block_lookup.glsl"
 #include "lib/camera.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
-#include "lib/voxel_table.glsl"
 #include "shared/raycast.h"
 
 layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
@@ -15,22 +15,9 @@ layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
 layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
 layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
 
-uint cached_key = kEmptyKey;
-uint cached_block = kNoBlock;
-
-// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most steps stay in one block.
-uint find_block(ivec3 coordinates) {
-    const uint key = key_of_block(view.grid, coordinates);
-    if (key != cached_key) {
-        cached_key = key;
-        cached_block = block_of_table(view.grid, key);
-    }
-    return cached_block;
-}
-
 // The voxel at voxel coordinates; 0 (weight 0) where there is no block.
 uint load_voxel(ivec3 coordinates) {
-    const uint block = find_block(coordinates >> 3);
+    const uint block = find_block(view.grid, coordinates >> 3);
     const ivec3 within = coordinates & 7;
     const uint safe = block == kNoBlock ? 0u : block;
     const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);

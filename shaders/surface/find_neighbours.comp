@@ -10,7 +10,7 @@ layout(std430, binding = 3) writeonly buffer Neighbours { uint neighbours[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
-#include "lib/voxel_table.glsl"
+#include "lib/block_lookup.glsl"
 
 void main() {
     const uint item = group_item(gl_WorkGroupID) * kSurfaceGroup + gl_LocalInvocationIndex;
@@ -21,7 +21,7 @@ void main() {
     uint found = kNoBlock;
     if (key != kEmptyKey && lane < kOwnKey) {
         const ivec3 offset = ivec3(lane % 3u, lane / 3u % 3u, lane / 9u) - 1;
-        found = block_of_table(params.grid, key_of_block(params.grid, block_of_key(params.grid, key) + offset));
+        found = find_block(params.grid, block_of_key(params.grid, key) + offset);
     }
     neighbours[item] = lane == kOwnKey ? key : min(found, params.no_block);
 }

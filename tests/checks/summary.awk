@@ -1,6 +1,6 @@
 # Shortens `ctest --verbose`: one line per test, the output of tests that failed, the reason of tests that were skipped, and
 # ctest's summary unchanged.
-/^(test [0-9]+|UpdateCTestConfiguration|Constructing|Updating test list|Test timeout|Working Directory|Environment variables|Test command)/ { next }
+/^( *Start +[0-9]+:|Done constructing|Added [0-9]+ tests|Check(ing|ed) test dep|Parse Config|test [0-9]+|UpdateCTestConfiguration|Constructing|Updating test list|Test timeout|Working Directory|Environment variables|Test command)/ { next }
 /^[0-9]+: / {
     number = $1 + 0
     output[number] = output[number] $0 "\n"
@@ -22,5 +22,7 @@
     fflush()
     next
 }
+/^The following tests passed:/ { passed = 1 }
 /tests passed,|^No tests/ { summary = 1 }
+passed && !summary { next }
 summary || NF

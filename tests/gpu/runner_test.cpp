@@ -56,5 +56,18 @@ TEST_F(RunnerTest, FramesOfOneShapeAreCompiledOnce) {
     EXPECT_EQ(result.as<float>(), std::vector<float>(64, 1 + 2 + 3 + 4));
 }
 
+TEST_F(RunnerTest, ImagesOfOneSizeInMemoryButAnotherShapeAreAnotherShape) {
+    for (const Extent2D extent : {Extent2D{8, 8}, {13, 7}, {7, 13}, {8, 8}}) {
+        std::vector<float> pixels(extent.area());
+        std::iota(pixels.begin(), pixels.end(), 0.0f);
+        graph::Frame frame = runner().begin();
+        const auto result =
+            frame.read_back(frame.upload("image", {extent, vulkan::Format::kR32f}, std::as_bytes(std::span(pixels))));
+        run(std::move(frame));
+        EXPECT_EQ(result.as<float>(), pixels) << extent;
+    }
+    EXPECT_EQ(runner().compilations(), 3u);
+}
+
 }  // namespace
 }  // namespace patina

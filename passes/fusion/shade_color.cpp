@@ -1,0 +1,18 @@
+#include "passes/fusion/shade_color.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::ImageId add_shade_color(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+                               graph::ImageId position_m) {
+    const Extent2D extent = frame.shape(position_m).extent;
+    auto pass = frame.compute("fusion.shade_color", spirv::shade_color);
+    pass.read("position_m", position_m).read("Keys", ids.keys).read("Blocks", ids.blocks).read("Color", ids.color);
+    pass.specialise("kColorChunks", map.color_chunks()).push(map.grid());
+    const graph::ImageId color = pass.create("color_linear", {extent, vulkan::Format::kRgba16f});
+    pass.dispatch_covering(extent);
+    return color;
+}
+
+}  // namespace patina

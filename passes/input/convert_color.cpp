@@ -1,0 +1,25 @@
+#include "passes/input/convert_color.h"
+
+#include "passes/input/lens.h"
+#include "shared/convert_color.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input) {
+    constexpr const char* kPass = "input.convert_color";
+    const bool linear = std::holds_alternative<std::span<const glm::vec3>>(input.pixels);
+    const Extent2D extent = input.camera.extent;
+    const gpu::Lens lens = lens_of(input.camera, kPass);
+    const graph::BufferId source =
+        std::visit([&](auto pixels) { return upload_picture(frame, kPass, extent, pixels); }, input.pixels);
+
+    auto pass = frame.compute(kPass, spirv::convert_color);
+    pass.read("Source", source).specialise("kLinear", linear).specialise("kDistorted", input.camera.distorted());
+    const graph::ImageId color = pass.create("color", {extent, vulkan::Format::kRgba16f});
+    pass.push(gpu::ConvertColorParams{lens});
+    pass.dispatch_covering(extent);
+    return color;
+}
+
+}  // namespace patina

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/input/picture.h"
+
+namespace patina {
+
+/// Uploads a depth picture and converts it to metres as the pinhole camera with the same extent, fx, fy, cx and cy
+/// would measure them. Where the lens distorts, a pixel takes the nearest source pixel: depth must not be interpolated.
+/// Returns an r32f image; 0 where there is no reading, where it lies beyond max_metres, or where the distorted picture
+/// does not show the pixel. Throws Error when the number of pixels, the intrinsics or the scale make no sense.
+graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input);
+
+}  // namespace patina

@@ -1,0 +1,128 @@
+#include "sensor/synthetic/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+
+namespace patina::sensor {
+namespace {
+
+constexpr int kFrames = 1000;
+
+RigidTransform pose(const Scene& scene, int frame) { return world_from_camera(scene.path, frame / scene.fps); }
+
+TEST(CameraPath, StaysFourMetresFromTheTargetAndLooksAtItUpright) {
+    const Scene scene = make_scene("cubes");
+    for (int i = 0; i < kFrames; ++i) {
+        const RigidTransform world_from_camera = pose(scene, i);
+        EXPECT_LT(rotation_defect(world_from_camera), 1e-14);
+        const glm::dvec3 target_m(rigid_inverse(world_from_camera) * glm::dvec4(scene.path.target_m, 1));
+        EXPECT_LT(glm::distance(target_m, glm::dvec3(0, 0, 4)), 1e-12);
+        EXPECT_EQ(world_from_camera[0].y, 0) << "the camera's x axis must be level";
+        EXPECT_GT(world_from_camera[1].y, 0) << "the camera's y axis must point down";
+    }
+}
+
+TEST(CameraPath, MovesAsAPersonWithACameraDoes) {
+    const Scene scene = make_scene("cubes");
+    for (int i = 1; i + 1 < kFrames; ++i) {
+        const glm::dvec3 before(pose(scene, i - 1)[3]), now(pose(scene, i)[3]), after(pose(scene, i + 1)[3]);
+        EXPECT_LT(glm::distance(before, now) * scene.fps, 1.05) << "m/s";
+        EXPECT_LT(glm::length(after - 2.0 * now + before) * scene.fps * scene.fps, 1.5) << "m/s^2";
+    }
+}
+
+TEST(CameraPath, OscillatesAroundTheScene) {
+    const Scene scene = make_scene("cubes");
+    double leftmost = 0, rightmost = 0, lowest = 10, highest = 0;
+    for (int i = 0; i < 60 * 30; ++i) {
+        const glm::dvec3 center_m(pose(scene, i)[3]);
+        leftmost = std::min(leftmost, center_m.x);
+        rightmost = std::max(rightmost, center_m.x);
+        lowest = std::min(lowest, -center_m.y);
+        highest = std::max(highest, -center_m.y);
+    }
+    EXPECT_LT(leftmost, -3);
+    EXPECT_GT(rightmost, 3);
+    EXPECT_GT(lowest, 1.5);
+    EXPECT_LT(highest, 3.2);
+    EXPECT_GT(highest - lowest, 0.8);
+}
+
+/// The corners of a box in the world.
+std::vector<glm::dvec3> corners(const SceneObject& object) {
+    const glm::dvec3 half_size_m = std::get<BoxShape>(object.shape).half_size_m;
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 sign((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, (i & 4) ? 1 : -1);
+        points.emplace_back(object.world_from_object * glm::dvec4(sign * half_size_m, 1));
+    }
+    return points;
+}
+
+/// Whether two boxes have a separating plane (along face normals and cross products of edges).
+bool disjoint(const SceneObject& a, const SceneObject& b) {
+    std::vector<glm::dvec3> axes;
+    for (int i = 0; i < 3; ++i) {
+        axes.emplace_back(a.world_from_object[i]);
+        axes.emplace_back(b.world_from_object[i]);
+        for (int j = 0; j < 3; ++j)
+            axes.push_back(glm::cross(glm::dvec3(a.world_from_object[i]), glm::dvec3(b.world_from_object[j])));
+    }
+    const auto interval = [](const SceneObject& object, glm::dvec3 axis) {
+        glm::dvec2 range(INFINITY, -INFINITY);
+        for (const glm::dvec3& p : corners(object))
+            range = {std::min(range.x, glm::dot(p, axis)), std::max(range.y, glm::dot(p, axis))};
+        return range;
+    };
+    return std::any_of(axes.begin(), axes.end(), [&](glm::dvec3 axis) {
+        const glm::dvec2 of_a = interval(a, axis), of_b = interval(b, axis);
+        return of_a.y <= of_b.x + 1e-9 || of_b.y <= of_a.x + 1e-9;
+    });
+}
+
+TEST(Cubes, HaveEdgesOf40CentimetresAndStandOnTheFloorOrOneAnother) {
+    const Scene scene = make_scene("cubes");
+    ASSERT_GT(scene.objects.size(), 5u);
+    EXPECT_TRUE(std::holds_alternative<RectangleShape>(scene.objects.front().shape));
+    for (size_t i = 1; i < scene.objects.size(); ++i) {
+        const SceneObject& cube = scene.objects[i];
+        EXPECT_EQ(std::get<BoxShape>(cube.shape).half_size_m, glm::dvec3(0.2)) << cube.material.name;
+        double lowest_m = INFINITY;
+        for (const glm::dvec3& p : corners(cube)) lowest_m = std::min(lowest_m, -p.y);
+        const bool stacked = std::abs(lowest_m - 0.4) < 1e-12;
+        EXPECT_TRUE(stacked || std::abs(lowest_m) < 1e-12) << cube.material.name << " at " << lowest_m << " m";
+        for (size_t j = 1; j < i; ++j)
+            EXPECT_TRUE(disjoint(cube, scene.objects[j]))
+                << cube.material.name << ", " << scene.objects[j].material.name;
+    }
+}
+
+TEST(Cubes, MaterialsAreAlbedosWithUniqueIds) {
+    std::set<uint32_t> ids;
+    for (const Material& m : materials_of(make_scene("cubes"))) {
+        EXPECT_TRUE(ids.insert(m.id).second && m.id > 0) << m.name;
+        ASSERT_TRUE(m.kd) << m.name;
+        for (int c = 0; c < 3; ++c) EXPECT_LE((*m.kd)[c] + m.ks[c], 1) << m.name;
+        EXPECT_GT(m.alpha, 0) << m.name;
+        EXPECT_LE(m.alpha, 1) << m.name;
+    }
+}
+
+TEST(Scene, UnknownNameIsAnErrorThatListsTheKnown) {
+    try {
+        make_scene("spheres");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr("'spheres'"), ::testing::HasSubstr("cubes")));
+    }
+}
+
+}  // namespace
+}  // namespace patina::sensor
