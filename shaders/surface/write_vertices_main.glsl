@@ -1,6 +1,7 @@
 // Body of the shaders that write a batch's vertices: position, normal and colour, each an array of its own within one
 // buffer. The includer says how to load the map:
-//   VOXEL(C, i)    uint, voxel i of the literal chunk C
+//   VOXEL(C, i)     uint, voxel i of the literal chunk C
+//   NEIGHBOUR(i)    uint, entry i of the list of neighbours
 #include "lib/surface_words.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -82,7 +83,7 @@ void main() {
     const float low_distance = load_distance(block, low).value;
     const float high_distance = load_distance(block, high).value;
     const float share = clamp(low_distance / (low_distance - high_distance), kLeastShare, 1.0 - kLeastShare);
-    const ivec3 corner = block_of_key(params.grid, neighbours[block * kNeighbourStride + kOwnKey]) * int(kBlockEdge);
+    const ivec3 corner = block_of_key(params.grid, NEIGHBOUR(block * kNeighbourStride + kOwnKey)) * int(kBlockEdge);
     store(0u, item, (vec3(corner + low) + 0.5 + share * vec3(along)) * params.grid.voxel_m);
 
     const vec3 gradient = mix(gradient_at(block, low, low_distance), gradient_at(block, high, high_distance), share);

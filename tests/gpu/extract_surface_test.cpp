@@ -94,7 +94,11 @@ void expect_close_to(const Mesh& mesh, const reference::DistanceField& scene) {
 class ExtractSurfaceTest : public GpuTest {
   protected:
     Mesh extract(FusionRig& rig, const SurfaceOptions& options = {}) {
-        return extract_surface(runner(), rig.map(), options);
+        Mesh mesh = extract_surface(runner(), rig.map(), options);
+        const graph::CompiledFrame& last = runner().last_frame();
+        EXPECT_THAT(graph::check(last.description, last.plan), ::testing::IsEmpty());
+        EXPECT_THAT(graph::find_unneeded_barriers(last.description, last.plan), ::testing::IsEmpty());
+        return mesh;
     }
 };
 
@@ -264,6 +268,17 @@ TEST_F(ExtractSurfaceTest, RandomDistancesWithHolesGiveTheVerticesOfTheDefinitio
     sort_points(got);
     ASSERT_EQ(got.size(), expected.size());
     for (size_t i = 0; i < got.size(); ++i) ASSERT_LT(glm::length(got[i] - expected[i]), 1e-5f) << "vertex " << i;
+}
+
+TEST_F(ExtractSurfaceTest, BlocksWithoutASurfaceGiveNone) {
+    FusionRig rig(device(), runner(), {0.02f, 256});
+    fuse_from_all_sides(rig, kSphere, nullptr, 1);
+    for (const int distance : {-1, 1}) {
+        write_voxels(rig, [&](std::array<int, 3>) { return make_voxel(distance, 1); });
+        EXPECT_TRUE(extract(rig).positions_m.empty());
+    }
+    write_voxels(rig, [&](std::array<int, 3> at) { return make_voxel((at[0] & 1) * 2 - 1, 0); });
+    EXPECT_TRUE(extract(rig).positions_m.empty());
 }
 
 TEST_F(ExtractSurfaceTest, RandomDistancesWithinFreeSpaceGiveAClosedSurface) {
