@@ -1,6 +1,9 @@
 #include "passes/surface/extract_surface.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
 
 #include "engine/core/error.h"
 #include "passes/surface/case_table.h"
@@ -61,9 +64,17 @@ size_t batch_length(std::span<const SurfaceBlock> blocks, uint32_t limit) {
     return length;
 }
 
+/// Reads `count` elements of 12 bytes, or one that append_to() leaves out: a batch can lack vertices or triangles, and
+/// no copy is empty.
+graph::Readback read_elements(graph::Frame& frame, graph::BufferId id, uint64_t first, uint64_t count) {
+    static_assert(sizeof(glm::vec3) == sizeof(Triangle));
+    return frame.read_back(id, first * sizeof(Triangle), std::max<uint64_t>(count, 1) * sizeof(Triangle));
+}
+
 template <class T>
-void append_to(std::vector<T>& all, const std::vector<T>& part) {
-    all.insert(all.end(), part.begin(), part.end());
+void append_to(std::vector<T>& all, const graph::Readback& part, size_t count) {
+    const std::vector<T> values = part.as<T>();
+    all.insert(all.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 /// Groups of a pass with one invocation per item, in the rows that group_item() reads.
@@ -81,6 +92,11 @@ struct SurfaceArrays {
     vulkan::BufferRef triangle_offsets;  ///< kBlockWords u32 per block: triangles of its words before
 };
 
+/// A batch's part of the mesh, while the device writes it.
+struct PendingPart {
+    graph::Readback positions, normals, colors, triangles;
+};
+
 class Extraction {
   public:
     Extraction(graph::Runner& runner, const VoxelMap& map, const SurfaceOptions& options);
@@ -90,6 +106,8 @@ class Extraction {
     uint32_t count_block_ids();
     void create_arrays();
     std::vector<SurfaceBlock> count_elements();
+    PendingPart write_elements(graph::Frame& frame, std::span<const SurfaceBlock> blocks,
+                               std::span<const gpu::BlockElements> first);
     void append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first);
 
     gpu::SurfaceParams params(uint64_t items, gpu::BlockElements first = {}) const {
@@ -106,7 +124,7 @@ class Extraction {
 };
 
 uint32_t batch_limit(const vulkan::DeviceCaps& caps, const SurfaceOptions& options) {
-    // Beyond four million elements a larger batch saves no time and takes host memory for its read-back.
+    // Four million elements keep the device busy and the memory for their read-back small.
     const auto most = static_cast<uint32_t>(std::min<uint64_t>(caps.max_storage_range / kAttributeBytes, 1u << 22));
     const uint32_t limit = std::min(options.batch_elements.value_or(most), most);
     if (limit < kMaxBlockElements) {
@@ -179,13 +197,13 @@ std::vector<SurfaceBlock> Extraction::count_elements() {
     return sort_surface_blocks(read_keys.as<uint32_t>(), read_counts.as<gpu::BlockElements>());
 }
 
-void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first) {
+PendingPart Extraction::write_elements(graph::Frame& frame, std::span<const SurfaceBlock> blocks,
+                                       std::span<const gpu::BlockElements> first) {
     const gpu::BlockElements batch_first = blocks.front().first;
     const auto [vertex_count, triangle_count] = total_of(blocks);
     std::vector<uint32_t> block_ids;
     for (const SurfaceBlock& block : blocks) block_ids.push_back(block.id);
 
-    graph::Frame frame = runner_.begin();
     const VoxelMapIds ids = map_.import(frame);
     const graph::BufferId neighbours = frame.import(arrays_.neighbours), edges = frame.import(arrays_.edges);
     const graph::BufferId cases = frame.upload<uint32_t>("surface.cases", cases_);
@@ -215,17 +233,21 @@ void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::s
     const graph::BufferId indices = write_triangles.create("Indices", uint64_t{triangle_count} * sizeof(Triangle));
     dispatch_items(write_triangles, triangle_count);
 
-    const uint64_t array_bytes = vertex_count * sizeof(glm::vec3);
-    const graph::Readback positions = frame.read_back(attributes, 0, array_bytes);
-    const graph::Readback normals = frame.read_back(attributes, array_bytes, array_bytes);
-    const graph::Readback colors = frame.read_back(attributes, 2 * array_bytes, array_bytes);
-    const graph::Readback corners = frame.read_back(indices, 0, triangle_count * sizeof(Triangle));
+    const uint64_t n = vertex_count;
+    return {read_elements(frame, attributes, 0, n), read_elements(frame, attributes, n, n),
+            read_elements(frame, attributes, 2 * n, n), read_elements(frame, indices, 0, triangle_count)};
+}
+
+void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first) {
+    graph::Frame frame = runner_.begin();
+    const PendingPart part = write_elements(frame, blocks, first);
     runner_.submit(std::move(frame));
     runner_.wait();
-    append_to(mesh.positions_m, positions.as<glm::vec3>());
-    append_to(mesh.normals, normals.as<glm::vec3>());
-    append_to(mesh.colors, colors.as<glm::vec3>());
-    append_to(mesh.triangles, corners.as<Triangle>());
+    const auto [vertices, triangles] = total_of(blocks);
+    append_to(mesh.positions_m, part.positions, vertices);
+    append_to(mesh.normals, part.normals, vertices);
+    append_to(mesh.colors, part.colors, vertices);
+    append_to(mesh.triangles, part.triangles, triangles);
 }
 
 Mesh Extraction::run() {
