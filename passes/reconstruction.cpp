@@ -100,7 +100,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_camera),
                                                      settings_.near_m, 2 * settings_.fusion.max_depth_m);
     const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-    const graph::ImageId color = add_shade_color(graph, map_, ids, model.position_m);
+    const graph::ImageId color = add_shade_color(graph, map_, ids, visible, model.position_m);
     PendingView pending;
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);

@@ -95,13 +95,13 @@ void main() {
     const Row row = row_of(fusion.depth_camera, world_m);
     Sample seen[4];
     [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
-    const uint quad = index_in_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
+    const uint quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u) + lane;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
 #define STORE_TSDF(C) tsdf[C].quads[quad] = voxels
     uvec4 voxels;
-    WITH_CHUNK(fusion.grid, block, LOAD_TSDF)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, LOAD_TSDF)
     [[unroll]] for (int i = 0; i < 4; ++i) voxels[i] = update_voxel(voxels[i], seen[i]);
-    WITH_CHUNK(fusion.grid, block, STORE_TSDF)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_TSDF)
 
 #if PATINA_WITH_COLOR
     bvec4 near;
@@ -112,11 +112,11 @@ void main() {
 #define LOAD_COLOR(C) colors = color[C].quads[quad]
 #define STORE_COLOR(C) color[C].quads[quad] = colors
     uvec4 colors;
-    WITH_CHUNK(fusion.grid, block, LOAD_COLOR)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, LOAD_COLOR)
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const uint updated = update_color(colors[i], voxels[i], pixel_of(color_row, i), hash_of_key(dither + uint(i)));
         colors[i] = near[i] ? updated : colors[i];
     }
-    WITH_CHUNK(fusion.grid, block, STORE_COLOR)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_COLOR)
 #endif
 }
