@@ -23,7 +23,7 @@ layout(std430, binding = 7) buffer Color { uvec2 voxels[]; } color[kMaxColorChun
 struct Sample {
     bool valid;
     float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
-    float weight;    // kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
+    float weight;    // whole; kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
 };
 
 Sample sample_depth(vec3 point_m) {
@@ -42,7 +42,8 @@ Sample sample_depth(vec3 point_m) {
     result.signed_m = min(along_m * plane_factor, truncation);
     // Behind the surface a reading knows less and less: beyond an edge or a limb there is free space that other views see.
     const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
-    result.weight = max(float(kWeightOne) * plane_factor * trust * trust, 1.0);
+    // Whole numbers add up without loss, and so in any order.
+    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * trust + 0.5), 1.0);
     result.valid = ivec2(nearest) == inside && point_m.z > 1e-3 && reading > 0.0 && reading <= fusion.max_depth_m && plane_factor > 0.0 &&
                    along_m >= -truncation;
     return result;
@@ -53,7 +54,7 @@ uint update_voxel(uint voxel, Sample seen) {
     const float scale = 1.0 / (kSdfRangeVox * fusion.grid.voxel_m);
     const float sum = weight + seen.weight;
     const float sdf = (voxel_sdf(voxel) * weight + seen.signed_m * scale * seen.weight) / sum;
-    const uint updated = pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight)));
+    const uint updated = pack_voxel(sdf, uint(min(sum, fusion.max_weight)));
     return seen.valid ? updated : voxel;
 }
 
