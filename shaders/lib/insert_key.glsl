@@ -11,7 +11,8 @@ struct Insertion {
     bool fresh;  // this call put it there
 };
 
-// Finds a key, or inserts it at the first free slot from its own bucket on. Any number of invocations may insert at once.
+// Finds a key, or inserts it at the first free slot from its own bucket on. Any number of invocations may insert at
+// once.
 Insertion insert_key(VoxelGrid grid, uint key, bool may_insert) {
     uint bucket = hash_of_key(key) & grid.bucket_mask;
     for (uint probe = 0u; probe < kMaxProbes; ++probe) {
@@ -19,8 +20,8 @@ Insertion insert_key(VoxelGrid grid, uint key, bool may_insert) {
         const uvec4 found = uvec4(keys[first], keys[first + 1u], keys[first + 2u], keys[first + 3u]);
         const bvec4 same = equal(found, uvec4(key));
         if (any(same)) return Insertion(first + (same.x ? 0u : same.y ? 1u : same.z ? 2u : 3u), false);
-        // A key never leaves its slot in this pass, so a taken slot is final. A free one may be so no longer, whichever of the
-        // four it is (the loads are four): the exchange decides.
+        // A key never leaves its slot in this pass, so a taken slot is final. A free one may be so no longer, whichever
+        // of the four it is (the loads are four): the exchange decides.
         if (any(equal(found, uvec4(kEmptyKey)))) {
             if (!may_insert) break;
             for (uint i = 0u; i < kBucketSlots; ++i) {
