@@ -6,8 +6,10 @@
 #include "shared/test_voxel_map.h"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Tsdf { uint voxels[]; } tsdf[kMaxTsdfChunks];
-layout(std430, binding = 1) readonly buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
+layout(std430, binding = 0) readonly buffer Tsdf { uint voxels[]; }
+tsdf[kMaxTsdfChunks];
+layout(std430, binding = 1) readonly buffer Color { uvec2 voxels[]; }
+color[kMaxColorChunks];
 layout(std430, binding = 2) writeonly buffer GatheredTsdf { uint gathered_tsdf[]; };
 layout(std430, binding = 3) writeonly buffer GatheredColor { uvec2 gathered_color[]; };
 layout(push_constant) uniform Push { TestMapParams params; };

@@ -49,8 +49,7 @@ TEST_F(AllocateBlocksTest, EveryPixelHasItsTurnWithinTheSquareOfTheStride) {
     const Image<float> depth_m = random_depth(camera_.extent, 8);
     const reference::Band band = band_of(rig, 0.16);
     rig.fuse(camera_, pose_, depth_m);
-    EXPECT_THAT(rig.allocated(),
-                IsSubsetOf(reference::touched_blocks(depth_m, camera_, pose_, band, kRoundingM, 3)));
+    EXPECT_THAT(rig.allocated(), IsSubsetOf(reference::touched_blocks(depth_m, camera_, pose_, band, kRoundingM, 3)));
     for (int frame = 1; frame < 9; ++frame) rig.fuse(camera_, pose_, depth_m);
     EXPECT_THAT(reference::touched_blocks(depth_m, camera_, pose_, band, -kRoundingM), IsSubsetOf(rig.allocated()));
 }
@@ -108,8 +107,12 @@ TEST_F(AllocateBlocksTest, AFullPoolRefusesByKeyAndLeavesSurfaceAlone) {
             EXPECT_LE(wanted, most);
         }
         const Blocks now = rig.allocated();
-        if (accepted) EXPECT_EQ(now, *accepted);
-        if (refused) EXPECT_EQ(counters.refused_blocks, *refused);
+        if (accepted) {
+            EXPECT_EQ(now, *accepted);
+        }
+        if (refused) {
+            EXPECT_EQ(counters.refused_blocks, *refused);
+        }
         accepted = now;
         refused = counters.refused_blocks;
 

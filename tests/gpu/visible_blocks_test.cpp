@@ -25,9 +25,9 @@ class VisibleBlocksTest : public GpuTest {
     Seen look(FusionRig& rig, const reference::ViewVolume& view) {
         const std::vector<uint32_t> keys = rig.table().block_keys;
         graph::Frame frame = runner().begin();
-        const VisibleBlocks visible =
-            add_visible_blocks(frame, rig.map(), rig.map().import(frame), make_camera(view.camera, view.world_from_camera),
-                               static_cast<float>(view.near_m), static_cast<float>(view.far_m));
+        const VisibleBlocks visible = add_visible_blocks(
+            frame, rig.map(), rig.map().import(frame), make_camera(view.camera, view.world_from_camera),
+            static_cast<float>(view.near_m), static_cast<float>(view.far_m));
         const graph::Readback list = frame.read_back(visible.list), tiles = frame.read_back(visible.tiles),
                               arguments = frame.read_back(visible.arguments);
         run(std::move(frame));
@@ -74,7 +74,8 @@ TEST_F(VisibleBlocksTest, WhatTheCameraSeesIsListedOnceAndItsDepthsAreBounded) {
                 const glm::dvec3 low = glm::dvec3(block[0], block[1], block[2]) * block_m;
                 for (const auto& [tile, range] : reference::seen_tiles(view, kTile, low, block_m)) {
                     ASSERT_TRUE(listed.contains(block));
-                    const reference::DepthRange bound = seen.tiles.at(static_cast<size_t>(tile[1]) * tiles_x + static_cast<size_t>(tile[0]));
+                    const reference::DepthRange bound =
+                        seen.tiles.at(static_cast<size_t>(tile[1]) * tiles_x + static_cast<size_t>(tile[0]));
                     ASSERT_LE(bound.near_m, range.near_m + 1e-5);
                     ASSERT_GE(bound.far_m, range.far_m - 1e-5);
                 }
@@ -105,11 +106,11 @@ TEST_F(VisibleBlocksTest, RangesAreNoWiderThanTheBlocks) {
 
 TEST_F(VisibleBlocksTest, ArgumentsCoverTheList) {
     FusionRig rig = filled();
-    const reference::ViewVolume all{pinhole_camera({160, 120}), reference::look_at({0, 0, -5}, {0, 0, 0}), 0.1, 10};
+    const reference::ViewVolume all{pinhole_camera({160, 120}), reference::look_at({0, 0, -12}, {0, 0, 0}), 0.1, 20};
     const Seen seen = look(rig, all);
     EXPECT_EQ(seen.blocks.size(), rig.allocated().size());
-    EXPECT_EQ(seen.groups, glm::uvec3(gpu::kGroupsPerRow,
-                                      (seen.blocks.size() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow, 1));
+    EXPECT_EQ(seen.groups,
+              glm::uvec3(gpu::kGroupsPerRow, (seen.blocks.size() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow, 1));
     FusionRig empty(device(), runner());
     const Seen nothing = look(empty, all);
     EXPECT_TRUE(nothing.blocks.empty());

@@ -52,7 +52,8 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     Voxel updated = voxel;
     updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
     updated.weight = std::min(voxel.weight + weight, fusion.max_weight);
-    if (seen.color && std::abs(distance_m) <= fusion.color_band_m) integrate_color(updated, center_m, *seen.color, fusion);
+    if (seen.color && std::abs(distance_m) <= fusion.color_band_m)
+        integrate_color(updated, center_m, *seen.color, fusion);
     return updated;
 }
 

@@ -54,9 +54,12 @@ Image<Slope> measure_slope(const Image<float>& depth_m, const Intrinsics& camera
 
 Slope rounded(const Slope& slope) {
     constexpr double kLargest = 0.064;
-    const auto round_to = [](double value, double largest) { return std::round(value / largest * 1023) / 1023 * largest; };
+    const auto round_to = [](double value, double largest) {
+        return std::round(value / largest * 1023) / 1023 * largest;
+    };
     const auto per_px = [&](double value) { return round_to(std::clamp(value, -kLargest, kLargest), kLargest); };
-    return {{per_px(slope.depth_per_px.x), per_px(slope.depth_per_px.y)}, round_to(std::min(slope.plane_factor, 1.0), 1)};
+    return {{per_px(slope.depth_per_px.x), per_px(slope.depth_per_px.y)},
+            round_to(std::min(slope.plane_factor, 1.0), 1)};
 }
 
 }  // namespace patina::reference

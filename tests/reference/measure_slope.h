@@ -6,7 +6,7 @@ namespace patina::reference {
 
 struct Slope {
     glm::dvec2 depth_per_px{0};  ///< metres
-    double plane_factor = 0;     ///< distance from the tangent plane per difference of depths; 0 where there is no plane
+    double plane_factor = 0;  ///< distance from the tangent plane per difference of depths; 0 where there is no plane
 };
 
 /// Two depths belong to different surfaces when they differ by more than floor_m + relative * depth.
