@@ -1,5 +1,7 @@
 #include "passes/fusion/raycast.h"
 
+#include <algorithm>
+
 #include "shared/raycast.h"
 #include "spirv/shaders.h"
 
@@ -7,7 +9,8 @@ namespace patina {
 
 MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const VoxelMap& map) {
     const uint64_t chunk_voxels = (uint64_t{1} << map.grid().chunk_shift) * gpu::kBlockVoxels;
-    return caps.software() && chunk_voxels <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage;
+    const uint64_t largest = std::max<uint64_t>(chunk_voxels, map.table_slots());
+    return caps.software() && largest <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage;
 }
 
 RaycastImages add_raycast(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
