@@ -18,7 +18,7 @@ RaycastImages add_raycast(graph::Frame& frame, const VoxelMap& map, const VoxelM
     auto pass = frame.compute("fusion.raycast", access == MapAccess::kTexel ? spirv::raycast_texel : spirv::raycast);
     pass.read("View", visible.view).read("Tiles", visible.tiles);
     pass.read("Keys", ids.keys).read("Blocks", ids.blocks).read("Tsdf", ids.tsdf);
-    pass.specialise("kTsdfChunks", map.tsdf_chunks());
+    pass.specialise("kVoxelChunks", map.chunks());
     RaycastImages out;
     out.position_m = pass.create("position_m", {visible.extent, vulkan::Format::kRgba32f});
     out.normal = pass.create("normal", {visible.extent, vulkan::Format::kRgba16f});

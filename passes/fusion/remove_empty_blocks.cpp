@@ -10,7 +10,7 @@ void add_remove_empty_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapI
                              graph::BufferId params) {
     auto remove = frame.compute("fusion.remove_empty_blocks", spirv::remove_empty_blocks);
     remove.read("Visible", visible.list).read("Fusion", params).read("Tsdf", ids.tsdf);
-    remove.specialise("kTsdfChunks", map.tsdf_chunks());
+    remove.specialise("kVoxelChunks", map.chunks());
     ids.block_keys = remove.modify("BlockKeys", ids.block_keys);
     ids.free_list = remove.modify("FreeList", ids.free_list);
     ids.counters = remove.modify("Counters", ids.counters);

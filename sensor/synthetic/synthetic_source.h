@@ -13,7 +13,7 @@ namespace patina::sensor {
 /// that must be the thread that runs other frames on this device.
 class SyntheticSource : public Source {
   public:
-    /// The device must outlive the source. Throws Error when the scene cannot be traced (see upload_scene).
+    /// The device must outlive the source. A scene that cannot be traced (see upload_scene) makes next() throw.
     SyntheticSource(vulkan::Device& device, Scene scene, uint32_t frames, Shadows shadows = Shadows::kNone);
 
     const SequenceInfo& info() const override { return info_; }

@@ -104,7 +104,8 @@ TracedImages add_trace_scene(graph::Frame& frame, const SceneBuffers& scene, con
     pass.specialise("kShadows", shadows == Shadows::kHard ? 1 : 0);
     pass.push(gpu::TraceSceneParams{to_gpu(camera, world_from_camera), scene.rectangle_count, scene.box_count,
                                     scene.sphere_count, scene.light_count});
-    pass.dispatch_covering(camera.extent);
+    const uint32_t bundles = (camera.extent.height + gpu::kTraceSceneRays - 1) / gpu::kTraceSceneRays;
+    pass.dispatch_covering(Extent2D{camera.extent.width, bundles});
     return out;
 }
 

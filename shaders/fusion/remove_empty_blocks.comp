@@ -10,7 +10,7 @@ layout(local_size_x = kRemoveGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };
 layout(std140, binding = 1) uniform Fusion { FusionParams fusion; };
 layout(std430, binding = 2) readonly buffer Tsdf { uvec4 quads[]; }
-tsdf[kMaxTsdfChunks];
+tsdf[kMaxVoxelChunks];
 layout(std430, binding = 3) buffer BlockKeys { uint block_keys[]; };
 layout(std430, binding = 4) writeonly buffer FreeList { uint free_list[]; };
 layout(std430, binding = 5) buffer Counters { MapCounters counters; };
@@ -25,10 +25,10 @@ void main() {
     if (lane == 0u) holds_surface = 0u;
     barrier();
 
-    const uint quad = index_in_tsdf_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
+    const uint quad = index_in_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
     uvec4 voxels;
-    WITH_TSDF_CHUNK(fusion.grid, block, LOAD_TSDF)
+    WITH_CHUNK(fusion.grid, block, LOAD_TSDF)
     const float limit = kSurfaceTruncation * fusion.truncation_m / (kSdfRangeVox * fusion.grid.voxel_m);
     bool near = false;
     for (int i = 0; i < 4; ++i) near = near || (voxel_weight(voxels[i]) > 0u && abs(voxel_sdf(voxels[i])) < limit);

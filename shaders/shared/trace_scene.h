@@ -4,6 +4,8 @@
 #include "shared/camera.h"
 INTEROP_BEGIN
 
+INTEROP_CONST uint kTraceSceneRays = 4u;  // pixels of one column that an invocation traces
+
 struct TraceObject {
     mat4 object_from_world;  // rigid, metres
     vec4 half_size_m;        // xyz: a box's half edges; xy: those of a rectangle at z = 0; x: a sphere's radius

@@ -132,9 +132,9 @@ MapContent FusionRig::content() {
     const VoxelMapIds ids = map_.import(frame);
     auto gather = frame.compute("test.gather_blocks", spirv::test_gather_blocks);
     gather.read("Tsdf", ids.tsdf).read("Color", ids.color);
-    gather.specialise("kTsdfChunks", map_.tsdf_chunks()).specialise("kColorChunks", map_.color_chunks());
+    gather.specialise("kVoxelChunks", map_.chunks());
     const auto tsdf_id = gather.create("GatheredTsdf", count * gpu::kBlockVoxels * sizeof(uint32_t));
-    const auto color_id = gather.create("GatheredColor", count * gpu::kBlockVoxels * sizeof(glm::uvec2));
+    const auto color_id = gather.create("GatheredColor", count * gpu::kBlockVoxels * sizeof(uint32_t));
     gather.push(gpu::TestMapParams{map_.grid(), count, 0, 0, 0});
     gather.dispatch(gpu::kGroupsPerRow, (count + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
     const graph::Readback tsdf_read = frame.read_back(tsdf_id), color_read = frame.read_back(color_id);
@@ -142,7 +142,7 @@ MapContent FusionRig::content() {
     runner_.wait();
 
     const auto tsdf = tsdf_read.as<uint32_t>();
-    const auto color = color_read.as<glm::uvec2>();
+    const auto color = color_read.as<uint32_t>();
     MapContent content;
     for (uint32_t block = 0; block < count; ++block) {
         if (keys[block] == gpu::kEmptyKey) continue;
@@ -159,11 +159,12 @@ reference::Volume FusionRig::volume() {
     for (const auto& [coordinates, block] : content()) {
         std::vector<reference::Voxel>& voxels = volume.blocks[coordinates];
         for (size_t i = 0; i < gpu::kBlockVoxels; ++i) {
-            const glm::uvec2 color = block.color[i];
-            const glm::dvec3 root = glm::dvec3(color.x & 0xffff, color.x >> 16, color.y & 0xffff) / 65535.0;
+            const uint32_t color = block.color[i];
+            const glm::dvec3 root =
+                glm::dvec3(color % 2048, color / 2048 % 2048, color >> 22) / glm::dvec3(2047, 2047, 1023);
             voxels.push_back({static_cast<int16_t>(block.tsdf[i] & 0xffff) / 32767.0 * range_m,
                               static_cast<double>(block.tsdf[i] >> 16), root * root * double{gpu::kColorRange},
-                              static_cast<double>(color.y >> 16)});
+                              color != 0});
         }
     }
     return volume;

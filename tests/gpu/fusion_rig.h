@@ -31,7 +31,7 @@ struct TableContent {
 /// A block's voxels as stored.
 struct BlockContent {
     std::vector<uint32_t> tsdf;
-    std::vector<glm::uvec2> color;
+    std::vector<uint32_t> color;
 
     bool operator==(const BlockContent&) const = default;
 };

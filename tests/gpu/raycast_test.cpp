@@ -157,10 +157,10 @@ TEST_F(RaycastTest, TwoMapsOfTheSameFramesGiveTheSameBytes) {
 }
 
 TEST_F(RaycastTest, ChunksDoNotShow) {
-    FusionRig single = fused_ball(device(), runner(), {0.008f, 512});
-    // Chunks of 64 blocks of colour and 128 of distances.
-    FusionRig split = fused_ball(device(), runner(), {0.008f, 512, 64 * 4096});
-    ASSERT_EQ(split.map().tsdf_chunks(), 4u);
+    FusionRig single = fused_ball(device(), runner(), {0.008f, 640});
+    // Chunks of 128 blocks.
+    FusionRig split = fused_ball(device(), runner(), {0.008f, 640, 128 * 2048});
+    ASSERT_EQ(split.map().chunks(), gpu::kMaxVoxelChunks);
     ASSERT_GT(split.counters().high_water, 3u * 128);
     ASSERT_EQ(split.counters().refused_blocks, 0u);
     const FusionRig::View view = single.raycast(kCamera, kLook);

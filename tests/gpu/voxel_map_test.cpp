@@ -228,9 +228,9 @@ TEST_F(VoxelMapTest, CapacitiesOutOfRangeAreErrors) {
         ::testing::ThrowsMessage<Error>(::testing::HasSubstr("the voxel pool's capacity is 0 blocks")));
     EXPECT_THAT(
         [&] {
-            VoxelMap(device(), {0.005f, 129, 16 * 4096});
+            VoxelMap(device(), {0.005f, 81, 16 * 2048});
         },
-        ::testing::ThrowsMessage<Error>(::testing::HasSubstr("is 129 blocks, it must be 1 to 128")));
+        ::testing::ThrowsMessage<Error>(::testing::HasSubstr("is 81 blocks, it must be 1 to 80")));
     EXPECT_THAT(
         [&] {
             VoxelMap(device(), {0.0f, 128});

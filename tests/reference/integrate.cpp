@@ -30,8 +30,10 @@ void integrate_color(Voxel& voxel, glm::dvec3 center_m, const Observation::Color
     if (!at) return;
     const glm::dvec4 seen(color.linear.at(at->x, at->y));
     if (seen.a == 0) return;
-    voxel.color = (voxel.color * voxel.color_weight + glm::dvec3(seen)) / (voxel.color_weight + 1);
-    voxel.color_weight = std::min(voxel.color_weight + 1, fusion.max_color_weight);
+    const double weight = std::min(voxel.weight, fusion.max_color_weight);
+    const double share = voxel.colored ? std::min(fusion.frontal_weight / weight, 1.0) : 1;
+    voxel.color += (glm::dvec3(seen) - voxel.color) * share;
+    voxel.colored = true;
 }
 
 }  // namespace
@@ -47,7 +49,7 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     if (in_front_m < -truncation) return voxel;
 
     const double distance_m = std::min(in_front_m * slope.plane_factor, truncation);
-    const double trust = in_front_m >= 0 ? 1 : 1 + in_front_m / truncation;
+    const double trust = std::clamp(1 + in_front_m / fusion.truncation_m, 0.0, 1.0);
     const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * trust * trust), 1.0);
     Voxel updated = voxel;
     updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);

@@ -13,9 +13,12 @@ std::map<std::array<int, 2>, DepthRange> seen_tiles(const ViewVolume& view, int 
         const glm::dvec3 offset = glm::dvec3(i % 9, i / 9 % 9, i / 81) / 8.0 * edge_m;
         const glm::dvec3 point(camera_from_world * glm::dvec4(low_m + offset, 1));
         if (point.z < view.near_m || point.z > view.far_m) continue;
-        const glm::dvec2 pixel = glm::floor(project(view.camera, point) + 0.5);
+        const glm::dvec2 px = project(view.camera, point), pixel = glm::floor(px + 0.5);
         if (!view.camera.extent.contains(static_cast<int>(pixel.x), static_cast<int>(pixel.y))) continue;
-        const std::array<int, 2> tile{static_cast<int>(pixel.x) / tile_px, static_cast<int>(pixel.y) / tile_px};
+        // Rays run through the pixels' centres: what lies between the last of one tile and the first of the next is
+        // on no ray, and counts as the former's.
+        const glm::ivec2 before(glm::max(px, 0.0));
+        const std::array<int, 2> tile{before.x / tile_px, before.y / tile_px};
         DepthRange& range = tiles.try_emplace(tile, DepthRange{point.z, point.z}).first->second;
         range = {std::min(range.near_m, point.z), std::max(range.far_m, point.z)};
     }

@@ -16,7 +16,7 @@ struct Voxel {
     double sdf_m = 0;
     double weight = 0;  ///< 0: never seen
     glm::dvec3 color{0};
-    double color_weight = 0;
+    bool colored = false;
 };
 
 /// A sparse volume in plain memory: blocks of 512 voxels, x fastest, then y, then z.

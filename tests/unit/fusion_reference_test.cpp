@@ -22,7 +22,7 @@ Volume sampled(const DistanceField& field, double voxel_m, int half_blocks) {
         for (int y = -half_blocks; y < half_blocks; ++y) {
             for (int x = -half_blocks; x < half_blocks; ++x) {
                 std::vector<Voxel>& voxels = volume.blocks[{x, y, z}];
-                for (int i = 0; i < 512; ++i) voxels.push_back({field(volume.center_m({x, y, z}, i)), 1, {}, 0});
+                for (int i = 0; i < 512; ++i) voxels.push_back({field(volume.center_m({x, y, z}, i)), 1, {}, false});
             }
         }
     }
@@ -77,7 +77,7 @@ TEST(FusionReference, SlopesOfAPlaneAreThePlanes) {
 TEST(FusionReference, AFrontalPlaneIsIntegratedByTheBook) {
     Observation seen{kCamera, RigidTransform(1.0), Image<float>({64, 48}, 1.0f), {}, {}};
     seen.slope = measure_slope(seen.depth_m, kCamera);
-    const Fusion fusion{0.02, 0, 4, 16, 40, 0.01, 2};
+    const Fusion fusion{0.02, 0, 4, 16, 40, 0.01, 32};
     const auto sdf_at = [&](double z) { return integrate({}, {0, 0, z}, seen, fusion); };
     EXPECT_NEAR(sdf_at(0.99).sdf_m, 0.01, 1e-12);
     EXPECT_EQ(sdf_at(0.99).weight, 16);
@@ -87,16 +87,15 @@ TEST(FusionReference, AFrontalPlaneIsIntegratedByTheBook) {
     EXPECT_EQ(sdf_at(1.021).weight, 0);
     EXPECT_EQ(integrate({}, {0.6, 0, 1}, seen, fusion).weight, 0);  // beside the image
 
-    const Voxel before{0.02, 32, {}, 0};
+    const Voxel before{0.02, 32, {}, false};
     const Voxel after = integrate(before, {0, 0, 0.995}, seen, fusion);
     EXPECT_NEAR(after.sdf_m, (0.02 * 32 + 0.005 * 16) / 48, 1e-12);
     EXPECT_EQ(after.weight, 40);
 
     seen.color = {kCamera, RigidTransform(1.0), Image<glm::vec4>({64, 48}, glm::vec4(0.5f, 0.25f, 1, 1))};
-    const Voxel colored = integrate({0, 16, glm::dvec3(1), 1}, {0, 0, 1.005}, seen, fusion);
-    EXPECT_EQ(colored.color, glm::dvec3(0.75, 0.625, 1));
-    EXPECT_EQ(colored.color_weight, 2);
-    EXPECT_EQ(integrate({}, {0, 0, 0.98}, seen, fusion).color_weight, 0);  // outside the colour's band
+    const Voxel colored = integrate({0, 16, glm::dvec3(1), true}, {0, 0, 0.995}, seen, fusion);
+    EXPECT_EQ(colored.color, glm::dvec3(0.75, 0.625, 1));                 // 16 of 32
+    EXPECT_EQ(integrate({}, {0, 0, 0.98}, seen, fusion).colored, false);  // outside the colour's band
 }
 
 TEST(FusionReference, RaysMeetASampledSphereWhereItIs) {

@@ -1,0 +1,125 @@
+#include "passes/reconstruction.h"
+
+#include <cmath>
+
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/error.h"
+#include "passes/fusion/integrate.h"
+#include "passes/fusion/measure_slope.h"
+#include "passes/fusion/remove_empty_blocks.h"
+#include "passes/fusion/shade_color.h"
+#include "passes/fusion/visible_blocks.h"
+#include "passes/model/camera.h"
+#include "passes/surface/extract_surface.h"
+
+namespace patina {
+
+namespace {
+
+/// Four half floats per pixel to four floats.
+Image<glm::vec4> widened(const graph::Readback& read) {
+    const Image<uint64_t> halves = read.image<uint64_t>();
+    Image<glm::vec4> wide(halves.extent());
+    for (size_t i = 0; i < halves.pixels().size(); ++i) wide.pixels()[i] = glm::unpackHalf4x16(halves.pixels()[i]);
+    return wide;
+}
+
+template <class Pixels>
+void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera) {
+    const size_t count = std::visit([](const auto& span) { return span.size(); }, pixels);
+    if (count != camera.extent.area()) {
+        throw Error("the ", what, " picture has ", count, " pixels, its camera ", camera.extent);
+    }
+}
+
+}  // namespace
+
+ModelView PendingView::get() const { return {position_m_.image<glm::vec4>(), widened(normal_), widened(color_)}; }
+
+Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings)
+    : device_(device),
+      settings_(settings),
+      runner_(device),
+      map_(device, settings.map),
+      access_(preferred_map_access(device.caps(), map_)) {}
+
+void Reconstruction::check(const RgbdFrame& frame) const {
+    check_size("depth", frame.depth.pixels, frame.depth.camera);
+    check_size("colour", frame.color.pixels, frame.color.camera);
+    // Readers orthonormalise poses; what is left is rounding.
+    const double defect = rotation_defect(frame.world_from_depth);
+    if (!(defect < 1e-3)) throw Error("the pose of frame ", frames_, " is not rigid: its rotation is off by ", defect);
+}
+
+VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame) {
+    const gpu::Camera depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
+    const gpu::Camera color_camera =
+        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
+    const InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
+    const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
+
+    const FusionSettings& fusion = settings_.fusion;
+    const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
+    const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
+    add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
+    const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
+    const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
+    add_integrate(graph, map_, ids, visible, params, input.depth_m, slope, input.color);
+    if (settings_.view_every_frame) {
+        const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
+        graph.keep(model.position_m);
+        graph.keep(model.normal);
+    }
+    if (settings_.remove_every > 0 && frames_ % settings_.remove_every == settings_.remove_every - 1) {
+        add_remove_empty_blocks(graph, map_, ids, visible, params);
+    }
+    return visible;
+}
+
+void Reconstruction::add(const RgbdFrame& frame) {
+    check(frame);
+    if (frames_ == 0) {
+        graph::Frame graph = runner_.begin();
+        map_.reset(graph, glm::dvec3(frame.world_from_depth[3]));
+        runner_.submit(std::move(graph));
+    }
+    graph::Frame graph = runner_.begin();
+    VoxelMapIds ids = map_.import(graph);
+    fuse(graph, ids, frame);
+    VoxelMap::keep(graph, ids);
+    pending_counters_.push_back(graph.read_back(ids.counters));
+    runner_.submit(std::move(graph));
+    ++frames_;
+    counters();
+}
+
+PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    graph::Frame graph = runner_.begin();
+    const VoxelMapIds ids = map_.import(graph);
+    const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_camera),
+                                                     settings_.near_m, 2 * settings_.fusion.max_depth_m);
+    const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
+    const graph::ImageId color = add_shade_color(graph, map_, ids, model.position_m);
+    PendingView pending;
+    pending.position_m_ = graph.read_back(model.position_m);
+    pending.normal_ = graph.read_back(model.normal);
+    pending.color_ = graph.read_back(color);
+    runner_.submit(std::move(graph));
+    return pending;
+}
+
+Mesh Reconstruction::extract_surface() {
+    if (frames_ == 0) return {};
+    return patina::extract_surface(runner_, map_);
+}
+
+const gpu::MapCounters& Reconstruction::counters() {
+    while (!pending_counters_.empty() && pending_counters_.front().ready()) {
+        counters_ = pending_counters_.front().as<gpu::MapCounters>().front();
+        pending_counters_.pop_front();
+    }
+    return counters_;
+}
+
+}  // namespace patina

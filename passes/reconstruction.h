@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/graph/runner.h"
+#include "passes/fusion/allocate_blocks.h"
+#include "passes/fusion/raycast.h"
+#include "passes/input/input.h"
+#include "passes/model/voxel_map.h"
+#include "passes/surface/mesh.h"
+
+namespace patina {
+
+/// All settings of a reconstruction; plain values, echoed whole in run.json.
+struct ReconstructionSettings {
+    VoxelMapSettings map;
+    FusionSettings fusion;
+    InputSettings input;
+    float near_m = 0.1f;            ///< nothing nearer to a camera is cast
+    uint32_t remove_every = 16;     ///< blocks without surface are removed every so many frames; 0 keeps them
+    bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
+};
+
+/// One RGB-D frame with its pose. The pixels are read within add().
+struct RgbdFrame {
+    DepthInput depth;
+    ColorInput color;
+    RigidTransform color_from_depth{1.0};
+    RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
+};
+
+/// What a camera sees of the model; all pictures have its extent.
+struct ModelView {
+    Image<glm::vec4> position_m;  ///< world; w: depth along the optical axis, 0 where nothing was hit
+    Image<glm::vec4> normal;      ///< world, unit length; 0 where nothing was hit
+    Image<glm::vec4> color;       ///< linear; a = 0 where there is none
+};
+
+/// A view on its way from the device.
+class PendingView {
+  public:
+    bool ready() const { return color_.ready(); }
+    /// Throws Error before it is ready.
+    ModelView get() const;
+
+  private:
+    friend class Reconstruction;
+    graph::Readback position_m_, normal_, color_;
+};
+
+/// Fuses RGB-D frames into a volume and extracts its surface. Frames are submitted without waiting for the device, two
+/// in flight. One device, one thread.
+class Reconstruction {
+  public:
+    /// Throws Error for settings that cannot be met, or lack of memory.
+    Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings);
+
+    /// Fuses a frame. The first one places the volume around its camera. Throws Error when a picture is not its
+    /// camera's size, or the device was lost.
+    void add(const RgbdFrame& frame);
+
+    /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
+    PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
+
+    /// Waits for the device.
+    void wait() { runner_.wait(); }
+
+    /// Extracts the surface from what was fused so far; waits.
+    Mesh extract_surface();
+
+    /// The map's counters as of at most two frames ago; exact after wait().
+    const gpu::MapCounters& counters();
+
+    uint32_t frames() const { return frames_; }
+    const ReconstructionSettings& settings() const { return settings_; }
+    const VoxelMap& map() const { return map_; }
+    graph::Runner& runner() { return runner_; }
+
+  private:
+    VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
+    void check(const RgbdFrame& frame) const;
+
+    vulkan::Device& device_;
+    ReconstructionSettings settings_;
+    graph::Runner runner_;
+    VoxelMap map_;
+    MapAccess access_;
+    uint32_t frames_ = 0;
+    std::deque<graph::Readback> pending_counters_;
+    gpu::MapCounters counters_{};
+};
+
+}  // namespace patina

@@ -1,0 +1,31 @@
+#include <cstdlib>
+
+#include "tools/commands/commands.h"
+
+namespace patina::tools {
+
+namespace {
+
+std::filesystem::path cache_folder() {
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return std::filesystem::path(cache) / "patina";
+    if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "patina";
+    return {};
+}
+
+}  // namespace
+
+void DeviceArguments::add_to(CLI::App& command) {
+    command.add_option("--device", selector, "Index, part of the name, or type (discrete, integrated, virtual, cpu) of the device")
+        ->envname("PATINA_DEVICE");
+    command.add_flag("--validation", validation, "Check every Vulkan call (slow); a message ends the command with an error");
+}
+
+vulkan::DeviceOptions DeviceArguments::options() const {
+    vulkan::DeviceOptions options;
+    options.selector = selector;
+    options.validation = validation;
+    options.pipeline_cache_folder = cache_folder();
+    return options;
+}
+
+}  // namespace patina::tools

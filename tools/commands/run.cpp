@@ -1,0 +1,40 @@
+#include "tools/run.h"
+
+#include <memory>
+
+#include "tools/commands/commands.h"
+#include "tools/run_settings.h"
+
+namespace patina::tools {
+
+void add_run(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
+    struct Arguments {
+        RunOptions run;
+        DeviceArguments device;
+        std::string settings_file;
+        std::vector<std::string> assignments;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    RunOptions& run_options = arguments->run;
+    command->add_option("sequence", run_options.sequence, "Folder of a sequence, or synthetic:SCENE")->required();
+    command->add_option("--out", run_options.out, "Folder for the results")->required();
+    command->add_option("--format", run_options.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
+    command->add_option("--frames", run_options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
+    command->add_option("--dump-every", run_options.dump_every, "Write frames/NNNNNN.exr of every so many frames");
+    command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")->capture_default_str();
+    command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
+    command->add_option("--dump-graph", run_options.dump_graph, "Write PATH.dot and PATH.json of the last fused frame");
+    command->add_option("--settings", arguments->settings_file, "TOML file with settings");
+    command->add_option("--set", arguments->assignments, "One setting as KEY=VALUE, such as fusion.max_depth_m=3; may be repeated")
+        ->take_all();
+    arguments->device.add_to(*command);
+    command->callback([arguments] {
+        if (!arguments->settings_file.empty()) load_settings(arguments->run.settings, arguments->settings_file);
+        for (const std::string& assignment : arguments->assignments) apply_setting(arguments->run.settings, assignment);
+        arguments->run.device = arguments->device.options();
+        run(arguments->run);
+    });
+}
+
+}  // namespace patina::tools

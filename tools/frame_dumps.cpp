@@ -1,0 +1,72 @@
+#include "tools/frame_dumps.h"
+
+#include <fmt/format.h>
+
+#include "tools/export/previews.h"
+#include "tools/export/write_exr.h"
+
+namespace patina::tools {
+
+namespace {
+
+constexpr uint32_t kPreviews = 4;
+
+/// The model as a dump's planes: colour and depth of the camera that looks.
+FrameDump to_dump(const ModelView& view) {
+    const Extent2D extent = view.position_m.extent();
+    FrameDump dump{Image<glm::vec3>(extent), Image<float>(extent), Image<glm::vec3>(extent), Image<float>(extent)};
+    for (size_t i = 0; i < extent.area(); ++i) {
+        dump.depth_m.pixels()[i] = view.position_m.pixels()[i].w;
+        dump.valid.pixels()[i] = view.position_m.pixels()[i].w > 0 ? 1.0f : 0.0f;
+        dump.normal.pixels()[i] = glm::vec3(view.normal.pixels()[i]);
+        dump.rgb.pixels()[i] = glm::vec3(view.color.pixels()[i]);
+    }
+    return dump;
+}
+
+}  // namespace
+
+FrameDumps::FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every) : folder_(folder), dump_every_(dump_every) {
+    // At the end of each quarter, when the model holds what the camera has seen so far.
+    for (uint32_t i = 1; i <= kPreviews; ++i) {
+        const uint32_t at = static_cast<uint32_t>(uint64_t{frames} * i / kPreviews);
+        preview_at_.push_back(at > 0 ? at - 1 : 0);
+    }
+}
+
+void FrameDumps::after(Reconstruction& reconstruction, const sensor::SequenceInfo& info, const sensor::Frame& frame) {
+    const bool dump = dump_every_ > 0 && frame.index % dump_every_ == 0;
+    bool preview = false;
+    while (!preview_at_.empty() && preview_at_.front() <= frame.index) {
+        preview = true;
+        preview_at_.pop_front();
+    }
+    if (dump || preview) {
+        const RigidTransform world_from_color = *frame.world_from_camera * rigid_inverse(info.color_from_depth);
+        owed_.push_back({frame.index, reconstruction.view(info.color, world_from_color), dump,
+                         preview ? std::optional(frame.color) : std::nullopt});
+    }
+    for (; !owed_.empty() && owed_.front().view.ready(); owed_.pop_front()) write(owed_.front());
+}
+
+void FrameDumps::finish() {
+    for (; !owed_.empty(); owed_.pop_front()) write(owed_.front());
+}
+
+void FrameDumps::write(const Owed& owed) {
+    const FrameDump dump = to_dump(owed.view.get());
+    if (owed.dump) {
+        const std::string name = fmt::format("frames/{:06}.exr", owed.index);
+        write_exr(folder_.stage(name), channels_of(dump));
+        folder_.publish(name);
+    }
+    if (owed.preview_input) {
+        PreviewOptions options;
+        options.title = fmt::format("frame {}", owed.index);
+        std::string png = preview_png(*owed.preview_input, dump, options);
+        folder_.write(fmt::format("previews/{:06}.png", owed.index), png);
+        previews_.push_back({options.title, std::move(png)});
+    }
+}
+
+}  // namespace patina::tools

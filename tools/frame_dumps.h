@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "passes/reconstruction.h"
+#include "sensor/frame.h"
+#include "tools/export/output_folder.h"
+#include "tools/export/report.h"
+
+namespace patina::tools {
+
+/// Renders the model at some frames' colour cameras while a run goes on, and writes what arrives: frames/NNNNNN.exr and
+/// previews/NNNNNN.png.
+class FrameDumps {
+  public:
+    /// `dump_every`: EXR of every so many frames of the sequence, 0 for none. A few previews are spread over the `frames` frames.
+    FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every);
+
+    /// To be called after each fused frame: asks for what this frame owes, and writes what has arrived.
+    void after(Reconstruction& reconstruction, const sensor::SequenceInfo& info, const sensor::Frame& frame);
+
+    /// Writes the rest; the device must have finished.
+    void finish();
+
+    /// The previews written so far, in order.
+    const std::vector<ReportPicture>& previews() const { return previews_; }
+
+  private:
+    struct Owed {
+        uint32_t index;
+        PendingView view;
+        bool dump;
+        std::optional<sensor::ColorImage> preview_input;
+    };
+    void write(const Owed& owed);
+
+    OutputFolder& folder_;
+    uint32_t dump_every_;
+    std::deque<uint32_t> preview_at_;  ///< frame indices from which on the next preview is due
+    std::deque<Owed> owed_;
+    std::vector<ReportPicture> previews_;
+};
+
+}  // namespace patina::tools

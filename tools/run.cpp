@@ -1,0 +1,262 @@
+#include "tools/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <optional>
+
+#include "engine/graph/plan/plan.h"
+#include "sensor/ledger.h"
+#include "sensor/open.h"
+#include "sensor/prefetch.h"
+#include "sensor/synthetic/synthetic_source.h"
+#include "tools/export/report.h"
+#include "tools/export/run_record.h"
+#include "tools/export/trajectory.h"
+#include "tools/export/write_glb.h"
+#include "tools/frame_dumps.h"
+#include "tools/interrupt.h"
+#include "tools/progress.h"
+#include "tools/run_settings.h"
+#include "tools/version.h"
+
+namespace patina::tools {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view kSynthetic = "synthetic:";
+constexpr uint32_t kSyntheticFrames = 120;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+bool is_synthetic(const RunOptions& options) { return options.sequence.starts_with(kSynthetic); }
+
+/// A recording is opened before the device, so that a wrong path is told at once.
+std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
+    auto source = sensor::open_sequence(options.sequence, options.format);
+    if (!source->info().has_poses) {
+        throw Error("the sequence '", options.sequence,
+                    "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
+    }
+    return std::make_unique<sensor::PrefetchSource>(std::move(source));
+}
+
+std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
+    const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
+    return std::make_unique<sensor::SyntheticSource>(device, sensor::make_scene(options.sequence.substr(kSynthetic.size())), frames);
+}
+
+template <class Pixel>
+std::span<const Pixel> span_of(const Image<Pixel>& image) {
+    return {image.pixels().data(), image.pixels().size()};
+}
+
+RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame) {
+    RgbdFrame rgbd;
+    std::visit([&](const auto& image) { rgbd.depth.pixels = span_of(image); }, frame.depth);
+    std::visit([&](const auto& image) { rgbd.color.pixels = span_of(image); }, frame.color);
+    rgbd.depth.camera = info.depth;
+    rgbd.depth.metres_per_unit = info.metres_per_unit;
+    rgbd.depth.max_metres = info.max_metres;
+    rgbd.color.camera = info.color;
+    rgbd.color_from_depth = info.color_from_depth;
+    rgbd.world_from_depth = *frame.world_from_camera;
+    return rgbd;
+}
+
+PassTime summarised(const graph::Timing& timing) {
+    std::vector<float> sorted = timing.samples_ms;
+    std::sort(sorted.begin(), sorted.end());
+    return {timing.name, sorted.size(), sorted.front(), sorted[sorted.size() / 2], sorted.back()};
+}
+
+void write_text(const std::filesystem::path& path, const std::string& content) {
+    std::ofstream out(path, std::ios::binary);
+    out << content;
+    if (!out.flush()) throw Error("the file '", path.string(), "' cannot be written");
+}
+
+/// One run from source to folder.
+class Run {
+  public:
+    Run(const RunOptions& options, OutputFolder& folder, vulkan::Device& device, sensor::Source& source)
+        : options_(options),
+          folder_(folder),
+          device_(device),
+          source_(source),
+          info_(source.info()),
+          reconstruction_(device, options.settings) {
+        if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
+        dumps_.emplace(folder, info_.frames, options.dump_every);
+    }
+
+    void fuse_all() {
+        const InterruptGuard interrupt;
+        Progress progress(info_.frames, options_.quiet);
+        for (uint32_t done = 0; done < info_.frames; ++done) {
+            if (interrupt.requested()) stop_early(done);
+            const auto reading = source_.next();
+            if (!reading) break;
+            ledger_.note(*reading);
+            if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
+                progress.say("frame " + std::to_string(skipped->index) + " is skipped: " + skipped->reason);
+            } else {
+                fuse(std::get<sensor::Frame>(*reading));
+            }
+            warn_when_full(progress);
+            progress.update(done + 1, fmt::format("{} blocks", blocks_used()));
+        }
+        reconstruction_.wait();
+        dumps_->finish();
+        if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
+        if (ledger_.used() == 0) {
+            throw Error("no frame of '", options_.sequence, "' could be used; the first was skipped because: ",
+                        ledger_.skipped().front().reason);
+        }
+        times_s_.emplace_back("frames", seconds_since(start_));
+    }
+
+    void write_results() {
+        const auto start = Clock::now();
+        const Mesh mesh = reconstruction_.extract_surface();
+        times_s_.emplace_back("surface", seconds_since(start));
+        const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
+        folder_.publish("scene.glb");
+        folder_.write("trajectory.txt", trajectory_text(poses_));
+        if (!options_.dump_graph.empty()) {
+            write_text(options_.dump_graph.string() + ".dot", graph_dot_);
+            write_text(options_.dump_graph.string() + ".json", graph_json_);
+        }
+        times_s_.emplace_back("total", seconds_since(start_));
+        const RunRecord record = make_record(scene);
+        folder_.write("report.html", report_html(record, dumps_->previews()));
+        folder_.write("run.json", run_json(record));
+        if (!options_.quiet) {
+            fmt::print("{} of {} frames, {} triangles in {}\n", ledger_.used(), info_.frames, scene.triangles,
+                       folder_.path().string());
+            for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
+        }
+    }
+
+  private:
+    void fuse(const sensor::Frame& frame) {
+        if (!frame.world_from_camera) {
+            ledger_.skip(frame.index, fmt::format("frame {} has no pose", frame.index));
+            return;
+        }
+        reconstruction_.add(to_rgbd(info_, frame));
+        ledger_.use(frame.index);
+        poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+        if (!options_.dump_graph.empty()) {
+            const graph::CompiledFrame& compiled = reconstruction_.runner().last_frame();
+            graph_dot_ = graph::to_dot(compiled.description, compiled.plan);
+            graph_json_ = graph::to_json(compiled.description, compiled.plan);
+        }
+        dumps_->after(reconstruction_, info_, frame);
+        if (ledger_.used() == 1) {
+            reconstruction_.wait();
+            times_s_.emplace_back("first_fused_frame", seconds_since(start_));
+        }
+    }
+
+    [[noreturn]] void stop_early(uint32_t done) {
+        reconstruction_.wait();
+        dumps_->finish();
+        throw Interrupted("interrupted after ", done, " of ", info_.frames, " frames; '", folder_.path().string(),
+                          "' holds what was complete, and no run.json");
+    }
+
+    uint32_t blocks_used() { return options_.settings.map.capacity_blocks - reconstruction_.counters().free_blocks; }
+
+    void warn_when_full(Progress& progress) {
+        if (warned_full_ || reconstruction_.counters().refused_blocks == 0) return;
+        warned_full_ = true;
+        progress.say(fmt::format("warning: the voxel pool of {} blocks is full; new surface is left out from here on",
+                                 options_.settings.map.capacity_blocks));
+    }
+
+    RunRecord make_record(const GlbSummary& scene) {
+        RunRecord record;
+        record.version = kVersion;
+        const vulkan::DeviceCaps& caps = device_.caps();
+        record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
+        record.seed = options_.seed;
+        record.settings = settings_json(options_.settings);
+        record.settings["sequence"] = options_.sequence;
+        record.settings["frames"] = options_.frames;
+        record.settings["dump_every"] = options_.dump_every;
+        record.sequence = info_;
+        record.frames = {ledger_.read(), ledger_.used(), ledger_.skipped()};
+        const gpu::MapCounters& counters = reconstruction_.counters();
+        const uint64_t capacity = options_.settings.map.capacity_blocks;
+        record.voxel_pool = {blocks_used(), capacity, counters.refused_blocks};
+        for (const auto& pool : reconstruction_.map().memory()) {
+            record.memory.push_back({pool.name, pool.bytes, blocks_used(), capacity});
+        }
+        record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
+        record.totals = {{"vertices", scene.vertices},
+                         {"triangles", scene.triangles},
+                         {"degenerate triangles left out", scene.degenerate_triangles},
+                         {"blocks removed without surface", counters.deleted_blocks}};
+        record.warnings = warnings(counters);
+        for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
+            if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
+        }
+        record.passes.push_back(summarised(reconstruction_.runner().host_timing()));
+        record.times_s = times_s_;
+        return record;
+    }
+
+    std::vector<std::string> warnings(const gpu::MapCounters& counters) const {
+        std::vector<std::string> list;
+        if (counters.refused_blocks > 0) {
+            list.push_back(fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
+                                       "map.capacity_blocks, or map.voxel_m",
+                                       counters.refused_blocks, options_.settings.map.capacity_blocks));
+        }
+        if (counters.refused_samples > 0) {
+            list.push_back(fmt::format("the voxel table was full: {} ray samples were left out", counters.refused_samples));
+        }
+        if (counters.outside_samples > 0) {
+            list.push_back(fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",
+                                       counters.outside_samples));
+        }
+        return list;
+    }
+
+    const RunOptions& options_;
+    OutputFolder& folder_;
+    vulkan::Device& device_;
+    sensor::Source& source_;
+    sensor::SequenceInfo info_;
+    Clock::time_point start_ = Clock::now();
+    Reconstruction reconstruction_;
+    sensor::Ledger ledger_;
+    std::optional<FrameDumps> dumps_;
+    std::vector<TimedPose> poses_;
+    std::vector<std::pair<std::string, double>> times_s_;
+    std::string graph_dot_, graph_json_;
+    bool warned_full_ = false;
+};
+
+}  // namespace
+
+void run(const RunOptions& options) {
+    OutputFolder folder(options.out);
+    std::unique_ptr<sensor::Source> source;
+    if (!is_synthetic(options)) source = open_recording(options);
+    vulkan::Device device(options.device);
+    if (is_synthetic(options)) source = open_synthetic(options, device);
+    Run job(options, folder, device, *source);
+    job.fuse_all();
+    job.write_results();
+    if (const auto messages = device.validation_messages(); !messages.empty()) {
+        throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
+    }
+}
+
+}  // namespace patina::tools

@@ -1,0 +1,126 @@
+#include "tools/run_settings.h"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <type_traits>
+
+#include "engine/core/error.h"
+
+namespace patina::tools {
+
+namespace {
+
+/// The one list of settings: calls visit(key, value) for each. Keys are those of the TOML file, with their table.
+template <class Settings, class Visit>
+void for_each_setting(Settings& s, Visit&& visit) {
+    visit("map.voxel_m", s.map.voxel_m);
+    visit("map.capacity_blocks", s.map.capacity_blocks);
+    visit("fusion.truncation_m", s.fusion.truncation_m);
+    visit("fusion.truncation_slope", s.fusion.truncation_slope);
+    visit("fusion.max_depth_m", s.fusion.max_depth_m);
+    visit("fusion.max_weight", s.fusion.max_weight);
+    visit("fusion.max_color_weight", s.fusion.max_color_weight);
+    visit("fusion.allocation_stride_px", s.fusion.allocation_stride_px);
+    visit("input.sigma_px", s.input.filter.sigma_px);
+    visit("input.sigma_floor_m", s.input.filter.sigma_floor_m);
+    visit("input.sigma_linear", s.input.filter.sigma_linear);
+    visit("input.sigma_quadratic", s.input.filter.sigma_quadratic);
+    visit("view.near_m", s.near_m);
+    visit("view.every_frame", s.view_every_frame);
+    visit("map.remove_every", s.remove_every);
+}
+
+std::string known_keys() {
+    std::string keys;
+    const ReconstructionSettings defaults;
+    for_each_setting(defaults, [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
+    return keys;
+}
+
+/// Stores a number where it fits the setting's type; false where it does not.
+template <class Value>
+bool assign(Value& setting, double number) {
+    if constexpr (std::is_same_v<Value, bool>) {
+        if (number != 0 && number != 1) return false;
+    } else if constexpr (std::is_integral_v<Value>) {
+        if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number)) return false;
+    } else if (!(std::isfinite(number) && number >= 0)) {
+        return false;
+    }
+    setting = static_cast<Value>(number);
+    return true;
+}
+
+void set(ReconstructionSettings& settings, const std::string& key, std::optional<double> number, const std::string& written,
+         const std::string& where) {
+    bool known = false;
+    for_each_setting(settings, [&](const char* name, auto& setting) {
+        if (key != name) return;
+        known = true;
+        if (!number || !assign(setting, *number)) {
+            throw Error(where, ": ", key, " is ", written, ", it must be a non-negative ",
+                        std::is_floating_point_v<std::remove_reference_t<decltype(setting)>> ? "number" : "whole number");
+        }
+    });
+    if (!known) throw Error(where, ": there is no setting '", key, "'; known are ", known_keys());
+}
+
+std::optional<double> number_of(const toml::node& node) {
+    if (const auto flag = node.value_exact<bool>()) return *flag ? 1 : 0;
+    if (node.is_number()) return node.value<double>();
+    return std::nullopt;
+}
+
+}  // namespace
+
+void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file) {
+    toml::table root;
+    try {
+        root = toml::parse_file(file.string());
+    } catch (const toml::parse_error& error) {
+        throw Error(file.string(), ", line ", error.source().begin.line, ": ", error.description());
+    }
+    for (const auto& [table_name, table] : root) {
+        const std::string prefix(table_name.str());
+        if (!table.is_table()) throw Error(file.string(), ": '", prefix, "' is not a table of settings");
+        for (const auto& [name, node] : *table.as_table()) {
+            std::ostringstream written;
+            node.visit([&](const auto& value) { written << value; });
+            set(settings, prefix + '.' + std::string(name.str()), number_of(node), written.str(), file.string());
+        }
+    }
+}
+
+void apply_setting(ReconstructionSettings& settings, const std::string& assignment) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos) throw Error("--set ", assignment, " has no '=' between key and value");
+    const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+    std::istringstream in(value);
+    in.imbue(std::locale::classic());
+    double number = 0;
+    std::optional<double> parsed;
+    if (value == "true" || value == "false") {
+        parsed = value == "true";
+    } else if (in >> number && in.peek() == std::char_traits<char>::eof()) {
+        parsed = number;
+    }
+    set(settings, key, parsed, "'" + value + "'", "--set");
+}
+
+nlohmann::ordered_json settings_json(const ReconstructionSettings& settings) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for_each_setting(settings, [&](const char* key, const auto& value) {
+        // Floats as they are written: 0.005, not the double nearest to the float.
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, float>) {
+            json[key] = std::stod(text(value));
+        } else {
+            json[key] = value;
+        }
+    });
+    return json;
+}
+
+}  // namespace patina::tools
