@@ -1,5 +1,7 @@
 #include "passes/fusion/raycast.h"
 
+#include <algorithm>
+
 #include "shared/raycast.h"
 #include "spirv/shaders.h"
 

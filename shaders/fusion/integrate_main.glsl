@@ -43,7 +43,7 @@ vec2 pixel_of(Row row, int i) {
 struct Sample {
     bool valid;
     float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
-    float weight;    // kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
+    float weight;    // whole; kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
 };
 
 // The nearest reading to a point that appears at `pixel`, `z` metres before the camera.
@@ -60,7 +60,8 @@ Sample sample_depth(vec2 pixel, float z) {
     const float trust = clamp(1.0 + along_m * fusion.inverse_truncation, 0.0, 1.0);
     Sample result;
     result.signed_m = min(along_m * plane_factor, truncation);
-    result.weight = max(float(kWeightOne) * plane_factor * trust * trust, 1.0);
+    // Whole numbers add up without loss, and so in any order.
+    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * trust + 0.5), 1.0);
     result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;
     return result;
 }
@@ -70,7 +71,7 @@ uint update_voxel(uint voxel, Sample seen) {
     const float sum = weight + seen.weight;
     const float seen_sdf = seen.signed_m * fusion.inverse_sdf_range;
     const float sdf = mix(voxel_sdf(voxel), seen_sdf, seen.weight / sum);
-    return seen.valid ? pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight))) : voxel;
+    return seen.valid ? pack_voxel(sdf, uint(min(sum, fusion.max_weight))) : voxel;
 }
 
 #if PATINA_WITH_COLOR
