@@ -101,10 +101,6 @@ void print_figure(const char* name, const Distribution& d, const char* unit) {
 }
 
 void print_surface(const Measurement& m) {
-    if (m.surface_passes.empty()) {
-        fmt::print("marching cubes: no pass ran\n");
-        return;
-    }
     print_passes(m.surface_passes);
     fmt::print("{:<28} {:>9.3f} ms per million allocated voxels (wall {:.3f}; {:.2f} million voxels, {} triangles)\n",
                "marching cubes", m.surface_ms.median / m.allocated_mvoxel,
