@@ -19,6 +19,7 @@
 #include "tools/frame_dumps.h"
 #include "tools/interrupt.h"
 #include "tools/progress.h"
+#include "tools/rgbd_frame.h"
 #include "tools/run_settings.h"
 #include "tools/version.h"
 
@@ -48,24 +49,6 @@ std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
 std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
     const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
     return std::make_unique<sensor::SyntheticSource>(device, sensor::make_scene(options.sequence.substr(kSynthetic.size())), frames);
-}
-
-template <class Pixel>
-std::span<const Pixel> span_of(const Image<Pixel>& image) {
-    return {image.pixels().data(), image.pixels().size()};
-}
-
-RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame) {
-    RgbdFrame rgbd;
-    std::visit([&](const auto& image) { rgbd.depth.pixels = span_of(image); }, frame.depth);
-    std::visit([&](const auto& image) { rgbd.color.pixels = span_of(image); }, frame.color);
-    rgbd.depth.camera = info.depth;
-    rgbd.depth.metres_per_unit = info.metres_per_unit;
-    rgbd.depth.max_metres = info.max_metres;
-    rgbd.color.camera = info.color;
-    rgbd.color_from_depth = info.color_from_depth;
-    rgbd.world_from_depth = *frame.world_from_camera;
-    return rgbd;
 }
 
 PassTime summarised(const graph::Timing& timing) {

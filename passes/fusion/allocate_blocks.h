@@ -15,6 +15,7 @@ struct FusionSettings {
     float max_depth_m = 4.0f;         ///< farther readings are not fused
     uint32_t max_weight = 128;        ///< frontal samples after which a voxel's distance becomes a sliding average
     uint32_t max_color_weight = 64;
+    bool color = true;  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
 };
 
