@@ -42,7 +42,8 @@ void main() {
     if (key == kEmptyKey) return;
 
     const float block_m = view.grid.voxel_m * float(kBlockEdge);
-    const float margin_m = kBlockMarginVox * view.grid.voxel_m;
+    // A voxel's value reaches half a voxel into the next block by interpolation.
+    const float margin_m = 0.5 * view.grid.voxel_m;
     const ivec3 coordinates = block_of_key(view.grid, key);
     const vec3 corner = to_camera(view.camera, vec3(coordinates) * block_m - margin_m);
     const mat3 axes = mat3(view.camera.camera_from_world) * (block_m + 2.0 * margin_m);
@@ -63,9 +64,13 @@ void main() {
         high = max(high, pixel);
     }
     if (far < view.near_m || near > view.far_m) return;
-    if (any(lessThan(high, vec2(-0.5))) || any(greaterThan(low, vec2(view.camera.extent) - 0.5))) return;
-    append(block);
+    // The interpolation around a hit at the image's border, or its gradient, needs voxels just outside the frustum.
+    const vec2 reach_px = kGridMarginVox * view.grid.voxel_m / max(near, view.near_m) * view.camera.focal_center_px.xy;
+    const vec2 end_px = vec2(view.camera.extent) - 0.5;
+    if (any(lessThan(high, -0.5 - reach_px)) || any(greaterThan(low, end_px + reach_px))) return;
     const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates);
     if (cell != kOutsideGrid) view_grid[cell] = block;
+    if (any(lessThan(high, vec2(-0.5))) || any(greaterThan(low, end_px))) return;
+    append(block);
     widen_tiles(low, high, max(near, view.near_m), min(far, view.far_m));
 }

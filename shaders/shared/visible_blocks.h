@@ -7,7 +7,7 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kVisibleGroup = 64u;
 INTEROP_CONST uint kTileEdge = 8u;  // pixels
-INTEROP_CONST float kBlockMarginVox = 2.0f;  // by which a block counts as larger: interpolation at its border reaches out
+INTEROP_CONST float kGridMarginVox = 2.0f;  // how far outside the frustum the view grid holds blocks
 
 // Where to look, and how far; a uniform buffer shared by the passes that look from one camera.
 struct ViewParams {
