@@ -1,5 +1,5 @@
-// Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block, four
-// voxels along x per invocation (one 16-byte load and store). Curless and Levoy's running average of the distance from the
+// Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block; an
+// invocation takes four voxels along x at a time (one 16-byte load and store). Curless and Levoy's running average of the distance from the
 // plane through the reading: the projective distance d - z would depend on the viewing direction, and blur what several
 // views see.
 #include "lib/camera.glsl"
@@ -84,19 +84,12 @@ uint update_color(uint color, uint voxel, vec2 pixel, uint dither) {
 }
 #endif
 
-void main() {
-    const uint item = group_item(gl_WorkGroupID);
-    if (item >= visible[0]) return;
-    const uint block = visible[1u + item];
-    const uint key = block_keys[block];
-    const uint lane = gl_LocalInvocationIndex;
-    const ivec3 voxel = block_of_key(fusion.grid, key) * int(kBlockEdge) + ivec3((lane & 1u) * 4u, lane >> 1 & 7u, lane >> 4);
+// Four voxels along x, from `voxel` on: quad `quad` of the block's chunk.
+void integrate_quad(uint block, uint quad, ivec3 voxel, uint dither) {
     const vec3 world_m = (vec3(voxel) + 0.5) * fusion.grid.voxel_m;
-
     const Row row = row_of(fusion.depth_camera, world_m);
     Sample seen[4];
     [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
-    const uint quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u) + lane;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
 #define STORE_TSDF(C) tsdf[C].quads[quad] = voxels
     uvec4 voxels;
@@ -109,7 +102,6 @@ void main() {
     [[unroll]] for (int i = 0; i < 4; ++i) near[i] = seen[i].valid && abs(seen[i].signed_m) <= fusion.color_band_m;
     if (!any(near)) return;
     const Row color_row = row_of(fusion.color_camera, world_m);
-    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u) + lane * 4u;
 #define LOAD_COLOR(C) colors = color[C].quads[quad]
 #define STORE_COLOR(C) color[C].quads[quad] = colors
     uvec4 colors;
@@ -120,4 +112,21 @@ void main() {
     }
     WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_COLOR)
 #endif
+}
+
+void main() {
+    const uint item = group_item(gl_WorkGroupID);
+    if (item >= visible[0]) return;
+    const uint block = visible[1u + item];
+    const uint key = block_keys[block];
+    const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
+    const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
+    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u);
+    // Few invocations with several quads each: on software devices every eight invocations of a group cost as much to start
+    // as the work on a quad.
+    [[unroll]] for (uint i = 0u; i < kQuadsPerInvocation; ++i) {
+        const uint quad = i * kIntegrateGroup + gl_LocalInvocationIndex;
+        const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
+        integrate_quad(block, first_quad + quad, corner + within, dither + quad * 4u);
+    }
 }
