@@ -1,0 +1,27 @@
+#include "tools/rgbd_frame.h"
+
+namespace patina::tools {
+
+namespace {
+
+template <class Pixel>
+std::span<const Pixel> span_of(const Image<Pixel>& image) {
+    return {image.pixels().data(), image.pixels().size()};
+}
+
+}  // namespace
+
+RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame) {
+    RgbdFrame rgbd;
+    std::visit([&](const auto& image) { rgbd.depth.pixels = span_of(image); }, frame.depth);
+    std::visit([&](const auto& image) { rgbd.color.pixels = span_of(image); }, frame.color);
+    rgbd.depth.camera = info.depth;
+    rgbd.depth.metres_per_unit = info.metres_per_unit;
+    rgbd.depth.max_metres = info.max_metres;
+    rgbd.color.camera = info.color;
+    rgbd.color_from_depth = info.color_from_depth;
+    rgbd.world_from_depth = *frame.world_from_camera;
+    return rgbd;
+}
+
+}  // namespace patina::tools
