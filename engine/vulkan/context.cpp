@@ -60,6 +60,7 @@ void Context::open_device(uint32_t index) {
     vk::PhysicalDeviceVulkan13Features v13;
     v13.synchronization2 = true;
     v13.maintenance4 = true;
+    v13.robustImageAccess = true;  // shaders may load beyond an image and get zero
     vk::PhysicalDeviceVulkan12Features v12;
     v12.timelineSemaphore = true;
     v12.pNext = &v13;

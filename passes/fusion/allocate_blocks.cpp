@@ -26,11 +26,14 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.max_weight = static_cast<float>(settings.max_weight);
     // Marching cubes and ray casting interpolate colour between voxels up to a cell's diagonal off the surface.
     params.color_band_m = 1.8f * voxel_m;
-    params.max_color_weight = static_cast<float>(settings.max_color_weight);
+    params.max_color_weight = static_cast<float>(settings.max_color_weight * gpu::kWeightOne);
     params.stride_px = std::max(settings.allocation_stride_px, 1u);
     // A permutation of the stride^2 phases: neighbours in time are apart in space.
     params.phase = frame_index * 5u % (params.stride_px * params.stride_px);
     params.max_table_keys = map.table_slots() / 2;
+    params.frame_index = frame_index;
+    params.inverse_truncation = 1 / params.truncation_m;
+    params.inverse_sdf_range = 1 / (gpu::kSdfRangeVox * voxel_m);
     return params;
 }
 
@@ -54,7 +57,7 @@ void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& 
 
     auto assign = frame.compute("fusion.assign_blocks", spirv::assign_blocks);
     assign.read("Keys", ids.keys).read("NewSlots", ids.new_slots).read("FreeList", ids.free_list).push(map.grid());
-    assign.specialise("kTsdfChunks", map.tsdf_chunks()).specialise("kColorChunks", map.color_chunks());
+    assign.specialise("kVoxelChunks", map.chunks());
     ids.counters = assign.modify("Counters", ids.counters);
     ids.blocks = assign.modify("Blocks", ids.blocks);
     ids.block_keys = assign.modify("BlockKeys", ids.block_keys);

@@ -13,10 +13,10 @@ void add_integrate(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, c
         .read("Fusion", params)
         .read("depth_m", depth_m)
         .read("slope", slope);
-    pass.specialise("kTsdfChunks", map.tsdf_chunks());
+    pass.specialise("kVoxelChunks", map.chunks());
     ids.tsdf = pass.modify("Tsdf", ids.tsdf);
     if (color_linear) {
-        pass.read("color_linear", *color_linear).specialise("kColorChunks", map.color_chunks());
+        pass.read("color_linear", *color_linear);
         ids.color = pass.modify("Color", ids.color);
     }
     pass.dispatch_indirect(visible.arguments);

@@ -2,18 +2,10 @@
 
 #include "engine/graph/frame.h"
 #include "passes/fusion/visible_blocks.h"
+#include "passes/model/map_access.h"
 #include "passes/model/voxel_map.h"
 
 namespace patina {
-
-/// Through which descriptors shaders read the map.
-enum class MapAccess : uint8_t {
-    kStorage,  ///< storage buffers: every device
-    kTexel,    ///< texel buffers: 1.5 to 2 times as fast on software devices, where their size allows
-};
-
-/// The faster way on this device that its limits allow for this map.
-MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const VoxelMap& map);
 
 /// The surface as one camera sees it.
 struct RaycastImages {

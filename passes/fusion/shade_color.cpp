@@ -9,7 +9,7 @@ graph::ImageId add_shade_color(graph::Frame& frame, const VoxelMap& map, const V
     const Extent2D extent = frame.shape(position_m).extent;
     auto pass = frame.compute("fusion.shade_color", spirv::shade_color);
     pass.read("position_m", position_m).read("Keys", ids.keys).read("Blocks", ids.blocks).read("Color", ids.color);
-    pass.specialise("kColorChunks", map.color_chunks()).push(map.grid());
+    pass.specialise("kVoxelChunks", map.chunks()).push(map.grid());
     const graph::ImageId color = pass.create("color_linear", {extent, vulkan::Format::kRgba16f});
     pass.dispatch_covering(extent);
     return color;

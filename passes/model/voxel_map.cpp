@@ -10,21 +10,20 @@ namespace patina {
 
 namespace {
 
-constexpr uint32_t kTsdfBytes = gpu::kBlockVoxels * 4;   // of a block
-constexpr uint32_t kColorBytes = gpu::kBlockVoxels * 8;  // of a block
+constexpr uint32_t kBlockBytes = gpu::kBlockVoxels * 4;  // of distances, and as many of colours
 
-/// Blocks per chunk of colours, a power of two; a chunk of distances holds twice as many in the same space.
-uint32_t color_chunk_blocks(const vulkan::DeviceCaps& caps) {
+/// Blocks per chunk, a power of two.
+uint32_t blocks_per_chunk(const vulkan::DeviceCaps& caps) {
     constexpr uint64_t kLargest = uint64_t{1} << 30;  // beyond a GiB devices differ in what one allocation may hold
-    return static_cast<uint32_t>(std::bit_floor(std::min(caps.max_storage_range, kLargest)) / kColorBytes);
+    return static_cast<uint32_t>(std::bit_floor(std::min(caps.max_storage_range, kLargest)) / kBlockBytes);
 }
 
 }  // namespace
 
 VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : settings_(settings) {
     const uint32_t capacity = settings.capacity_blocks;
-    const uint32_t chunk_blocks = color_chunk_blocks(device.caps());
-    const uint32_t most_blocks = chunk_blocks * gpu::kMaxColorChunks;
+    const uint32_t chunk_blocks = blocks_per_chunk(device.caps());
+    const uint32_t most_blocks = chunk_blocks * gpu::kMaxVoxelChunks;
     if (capacity == 0 || capacity > most_blocks) {
         throw Error("the voxel pool's capacity is ", capacity, " blocks, it must be 1 to ", most_blocks,
                     " on this device");
@@ -37,7 +36,7 @@ VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : s
     grid_.voxel_m = settings.voxel_m;
     grid_.bucket_mask = table_slots_ / gpu::kBucketSlots - 1;
     grid_.capacity = capacity;
-    grid_.chunk_shift = static_cast<uint32_t>(std::countr_zero(chunk_blocks)) + 1;
+    grid_.chunk_shift = static_cast<uint32_t>(std::countr_zero(chunk_blocks));
 
     const auto buffer = [&](const char* name, uint64_t bytes) { return device.create_buffer({name, bytes}); };
     keys_ = buffer("map.keys", table_slots_ * 4u);
@@ -48,8 +47,8 @@ VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : s
     counters_ = buffer("map.counters", sizeof(gpu::MapCounters));
     assign_arguments_ = buffer("map.assign_arguments", 16);
     block_arguments_ = buffer("map.block_arguments", 16);
-    tsdf_ = {device, "map.tsdf", capacity, kTsdfBytes, chunk_blocks * 2u, gpu::kMaxTsdfChunks};
-    color_ = {device, "map.color", capacity, kColorBytes, chunk_blocks, gpu::kMaxColorChunks};
+    tsdf_ = {device, "map.tsdf", capacity, kBlockBytes, chunk_blocks, gpu::kMaxVoxelChunks};
+    color_ = {device, "map.color", capacity, kBlockBytes, chunk_blocks, gpu::kMaxVoxelChunks};
 }
 
 void VoxelMap::reset(graph::Frame& frame, glm::dvec3 center_m) {

@@ -15,7 +15,7 @@ namespace patina {
 /// Size and resolution of the volume.
 struct VoxelMapSettings {
     float voxel_m = 0.005f;
-    uint32_t capacity_blocks = 65536;  ///< of 8^3 voxels; each takes 2 KiB of distances and 4 KiB of colour when used
+    uint32_t capacity_blocks = 65536;  ///< of 8^3 voxels; each takes 2 KiB of distances and 2 KiB of colour when used
 };
 
 /// Versions of the map's resources within one frame; passes that write replace the ids.
@@ -29,7 +29,7 @@ struct VoxelMapIds {
     graph::BufferId assign_arguments;  ///< dispatch over the new slots
     graph::BufferId block_arguments;   ///< dispatch over all block ids below the high-water mark, 64 a group
     graph::BufferId tsdf;   ///< u32 per voxel, chunked: snorm16 distance in units of kSdfRangeVox voxels | u16 weight
-    graph::BufferId color;  ///< 2 u32 per voxel, chunked: 3 x u16 root-encoded linear colour | u16 weight
+    graph::BufferId color;  ///< u32 per voxel, chunked: 11 + 11 + 10 bits of root-encoded linear colour; 0 where none was seen
 };
 
 /// The sparse TSDF volume: a hash table of 32-bit block keys in buckets of four, and a pool of blocks of 8^3 voxels
@@ -51,8 +51,7 @@ class VoxelMap {
     const VoxelMapSettings& settings() const { return settings_; }
     gpu::VoxelGrid grid() const { return grid_; }
     uint32_t table_slots() const { return table_slots_; }
-    uint32_t tsdf_chunks() const { return static_cast<uint32_t>(tsdf_.chunks().size()); }
-    uint32_t color_chunks() const { return static_cast<uint32_t>(color_.chunks().size()); }
+    uint32_t chunks() const { return static_cast<uint32_t>(tsdf_.chunks().size()); }
 
     /// Device memory by pool, in bytes.
     struct PoolBytes {

@@ -13,8 +13,8 @@ layout(std430, binding = 2) readonly buffer FreeList { uint free_list[]; };
 layout(std430, binding = 3) buffer Counters { MapCounters counters; };
 layout(std430, binding = 4) buffer Blocks { uint blocks[]; };
 layout(std430, binding = 5) buffer BlockKeys { uint block_keys[]; };
-layout(std430, binding = 6) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
-layout(std430, binding = 7) buffer Color { uvec4 pairs[]; } color[kMaxColorChunks];
+layout(std430, binding = 6) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxVoxelChunks];
+layout(std430, binding = 12) buffer Color { uvec4 quads[]; } color[kMaxVoxelChunks];
 layout(push_constant) uniform Push { VoxelGrid grid; };
 
 shared uint block;
@@ -35,13 +35,11 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) claim(new_slots[item]);
     barrier();
     if (block == kNoBlock) return;
-    const uint first_quad = index_in_tsdf_chunk(grid, block) * (kBlockVoxels / 4u);
-    const uint first_pair = index_in_color_chunk(grid, block) * (kBlockVoxels / 2u);
-    const uint lane = gl_LocalInvocationIndex;
-#define CLEAR_TSDF(C) \
-    for (uint i = lane; i < kBlockVoxels / 4u; i += kAssignGroup) tsdf[C].quads[first_quad + i] = uvec4(0u)
-#define CLEAR_COLOR(C) \
-    for (uint i = lane; i < kBlockVoxels / 2u; i += kAssignGroup) color[C].pairs[first_pair + i] = uvec4(0u)
-    WITH_TSDF_CHUNK(grid, block, CLEAR_TSDF)
-    WITH_COLOR_CHUNK(grid, block, CLEAR_COLOR)
+    const uint first = index_in_chunk(grid, block) * (kBlockVoxels / 4u);
+#define CLEAR(C)                                                                                    \
+    for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels / 4u; i += kAssignGroup) {              \
+        tsdf[C].quads[first + i] = uvec4(0u);                                                       \
+        color[C].quads[first + i] = uvec4(0u);                                                      \
+    }
+    WITH_CHUNK(grid, block, CLEAR)
 }

@@ -1,6 +1,7 @@
-// Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block, four voxels along
-// x per invocation (one 16-byte load and store). Curless and Levoy's running average of the distance from the plane through the
-// reading: the projective distance d - z would depend on the viewing direction, and blur what several views see.
+// Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block, four
+// voxels along x per invocation (one 16-byte load and store). Curless and Levoy's running average of the distance from the
+// plane through the reading: the projective distance d - z would depend on the viewing direction, and blur what several
+// views see.
 #include "lib/camera.glsl"
 #include "lib/slope.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -14,11 +15,30 @@ layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform Fusion { FusionParams fusion; };
 layout(binding = 3, r32f) uniform readonly image2D depth_m;
 layout(binding = 4, r32ui) uniform readonly uimage2D slope;
-layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxTsdfChunks];
+layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxVoxelChunks];
 #if PATINA_WITH_COLOR
 layout(binding = 6, rgba16f) uniform readonly image2D color_linear;
-layout(std430, binding = 7) buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
+layout(std430, binding = 7) buffer Color { uvec4 quads[]; } color[kMaxVoxelChunks];
 #endif
+
+// Homogeneous pixel coordinates of four voxels along x: they are linear in the voxel's index.
+struct Row {
+    vec3 first;
+    vec3 step;
+};
+
+Row row_of(Camera camera, vec3 world_m) {
+    const vec4 k = camera.focal_center_px;
+    const mat3 pixel_from_camera = mat3(k.x, 0.0, 0.0, 0.0, k.y, 0.0, k.z, k.w, 1.0);
+    return Row(pixel_from_camera * to_camera(camera, world_m),
+               pixel_from_camera * (camera.camera_from_world[0].xyz * fusion.grid.voxel_m));
+}
+
+// The pixel of voxel i, far outside every image where it is not before the camera. Images read zero outside.
+vec2 pixel_of(Row row, int i) {
+    const vec3 at = row.first + float(i) * row.step;
+    return at.z > kNearestDepth ? at.xy * (1.0 / at.z) : vec2(-1e6);
+}
 
 struct Sample {
     bool valid;
@@ -26,47 +46,40 @@ struct Sample {
     float weight;    // kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
 };
 
-Sample sample_depth(vec3 point_m) {
-    const vec2 pixel = project(fusion.depth_camera, vec3(point_m.xy, max(point_m.z, 1e-3)));
+// The nearest reading to a point that appears at `pixel`, `z` metres before the camera.
+Sample sample_depth(vec2 pixel, float z) {
     const vec2 nearest = floor(pixel + 0.5);
-    const ivec2 inside = clamp(ivec2(nearest), ivec2(0), ivec2(fusion.depth_camera.extent) - 1);
-    const float reading = imageLoad(depth_m, inside).x;
-    const uint inclination = imageLoad(slope, inside).x;
+    const float reading = imageLoad(depth_m, ivec2(nearest)).x;
+    const uint inclination = imageLoad(slope, ivec2(nearest)).x;
     const float plane_factor = slope_plane_factor(inclination);
-    const float depth = reading + dot(slope_depth_per_px(inclination), pixel - nearest);
-    // Behind the surface a reading speaks for a stretch of the ray as long as the truncation band, however inclined: at a limb
-    // the ray soon leaves the object again.
-    const float along_m = depth - point_m.z;
+    // Behind the surface a reading speaks for a stretch of the ray as long as the truncation band, however inclined: at a
+    // limb the ray soon leaves the object again. And it knows less and less: beyond an edge there is free space that other
+    // views see.
+    const float along_m = reading + dot(slope_depth_per_px(inclination), pixel - nearest) - z;
     const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
+    const float trust = clamp(1.0 + along_m * fusion.inverse_truncation, 0.0, 1.0);
     Sample result;
     result.signed_m = min(along_m * plane_factor, truncation);
-    // Behind the surface a reading knows less and less: beyond an edge or a limb there is free space that other views see.
-    const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
     result.weight = max(float(kWeightOne) * plane_factor * trust * trust, 1.0);
-    result.valid = ivec2(nearest) == inside && point_m.z > 1e-3 && reading > 0.0 && reading <= fusion.max_depth_m && plane_factor > 0.0 &&
-                   along_m >= -truncation;
+    result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;
     return result;
 }
 
 uint update_voxel(uint voxel, Sample seen) {
     const float weight = float(voxel_weight(voxel));
-    const float scale = 1.0 / (kSdfRangeVox * fusion.grid.voxel_m);
     const float sum = weight + seen.weight;
-    const float sdf = (voxel_sdf(voxel) * weight + seen.signed_m * scale * seen.weight) / sum;
-    const uint updated = pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight)));
-    return seen.valid ? updated : voxel;
+    const float seen_sdf = seen.signed_m * fusion.inverse_sdf_range;
+    const float sdf = mix(voxel_sdf(voxel), seen_sdf, seen.weight / sum);
+    return seen.valid ? pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight))) : voxel;
 }
 
 #if PATINA_WITH_COLOR
-uvec2 update_color(uvec2 packed, vec3 point_m) {
-    const vec2 pixel = project(fusion.color_camera, vec3(point_m.xy, max(point_m.z, 1e-3)));
-    const ivec2 nearest = ivec2(floor(pixel + 0.5));
-    const ivec2 inside = clamp(nearest, ivec2(0), ivec2(fusion.color_camera.extent) - 1);
-    const vec4 seen = imageLoad(color_linear, inside);
-    if (nearest != inside || point_m.z <= 1e-3 || seen.a == 0.0) return packed;
-    const float weight = float(color_weight(packed));
-    const vec3 mean = (voxel_color(packed) * weight + seen.rgb) / (weight + 1.0);
-    return pack_color(mean, uint(min(weight + 1.0, fusion.max_color_weight)));
+// The mean of what a voxel's colour was and what the colour camera sees at its place, by the weight of its distance.
+uint update_color(uint color, uint voxel, vec2 pixel, uint dither) {
+    const vec4 seen = imageLoad(color_linear, ivec2(floor(pixel + 0.5)));
+    const float weight = min(float(voxel_weight(voxel)), fusion.max_color_weight);
+    const float share = color == 0u ? 1.0 : min(float(kWeightOne) / weight, 1.0);
+    return seen.a > 0.0 ? pack_color(mix(voxel_color(color), seen.rgb, share), dither) : color;
 }
 #endif
 
@@ -74,39 +87,36 @@ void main() {
     const uint item = group_item(gl_WorkGroupID);
     if (item >= visible[0]) return;
     const uint block = visible[1u + item];
+    const uint key = block_keys[block];
     const uint lane = gl_LocalInvocationIndex;
-    const ivec3 corner = block_of_key(fusion.grid, block_keys[block]) * int(kBlockEdge) +
-                         ivec3((lane & 1u) * 4u, lane >> 1 & 7u, lane >> 4);
-    const vec3 world = (vec3(corner) + 0.5) * fusion.grid.voxel_m;
-    const vec3 point = to_camera(fusion.depth_camera, world);
-    const vec3 step_m = fusion.depth_camera.camera_from_world[0].xyz * fusion.grid.voxel_m;
-    const uint quad = index_in_tsdf_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
+    const ivec3 voxel = block_of_key(fusion.grid, key) * int(kBlockEdge) + ivec3((lane & 1u) * 4u, lane >> 1 & 7u, lane >> 4);
+    const vec3 world_m = (vec3(voxel) + 0.5) * fusion.grid.voxel_m;
 
+    const Row row = row_of(fusion.depth_camera, world_m);
     Sample seen[4];
-    [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(point + float(i) * step_m);
+    [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
+    const uint quad = index_in_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
 #define STORE_TSDF(C) tsdf[C].quads[quad] = voxels
     uvec4 voxels;
-    WITH_TSDF_CHUNK(fusion.grid, block, LOAD_TSDF)
+    WITH_CHUNK(fusion.grid, block, LOAD_TSDF)
     [[unroll]] for (int i = 0; i < 4; ++i) voxels[i] = update_voxel(voxels[i], seen[i]);
-    WITH_TSDF_CHUNK(fusion.grid, block, STORE_TSDF)
+    WITH_CHUNK(fusion.grid, block, STORE_TSDF)
 
 #if PATINA_WITH_COLOR
     bvec4 near;
     [[unroll]] for (int i = 0; i < 4; ++i) near[i] = seen[i].valid && abs(seen[i].signed_m) <= fusion.color_band_m;
     if (!any(near)) return;
-    const vec3 color_point = to_camera(fusion.color_camera, world);
-    const vec3 color_step_m = fusion.color_camera.camera_from_world[0].xyz * fusion.grid.voxel_m;
-#define LOAD_COLOR(C) packed = color[C].voxels[voxel]
-#define STORE_COLOR(C) color[C].voxels[voxel] = packed
+    const Row color_row = row_of(fusion.color_camera, world_m);
+    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u) + lane * 4u;
+#define LOAD_COLOR(C) colors = color[C].quads[quad]
+#define STORE_COLOR(C) color[C].quads[quad] = colors
+    uvec4 colors;
+    WITH_CHUNK(fusion.grid, block, LOAD_COLOR)
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        if (near[i]) {
-            const uint voxel = index_in_color_chunk(fusion.grid, block) * kBlockVoxels + 4u * lane + uint(i);
-            uvec2 packed;
-            WITH_COLOR_CHUNK(fusion.grid, block, LOAD_COLOR)
-            packed = update_color(packed, color_point + float(i) * color_step_m);
-            WITH_COLOR_CHUNK(fusion.grid, block, STORE_COLOR)
-        }
+        const uint updated = update_color(colors[i], voxels[i], pixel_of(color_row, i), hash_of_key(dither + uint(i)));
+        colors[i] = near[i] ? updated : colors[i];
     }
+    WITH_CHUNK(fusion.grid, block, STORE_COLOR)
 #endif
 }

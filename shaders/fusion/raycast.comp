@@ -5,7 +5,7 @@
 #include "shared/voxel_map.h"
 layout(std430, binding = 4) readonly buffer Keys { uvec4 keys[]; };
 layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
-layout(std430, binding = 6) readonly buffer Tsdf { uint voxels[]; } tsdf[kMaxTsdfChunks];
+layout(std430, binding = 6) readonly buffer Tsdf { uint voxels[]; } tsdf[kMaxVoxelChunks];
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #define VOXEL(C, i) tsdf[C].voxels[i]

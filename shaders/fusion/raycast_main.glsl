@@ -20,10 +20,10 @@ uint load_voxel(ivec3 coordinates) {
     const uint block = find_block(view.grid, coordinates >> 3);
     const ivec3 within = coordinates & 7;
     const uint safe = block == kNoBlock ? 0u : block;
-    const uint index = index_in_tsdf_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index = index_in_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
-    WITH_TSDF_CHUNK(view.grid, safe, LOAD_VOXEL)
+    WITH_CHUNK(view.grid, safe, LOAD_VOXEL)
     return block == kNoBlock ? 0u : voxel;
 }
 
@@ -76,8 +76,7 @@ Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_p
         const bool seen = voxel_weight(voxel) > 0u;
         here = seen ? voxel_sdf(voxel) : 1.0;
         const bool inside = here <= 0.0;
-        const float step_vox =
-            seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : cached_block == kNoBlock ? kUnknownStepVox : 1.0;
+        const float step_vox = seen ? max(here * (0.9 * kSdfRangeVox), 1.0) : kUnknownStepVox;
         outside_depth = inside ? outside_depth : depth;
         outside = inside ? outside : here;
         seen_outside = inside ? seen_outside : seen;

@@ -5,7 +5,7 @@
 #include "shared/voxel_map.h"
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer Keys;
 layout(binding = 5, r32ui) uniform readonly uimageBuffer Blocks;
-layout(binding = 6, r32ui) uniform readonly uimageBuffer Tsdf[kMaxTsdfChunks];
+layout(binding = 6, r32ui) uniform readonly uimageBuffer Tsdf[kMaxVoxelChunks];
 #define KEYS(bucket) imageLoad(Keys, int(bucket))
 #define BLOCK(slot) imageLoad(Blocks, int(slot)).x
 #define VOXEL(C, i) imageLoad(Tsdf[C], int(i)).x

@@ -8,21 +8,21 @@ layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform writeonly image2D color_linear;
 layout(std430, binding = 2) readonly buffer Keys { uvec4 keys[]; };
 layout(std430, binding = 3) readonly buffer Blocks { uint blocks[]; };
-layout(std430, binding = 4) readonly buffer Color { uvec2 voxels[]; } color[kMaxColorChunks];
+layout(std430, binding = 4) readonly buffer Color { uint voxels[]; } color[kMaxVoxelChunks];
 layout(push_constant) uniform Push { VoxelGrid grid; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #include "lib/block_lookup.glsl"
 #include "lib/voxel_chunks.glsl"
 
-uvec2 load_color(ivec3 coordinates) {
+uint load_color(ivec3 coordinates) {
     const uint block = find_block(grid, coordinates >> 3);
-    if (block == kNoBlock) return uvec2(0u);
+    if (block == kNoBlock) return 0u;
     const ivec3 within = coordinates & 7;
-    const uint index = index_in_color_chunk(grid, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
-    uvec2 packed;
+    const uint index = index_in_chunk(grid, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    uint packed;
 #define LOAD_COLOR(C) packed = color[C].voxels[index]
-    WITH_COLOR_CHUNK(grid, block, LOAD_COLOR)
+    WITH_CHUNK(grid, block, LOAD_COLOR)
     return packed;
 }
 
@@ -37,9 +37,9 @@ void main() {
         const vec3 t = at_vox - vec3(low);
         for (int i = 0; i < 8; ++i) {
             const ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2);
-            const uvec2 packed = load_color(low + corner);
+            const uint packed = load_color(low + corner);
             const vec3 share = mix(1.0 - t, t, vec3(corner));
-            const float weight = color_weight(packed) > 0u ? share.x * share.y * share.z : 0.0;
+            const float weight = packed != 0u ? share.x * share.y * share.z : 0.0;
             sum += vec4(voxel_color(packed), 1.0) * weight;
         }
     }

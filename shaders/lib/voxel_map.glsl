@@ -30,18 +30,24 @@ uint hash_of_key(uint key) {
 float voxel_sdf(uint voxel) { return float(int(voxel << 16) >> 16) * (1.0 / 32767.0); }
 uint voxel_weight(uint voxel) { return voxel >> 16; }
 uint pack_voxel(float sdf, uint weight) {
-    return (uint(int(round(clamp(sdf, -1.0, 1.0) * 32767.0))) & 0xffffu) | weight << 16;
+    return (uint(int(floor(clamp(sdf, -1.0, 1.0) * 32767.0 + 0.5))) & 0xffffu) | weight << 16;
 }
 
-// A voxel's colour is 3 x u16, the square root of linear / kColorRange (dark tones keep their precision), and a u16 weight.
-vec3 voxel_color(uvec2 packed) {
-    const vec3 root = vec3(packed.x & 0xffffu, packed.x >> 16, packed.y & 0xffffu) * (1.0 / 65535.0);
+// A voxel's colour is 11 + 11 + 10 bits, the square root of linear / kColorRange: dark tones keep their precision, and steps
+// are finer than those of 8-bit sRGB. 0: no colour yet; black is stored as the smallest red.
+const vec3 kColorLevels = vec3(2047.0, 2047.0, 1023.0);
+vec3 voxel_color(uint color) {
+    const vec3 root = vec3(color & 0x7ffu, color >> 11 & 0x7ffu, color >> 22) / kColorLevels;
     return root * root * kColorRange;
 }
-uint color_weight(uvec2 packed) { return packed.y >> 16; }
-uvec2 pack_color(vec3 linear, uint weight) {
-    const uvec3 root = uvec3(sqrt(clamp(linear * (1.0 / kColorRange), 0.0, 1.0)) * 65535.0 + 0.5);
-    return uvec2(root.x | root.y << 16, root.z | weight << 16);
+
+// Rounds up or down by chance, so that a running average does not stall where its steps become smaller than a level; `dither`
+// is a hash of the voxel and the frame.
+uint pack_color(vec3 linear, uint dither) {
+    const vec3 chance = vec3(dither & 0x3ffu, dither >> 10 & 0x3ffu, dither >> 20 & 0x3ffu) * (1.0 / 1024.0);
+    const uvec3 level = uvec3(sqrt(clamp(linear * (1.0 / kColorRange), 0.0, 1.0)) * kColorLevels + chance);
+    const uvec3 root = min(level, uvec3(kColorLevels));
+    return max(root.x | root.y << 11 | root.z << 22, 1u);
 }
 
 // The item of a list that this group of an indirect dispatch works on.

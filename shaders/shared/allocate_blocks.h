@@ -24,9 +24,9 @@ struct FusionParams {
     uint stride_px;          // every so many pixels in x and y touch blocks
     uint phase;              // which of the stride^2 pixels, changes from frame to frame
     uint max_table_keys;     // beyond it nothing is inserted
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    uint frame_index;
+    float inverse_truncation;  // 1 / truncation_m
+    float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)
 };
 
 INTEROP_END

@@ -4,7 +4,8 @@
 #include "shared/interop.h"
 INTEROP_BEGIN
 
-INTEROP_CONST uint kIntegrateGroup = 128u;  // invocations per block, four voxels each
+INTEROP_CONST uint kIntegrateGroup = 128u;     // invocations per block, four voxels each
+INTEROP_CONST float kNearestDepth = 1e-3f;     // metres; what is nearer, or behind the camera, is not seen
 
 INTEROP_END
 #endif

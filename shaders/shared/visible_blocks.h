@@ -6,7 +6,7 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kVisibleGroup = 64u;
-INTEROP_CONST uint kTileEdge = 16u;  // pixels
+INTEROP_CONST uint kTileEdge = 8u;  // pixels
 
 // Where to look, and how far; a uniform buffer shared by the passes that look from one camera.
 struct ViewParams {

@@ -10,12 +10,11 @@ INTEROP_CONST uint kBucketSlots = 4u;       // keys of one bucket, loaded as a u
 INTEROP_CONST uint kMaxProbes = 16u;        // buckets looked at, from the key's own on
 INTEROP_CONST uint kEmptyKey = 0xffffffffu;  // an unused slot, a free block
 INTEROP_CONST uint kNoBlock = 0xffffffffu;  // a key without a block: the pool was full when it came
-INTEROP_CONST uint kMaxTsdfChunks = 4u;     // buffers over which the distances of a large pool are spread
-INTEROP_CONST uint kMaxColorChunks = 8u;    // colours take twice the space
+INTEROP_CONST uint kMaxVoxelChunks = 5u;    // buffers of distances, and of colours: with what else a pass binds, 16
 INTEROP_CONST uint kGroupsPerRow = 512u;    // indirect dispatches over a list: group (x, y) takes item 512 y + x
 INTEROP_CONST float kSdfRangeVox = 16.0f;   // a stored distance of 1 means this many voxels
 INTEROP_CONST uint kWeightOne = 16u;        // what one frontal sample adds to a voxel's weight
-INTEROP_CONST float kColorRange = 8.0f;     // the largest linear colour that a voxel can hold
+INTEROP_CONST float kColorRange = 4.0f;     // the largest linear colour that a voxel can hold
 
 // Where the grid lies. World point p (metres) lies in voxel floor(p / voxel_m); a voxel's value belongs to its centre.
 struct VoxelGrid {
@@ -23,7 +22,7 @@ struct VoxelGrid {
     float voxel_m;
     uint bucket_mask;  // buckets - 1, a power of two minus one
     uint capacity;     // blocks in the pool
-    uint chunk_shift;  // block b lies in TSDF chunk b >> chunk_shift, and in colour chunk b >> (chunk_shift - 1)
+    uint chunk_shift;  // block b lies in chunk b >> chunk_shift
 };
 
 // Counts that live on the GPU. The host reads them two frames late.

@@ -11,18 +11,6 @@ namespace {
 
 const Intrinsics kCamera{{320, 240}, 300, 300, 159.5, 119.5, {}};
 
-/// Views from all around a point, a golden-angle spiral.
-std::vector<RigidTransform> orbit(glm::dvec3 target_m, double distance_m, int views) {
-    std::vector<RigidTransform> poses;
-    for (int i = 0; i < views; ++i) {
-        const double height = 0.9 * (2.0 * (i + 0.5) / views - 1.0);
-        const double radius = std::sqrt(1 - height * height), angle = 2.399963 * i;
-        poses.push_back(reference::look_at(
-            target_m + distance_m * glm::dvec3(radius * std::cos(angle), height, radius * std::sin(angle)), target_m));
-    }
-    return poses;
-}
-
 struct Errors {
     std::vector<double> depth_m, normal_deg;
     size_t missed = 0, invented = 0;
@@ -61,11 +49,11 @@ TEST_F(RaycastTest, FusedSphereAndBoxAreFoundWhereTheyAre) {
         {"sphere", reference::sphere({0, 0, 0}, 0.3)}, {"box", reference::box({0, 0, 0}, {0.2, 0.25, 0.3})}};
     for (const auto& [name, scene] : scenes) {
         FusionRig rig(device(), runner());
-        for (const RigidTransform& pose : orbit({0, 0, 0}, 1.2, 40)) {
+        for (const RigidTransform& pose : reference::orbit({0, 0, 0}, 1.2, 40)) {
             rig.fuse(kCamera, pose, reference::render_depth(scene, kCamera, pose, 4.0));
         }
         for (const MapAccess access : {MapAccess::kStorage, preferred_map_access(device().caps(), rig.map())}) {
-            const RigidTransform pose = orbit({0, 0, 0}, 1.0, 7)[3];
+            const RigidTransform pose = reference::orbit({0, 0, 0}, 1.0, 7)[3];
             const Errors errors = compare(rig.raycast(kCamera, pose, access), scene, pose);
             SCOPED_TRACE(name);
             EXPECT_LE(Errors::quantile(errors.depth_m, 0.5), 0.0005);

@@ -65,4 +65,15 @@ RigidTransform look_at(glm::dvec3 eye_m, glm::dvec3 target_m) {
     return pose;
 }
 
+std::vector<RigidTransform> orbit(glm::dvec3 target_m, double distance_m, int views) {
+    std::vector<RigidTransform> poses;
+    for (int i = 0; i < views; ++i) {
+        const double height = 0.9 * (2.0 * (i + 0.5) / views - 1.0);
+        const double radius = std::sqrt(1 - height * height), angle = 2.399963 * i;
+        const glm::dvec3 direction(radius * std::cos(angle), height, radius * std::sin(angle));
+        poses.push_back(look_at(target_m + distance_m * direction, target_m));
+    }
+    return poses;
+}
+
 }  // namespace patina::reference

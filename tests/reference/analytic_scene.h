@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -28,5 +29,8 @@ Image<float> render_depth(const DistanceField& field, const Intrinsics& camera, 
 
 /// A camera at `eye` that looks at `target`, y down: world_from_camera.
 RigidTransform look_at(glm::dvec3 eye_m, glm::dvec3 target_m);
+
+/// Views from all around a point, a golden-angle spiral: world_from_camera of each.
+std::vector<RigidTransform> orbit(glm::dvec3 target_m, double distance_m, int views);
 
 }  // namespace patina::reference
