@@ -4,10 +4,10 @@ namespace patina::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using sensor::testing::read_text;
 using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 class Arguments : public RunFolderTest {};
 
@@ -16,7 +16,8 @@ constexpr int kUsage = 2;
 TEST_F(Arguments, WrongUsageIsOneLine) {
     EXPECT_THAT(expect_failure(patina({}), kUsage), HasSubstr("subcommand is required"));
     EXPECT_THAT(expect_failure(patina({"run"}), kUsage), HasSubstr("sequence is required"));
-    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--frames", "-3"}), kUsage), HasSubstr("--frames"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--frames", "-3"}), kUsage),
+                HasSubstr("--frames"));
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--speed"}), kUsage), HasSubstr("--speed"));
     EXPECT_FALSE(fs::exists(out()));
 }
@@ -36,7 +37,8 @@ TEST_F(Arguments, OutputFolderIsCheckedBeforeAnythingElse) {
                     AllOf(HasSubstr("output folder"), HasSubstr(bad.string())));
     }
     EXPECT_EQ(read_text(beside("file")), "content");
-    EXPECT_THAT(failure_of_run(sequence(), {"--dump-graph", beside("nowhere") / "graph"}), HasSubstr("there is no folder"));
+    EXPECT_THAT(failure_of_run(sequence(), {"--dump-graph", beside("nowhere") / "graph"}),
+                HasSubstr("there is no folder"));
 }
 
 TEST_F(Arguments, BadSettingsAreNamed) {
@@ -79,8 +81,8 @@ TEST_F(Arguments, BadSettingsFilesAreNamed) {
 TEST_F(Arguments, SettingsAreEchoed) {
     const fs::path file = beside("settings.toml");
     write_text(file, "[map]\nvoxel_m = 0.02\ncapacity_blocks = 1000\n[fusion]\nmax_depth_m = 3\n");
-    const nlohmann::json record =
-        run_quietly(sequence(), {"--settings", file, "--set", "map.capacity_blocks=2000", "--frames", "2", "--seed", "7"});
+    const nlohmann::json record = run_quietly(
+        sequence(), {"--settings", file, "--set", "map.capacity_blocks=2000", "--frames", "2", "--seed", "7"});
     const nlohmann::json& settings = record["settings"];
     EXPECT_EQ(settings["map.voxel_m"], 0.02);
     EXPECT_EQ(settings["map.capacity_blocks"], 2000) << "the command line wins over the file";

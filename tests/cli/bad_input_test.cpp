@@ -9,11 +9,11 @@ namespace patina::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using sensor::testing::read_text;
 using sensor::testing::replace_text;
 using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 class BadInput : public RunFolderTest {
   protected:
@@ -61,7 +61,8 @@ TEST_F(BadInput, MissingPictureIsSkipped) {
 
 TEST_F(BadInput, PictureOfAnotherSizeIsSkipped) {
     sensor::write_png(sequence() / "depth/000001.png", Image<uint16_t>({8, 6}));
-    EXPECT_THAT(reason_of_skipped_frame(), AllOf(HasSubstr("depth/000001.png"), HasSubstr("8 x 6"), HasSubstr("16 x 12")));
+    EXPECT_THAT(reason_of_skipped_frame(),
+                AllOf(HasSubstr("depth/000001.png"), HasSubstr("8 x 6"), HasSubstr("16 x 12")));
 }
 
 TEST_F(BadInput, PoseThatIsNoNumberIsSkipped) {

@@ -45,8 +45,8 @@ TEST_F(Golden, TwoRunsGiveTheSameBytes) {
     run("synthetic:cubes", beside("second"));
     const auto first = files_in(beside("first")), second = files_in(beside("second"));
     ASSERT_EQ(names(first), names(second));
-    for (const char* name : {"scene.glb", "trajectory.txt", "report.html", "run.json", "frames/000000.exr", "frames/000004.exr",
-                             "frames/000008.exr", "previews/000002.png", "previews/000011.png"}) {
+    for (const char* name : {"scene.glb", "trajectory.txt", "report.html", "run.json", "frames/000000.exr",
+                             "frames/000004.exr", "frames/000008.exr", "previews/000002.png", "previews/000011.png"}) {
         EXPECT_TRUE(first.contains(name)) << name;
     }
     for (const auto& [name, content] : first) {
@@ -88,7 +88,8 @@ TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
     EXPECT_GT(record["totals"]["triangles"], 10000);
     EXPECT_TRUE(record["warnings"].empty()) << record["warnings"];
     for (const char* frame : {"000004", "000008"}) {
-        const Image<float> view_m = sensor::read_exr_depth(beside("from_files") / "frames" / (std::string(frame) + ".exr"));
+        const Image<float> view_m =
+            sensor::read_exr_depth(beside("from_files") / "frames" / (std::string(frame) + ".exr"));
         const auto truth = sensor::read_depth(recorded / "depth" / (std::string(frame) + ".png"), kExtent);
         expect_close(view_m, std::get<Image<uint16_t>>(truth));
     }

@@ -9,9 +9,9 @@ namespace patina::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using sensor::testing::write_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using sensor::testing::write_text;
 
 class Interrupt : public RunFolderTest {
   protected:
@@ -28,7 +28,8 @@ TEST_F(Interrupt, LeavesWholeFilesOnly) {
     Program program({"run", "synthetic:cubes", "--frames", "100000", "--dump-every", "1", "--out", out(), "--quiet"});
     await(program, out() / "frames/000001.exr");
     program.send(SIGINT);
-    EXPECT_THAT(expect_failure(program.wait(), 130), AllOf(HasSubstr("interrupted after"), HasSubstr("of 100000 frames")));
+    EXPECT_THAT(expect_failure(program.wait(), 130),
+                AllOf(HasSubstr("interrupted after"), HasSubstr("of 100000 frames")));
 
     size_t views = 0;
     for (const auto& [name, content] : files_in(out())) {

@@ -67,7 +67,8 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
         if (i % kViewEvery != kViewEvery - 1) continue;
         const PendingView view = reconstruction.view(info.depth, *frame.world_from_camera);
         reconstruction.wait();
-        comparison.add(view.get(), std::get<Image<uint16_t>>(frame.depth), reconstruction.settings().fusion.max_depth_m);
+        comparison.add(view.get(), std::get<Image<uint16_t>>(frame.depth),
+                       reconstruction.settings().fusion.max_depth_m);
     }
     ASSERT_FALSE(comparison.errors_m.empty());
     const double seen = static_cast<double>(comparison.errors_m.size()) / static_cast<double>(comparison.readings);

@@ -37,7 +37,8 @@ RunFolderTest::RunFolderTest() { sensor::testing::write_native(sequence_, 3); }
 
 namespace {
 
-std::vector<std::string> run_arguments(const std::string& input, const fs::path& out, const std::vector<std::string>& more) {
+std::vector<std::string> run_arguments(const std::string& input, const fs::path& out,
+                                       const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", input, "--out", out.string(), "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
@@ -55,7 +56,8 @@ nlohmann::json RunFolderTest::run_quietly(const std::string& input, std::vector<
 
 std::string RunFolderTest::failure_of_run(const std::string& input, std::vector<std::string> more,
                                           const Program::Environment& changes) {
-    std::map<std::string, std::string> earlier{{"scene.glb", "an earlier scene"}, {"frames/000000.exr", "an earlier view"}};
+    std::map<std::string, std::string> earlier{{"scene.glb", "an earlier scene"},
+                                               {"frames/000000.exr", "an earlier view"}};
     fs::create_directories(out_ / "frames");
     for (const auto& [name, content] : earlier) write_text(out_ / name, content);
     write_text(out_ / "run.json", "{}");

@@ -42,7 +42,8 @@ class RunFolderTest : public ::testing::Test {
     const std::filesystem::path out_ = folder_ / "out";
 };
 
-/// Expects one line "patina: ..." on standard error, nothing on standard output and `exit_code`; returns what follows the prefix.
+/// Expects one line "patina: ..." on standard error, nothing on standard output and `exit_code`; returns what follows
+/// the prefix.
 std::string expect_failure(const Outcome& outcome, int exit_code = 1);
 
 }  // namespace patina::testing
