@@ -76,7 +76,8 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
     const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
-    add_integrate(graph, map_, ids, visible, params, input.depth_m, slope, input.color);
+    add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
+                  fusion.color ? std::optional(input.color) : std::nullopt);
     if (settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         graph.keep(model.position_m);
@@ -97,12 +98,12 @@ void Reconstruction::add(const RgbdFrame& frame) {
     }
     graph::Frame graph = runner_.begin();
     VoxelMapIds ids = map_.import(graph);
-    fuse(graph, ids, frame);
+    const VisibleBlocks visible = fuse(graph, ids, frame);
     VoxelMap::keep(graph, ids);
-    pending_counters_.push_back(graph.read_back(ids.counters));
+    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t))});
     runner_.submit(std::move(graph));
     ++frames_;
-    counters();
+    take_counts();
 }
 
 PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
@@ -111,7 +112,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_camera),
                                                      settings_.near_m, 2 * settings_.fusion.max_depth_m);
     const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-    const graph::ImageId color = add_shade_color(graph, map_, ids, model.position_m);
+    const graph::ImageId color = add_shade_color(graph, map_, ids, visible, model.position_m);
     PendingView pending;
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
@@ -125,12 +126,22 @@ Mesh Reconstruction::extract_surface() {
     return patina::extract_surface(runner_, map_);
 }
 
-const gpu::MapCounters& Reconstruction::counters() {
-    while (!pending_counters_.empty() && pending_counters_.front().ready()) {
-        counters_ = pending_counters_.front().as<gpu::MapCounters>().front();
-        pending_counters_.pop_front();
+void Reconstruction::take_counts() {
+    while (!pending_counts_.empty() && pending_counts_.front().counters.ready()) {
+        counters_ = pending_counts_.front().counters.as<gpu::MapCounters>().front();
+        visible_blocks_ = pending_counts_.front().visible_blocks.as<uint32_t>().front();
+        pending_counts_.pop_front();
     }
+}
+
+const gpu::MapCounters& Reconstruction::counters() {
+    take_counts();
     return counters_;
+}
+
+uint32_t Reconstruction::visible_blocks() {
+    take_counts();
+    return visible_blocks_;
 }
 
 }  // namespace patina

@@ -76,6 +76,9 @@ class Reconstruction {
     /// The map's counters as of at most two frames ago; exact after wait().
     const gpu::MapCounters& counters();
 
+    /// How many blocks the depth camera saw in the frame that counters() tells of.
+    uint32_t visible_blocks();
+
     uint32_t frames() const { return frames_; }
     const ReconstructionSettings& settings() const { return settings_; }
     const VoxelMap& map() const { return map_; }
@@ -84,6 +87,7 @@ class Reconstruction {
   private:
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
     void check(const RgbdFrame& frame) const;
+    void take_counts();
 
     vulkan::Device& device_;
     ReconstructionSettings settings_;
@@ -91,8 +95,12 @@ class Reconstruction {
     VoxelMap map_;
     MapAccess access_;
     uint32_t frames_ = 0;
-    std::deque<graph::Readback> pending_counters_;
+    struct PendingCounts {
+        graph::Readback counters, visible_blocks;
+    };
+    std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
+    uint32_t visible_blocks_ = 0;
 };
 
 }  // namespace patina

@@ -23,7 +23,12 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
         throw Error("the truncation band is ", widest_m, " m wide at ", settings.max_depth_m, " m, voxels of ", voxel_m,
                     " m hold at most ", gpu::kSdfRangeVox * voxel_m, " m");
     }
-    params.max_weight = static_cast<float>(settings.max_weight);
+    constexpr uint32_t kMostSamples = UINT16_MAX / gpu::kWeightOne;
+    if (settings.max_weight == 0 || settings.max_weight > kMostSamples) {
+        throw Error("the largest weight of a voxel is ", settings.max_weight, " samples, it must be 1 to ",
+                    kMostSamples);
+    }
+    params.max_weight = static_cast<float>(settings.max_weight * gpu::kWeightOne);
     // Marching cubes and ray casting interpolate colour between voxels up to a cell's diagonal off the surface.
     params.color_band_m = 1.8f * voxel_m;
     params.max_color_weight = static_cast<float>(settings.max_color_weight * gpu::kWeightOne);

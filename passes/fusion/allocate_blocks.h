@@ -13,13 +13,15 @@ struct FusionSettings {
     float truncation_m = 0.02f;       ///< t(z) = truncation_m + truncation_slope * z, at least 3 voxels
     float truncation_slope = 0.005f;  ///< grows with the sensor's noise
     float max_depth_m = 4.0f;         ///< farther readings are not fused
-    uint32_t max_weight = 128;        ///< samples after which a voxel's distance becomes a sliding average
+    uint32_t max_weight = 128;        ///< frontal samples after which a voxel's distance becomes a sliding average
     uint32_t max_color_weight = 64;
+    bool color = true;  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
 };
 
 /// The parameters that one frame's fusion passes share. `color_camera` may be the depth camera where there is no
-/// colour. Throws Error when the truncation band is wider than a voxel's distance can express at max_depth_m.
+/// colour. Throws Error when the truncation band is wider than a voxel's distance can express at max_depth_m, or
+/// max_weight than its weight can.
 gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& settings,
                                      const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
                                      uint32_t frame_index);

@@ -1,5 +1,7 @@
 #include "passes/fusion/raycast.h"
 
+#include <algorithm>
+
 #include "shared/raycast.h"
 #include "spirv/shaders.h"
 
@@ -9,7 +11,7 @@ RaycastImages add_raycast(graph::Frame& frame, const VoxelMap& map, const VoxelM
                           const VisibleBlocks& visible, MapAccess access) {
     auto pass = frame.compute("fusion.raycast", access == MapAccess::kTexel ? spirv::raycast_texel : spirv::raycast);
     pass.read("View", visible.view).read("Tiles", visible.tiles);
-    pass.read("Keys", ids.keys).read("Blocks", ids.blocks).read("Tsdf", ids.tsdf);
+    pass.read("ViewGrid", visible.grid).read("Tsdf", ids.tsdf);
     pass.specialise("kVoxelChunks", map.chunks());
     RaycastImages out;
     out.position_m = pass.create("position_m", {visible.extent, vulkan::Format::kRgba32f});

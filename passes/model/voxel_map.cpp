@@ -13,16 +13,15 @@ namespace {
 constexpr uint32_t kBlockBytes = gpu::kBlockVoxels * 4;  // of distances, and as many of colours
 
 /// Blocks per chunk, a power of two.
-uint32_t blocks_per_chunk(const vulkan::DeviceCaps& caps) {
-    constexpr uint64_t kLargest = uint64_t{1} << 30;  // beyond a GiB devices differ in what one allocation may hold
-    return static_cast<uint32_t>(std::bit_floor(std::min(caps.max_storage_range, kLargest)) / kBlockBytes);
+uint32_t blocks_per_chunk(const vulkan::DeviceCaps& caps, uint64_t max_chunk_bytes) {
+    return static_cast<uint32_t>(std::bit_floor(std::min(caps.max_storage_range, max_chunk_bytes)) / kBlockBytes);
 }
 
 }  // namespace
 
 VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : settings_(settings) {
     const uint32_t capacity = settings.capacity_blocks;
-    const uint32_t chunk_blocks = blocks_per_chunk(device.caps());
+    const uint32_t chunk_blocks = blocks_per_chunk(device.caps(), settings.max_chunk_bytes);
     const uint32_t most_blocks = chunk_blocks * gpu::kMaxVoxelChunks;
     if (capacity == 0 || capacity > most_blocks) {
         throw Error("the voxel pool's capacity is ", capacity, " blocks, it must be 1 to ", most_blocks,
@@ -31,8 +30,10 @@ VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : s
     if (!(settings.voxel_m >= 1e-4f && settings.voxel_m <= 1.0f)) {
         throw Error("the voxel size is ", settings.voxel_m, " m, it must be 0.0001 to 1");
     }
-    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets.
-    table_slots_ = std::bit_ceil(std::max(capacity, 16u)) * 4;
+    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets. A small
+    // pool's table still takes all keys of a frame: which of them get a block is a matter of the keys, but which would
+    // find room in a full table is one of who comes first.
+    table_slots_ = std::bit_ceil(std::max(capacity, 32768u)) * 4;
     grid_.voxel_m = settings.voxel_m;
     grid_.bucket_mask = table_slots_ / gpu::kBucketSlots - 1;
     grid_.capacity = capacity;

@@ -16,6 +16,7 @@ namespace patina {
 struct VoxelMapSettings {
     float voxel_m = 0.005f;
     uint32_t capacity_blocks = 65536;  ///< of 8^3 voxels; each takes 2 KiB of distances and 2 KiB of colour when used
+    uint64_t max_chunk_bytes = uint64_t{1} << 30;  ///< of one buffer; above, devices differ in what they can allocate
 };
 
 /// Versions of the map's resources within one frame; passes that write replace the ids.

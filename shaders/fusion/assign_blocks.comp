@@ -35,11 +35,11 @@ void main() {
     if (gl_LocalInvocationIndex == 0u) claim(new_slots[item]);
     barrier();
     if (block == kNoBlock) return;
-    const uint first = index_in_chunk(grid, block) * (kBlockVoxels / 4u);
+    const uint first = index_in_chunk(grid.chunk_shift, block) * (kBlockVoxels / 4u);
 #define CLEAR(C)                                                                                    \
     for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels / 4u; i += kAssignGroup) {              \
         tsdf[C].quads[first + i] = uvec4(0u);                                                       \
         color[C].quads[first + i] = uvec4(0u);                                                      \
     }
-    WITH_CHUNK(grid, block, CLEAR)
+    WITH_CHUNK(grid.chunk_shift, block, CLEAR)
 }

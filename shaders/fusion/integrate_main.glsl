@@ -43,7 +43,7 @@ vec2 pixel_of(Row row, int i) {
 struct Sample {
     bool valid;
     float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
-    float weight;    // kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
+    float weight;    // whole; kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
 };
 
 // The nearest reading to a point that appears at `pixel`, `z` metres before the camera.
@@ -60,7 +60,8 @@ Sample sample_depth(vec2 pixel, float z) {
     const float trust = clamp(1.0 + along_m * fusion.inverse_truncation, 0.0, 1.0);
     Sample result;
     result.signed_m = min(along_m * plane_factor, truncation);
-    result.weight = max(float(kWeightOne) * plane_factor * trust * trust, 1.0);
+    // Whole numbers add up without loss, and so in any order.
+    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * trust + 0.5), 1.0);
     result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;
     return result;
 }
@@ -70,7 +71,7 @@ uint update_voxel(uint voxel, Sample seen) {
     const float sum = weight + seen.weight;
     const float seen_sdf = seen.signed_m * fusion.inverse_sdf_range;
     const float sdf = mix(voxel_sdf(voxel), seen_sdf, seen.weight / sum);
-    return seen.valid ? pack_voxel(sdf, uint(min(sum + 0.5, fusion.max_weight))) : voxel;
+    return seen.valid ? pack_voxel(sdf, uint(min(sum, fusion.max_weight))) : voxel;
 }
 
 #if PATINA_WITH_COLOR
@@ -95,13 +96,13 @@ void main() {
     const Row row = row_of(fusion.depth_camera, world_m);
     Sample seen[4];
     [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
-    const uint quad = index_in_chunk(fusion.grid, block) * (kBlockVoxels / 4u) + lane;
+    const uint quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u) + lane;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
 #define STORE_TSDF(C) tsdf[C].quads[quad] = voxels
     uvec4 voxels;
-    WITH_CHUNK(fusion.grid, block, LOAD_TSDF)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, LOAD_TSDF)
     [[unroll]] for (int i = 0; i < 4; ++i) voxels[i] = update_voxel(voxels[i], seen[i]);
-    WITH_CHUNK(fusion.grid, block, STORE_TSDF)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_TSDF)
 
 #if PATINA_WITH_COLOR
     bvec4 near;
@@ -112,11 +113,11 @@ void main() {
 #define LOAD_COLOR(C) colors = color[C].quads[quad]
 #define STORE_COLOR(C) color[C].quads[quad] = colors
     uvec4 colors;
-    WITH_CHUNK(fusion.grid, block, LOAD_COLOR)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, LOAD_COLOR)
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const uint updated = update_color(colors[i], voxels[i], pixel_of(color_row, i), hash_of_key(dither + uint(i)));
         colors[i] = near[i] ? updated : colors[i];
     }
-    WITH_CHUNK(fusion.grid, block, STORE_COLOR)
+    WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_COLOR)
 #endif
 }

@@ -1,10 +1,9 @@
-// Body of the ray casting shaders. The includer declares the map's table and distances and how to load them:
-//   KEYS(bucket)    uvec4, the keys of a bucket
-//   BLOCK(slot)     uint, the block id of a table slot
+// Body of the ray casting shaders. The includer declares the view's grid of blocks and the map's distances and how to load them:
+//   CELL(i)         uint, the block id in a cell of the view grid
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 // The march reads nearest voxels; interpolation happens once, at the hit.
-#include "lib/block_lookup.glsl"
 #include "lib/camera.glsl"
+#include "lib/view_grid.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
 #include "shared/raycast.h"
@@ -15,16 +14,23 @@ layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
 layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
 layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
 
+// Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
+ivec3 grid_low;
+uvec3 grid_size;
+uint chunk_shift;
+
 // The voxel at voxel coordinates; 0 (weight 0) where there is no block.
 uint load_voxel(ivec3 coordinates) {
-    const uint block = find_block(view.grid, coordinates >> 3);
+    const uint cell = view_grid_cell(grid_low, grid_size, coordinates >> 3);
+    const uint found = CELL(cell == kOutsideGrid ? 0u : cell);
+    const bool have = cell != kOutsideGrid && found != kNoBlock;
+    const uint block = have ? found : 0u;
     const ivec3 within = coordinates & 7;
-    const uint safe = block == kNoBlock ? 0u : block;
-    const uint index = index_in_chunk(view.grid, safe) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index = index_in_chunk(chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
-    WITH_CHUNK(view.grid, safe, LOAD_VOXEL)
-    return block == kNoBlock ? 0u : voxel;
+    WITH_CHUNK(chunk_shift, block, LOAD_VOXEL)
+    return have ? voxel : 0u;
 }
 
 struct Cell {
@@ -90,6 +96,9 @@ Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_p
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(view.camera.extent)))) return;
+    grid_low = view.grid_low.xyz;
+    grid_size = view.grid_size.xyz;
+    chunk_shift = view.grid.chunk_shift;
     const TileRange range = tiles[uint(pixel.y) / kTileEdge * view.tiles.x + uint(pixel.x) / kTileEdge];
     const float far = min(uintBitsToFloat(~range.far_bits_inverted), view.far_m);
     // The ray in voxel units, by depth along the optical axis.

@@ -3,10 +3,8 @@
 #extension GL_EXT_control_flow_attributes : require
 // Ray casting with the map in texel buffers, which software devices gather faster than storage buffers.
 #include "shared/voxel_map.h"
-layout(binding = 4, rgba32ui) uniform readonly uimageBuffer Keys;
-layout(binding = 5, r32ui) uniform readonly uimageBuffer Blocks;
-layout(binding = 6, r32ui) uniform readonly uimageBuffer Tsdf[kMaxVoxelChunks];
-#define KEYS(bucket) imageLoad(Keys, int(bucket))
-#define BLOCK(slot) imageLoad(Blocks, int(slot)).x
+layout(binding = 4, r32ui) uniform readonly uimageBuffer ViewGrid;
+layout(binding = 5, r32ui) uniform readonly uimageBuffer Tsdf[kMaxVoxelChunks];
+#define CELL(i) imageLoad(ViewGrid, int(i)).x
 #define VOXEL(C, i) imageLoad(Tsdf[C], int(i)).x
 #include "fusion/raycast_main.glsl"

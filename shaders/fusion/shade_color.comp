@@ -3,26 +3,26 @@
 #extension GL_EXT_control_flow_attributes : require
 // The trilinear mean of the voxel colours around each surface point, over the voxels that have one.
 #include "shared/shade_color.h"
+#include "shared/visible_blocks.h"
 layout(local_size_x = kShadeColorGroup, local_size_y = kShadeColorGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform writeonly image2D color_linear;
-layout(std430, binding = 2) readonly buffer Keys { uvec4 keys[]; };
-layout(std430, binding = 3) readonly buffer Blocks { uint blocks[]; };
+layout(std140, binding = 2) uniform View { ViewParams view; };
+layout(std430, binding = 3) readonly buffer ViewGrid { uint view_grid[]; };
 layout(std430, binding = 4) readonly buffer Color { uint voxels[]; } color[kMaxVoxelChunks];
-layout(push_constant) uniform Push { VoxelGrid grid; };
-#define KEYS(bucket) keys[bucket]
-#define BLOCK(slot) blocks[slot]
-#include "lib/block_lookup.glsl"
+#include "lib/view_grid.glsl"
 #include "lib/voxel_chunks.glsl"
+#include "lib/voxel_map.glsl"
 
 uint load_color(ivec3 coordinates) {
-    const uint block = find_block(grid, coordinates >> 3);
+    const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates >> 3);
+    const uint block = cell == kOutsideGrid ? kNoBlock : view_grid[cell];
     if (block == kNoBlock) return 0u;
     const ivec3 within = coordinates & 7;
-    const uint index = index_in_chunk(grid, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index = index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint packed;
 #define LOAD_COLOR(C) packed = color[C].voxels[index]
-    WITH_CHUNK(grid, block, LOAD_COLOR)
+    WITH_CHUNK(view.grid.chunk_shift, block, LOAD_COLOR)
     return packed;
 }
 
@@ -32,7 +32,7 @@ void main() {
     const vec4 point = imageLoad(position_m, pixel);
     vec4 sum = vec4(0.0);
     if (point.w > 0.0) {
-        const vec3 at_vox = point.xyz / grid.voxel_m - 0.5;
+        const vec3 at_vox = point.xyz / view.grid.voxel_m - 0.5;
         const ivec3 low = ivec3(floor(at_vox));
         const vec3 t = at_vox - vec3(low);
         for (int i = 0; i < 8; ++i) {

@@ -12,27 +12,12 @@ layout(std430, binding = 2) coherent buffer Keys { uint keys[]; };
 layout(std430, binding = 3) writeonly buffer NewSlots { uint new_slots[]; };
 layout(std430, binding = 4) buffer Counters { MapCounters counters; };
 
-// Inserts a key unless it is there. Plain loads may be stale: the exchange decides.
+#include "lib/insert_key.glsl"
+
 void touch(uint key, bool may_insert) {
-    uint bucket = hash_of_key(key) & fusion.grid.bucket_mask;
-    for (uint probe = 0u; probe < kMaxProbes; ++probe) {
-        const uint first = bucket * kBucketSlots;
-        const uvec4 found = uvec4(keys[first], keys[first + 1u], keys[first + 2u], keys[first + 3u]);
-        if (any(equal(found, uvec4(key)))) return;
-        if (found.w == kEmptyKey) {
-            if (!may_insert) break;
-            for (uint i = 0u; i < kBucketSlots; ++i) {
-                const uint before = atomicCompSwap(keys[first + i], kEmptyKey, key);
-                if (before == key) return;
-                if (before == kEmptyKey) {
-                    new_slots[atomicAdd(counters.new_keys, 1u)] = first + i;
-                    return;
-                }
-            }
-        }
-        bucket = (bucket + 1u) & fusion.grid.bucket_mask;
-    }
-    atomicAdd(counters.refused_samples, 1u);
+    const Insertion at = insert_key(fusion.grid, key, may_insert);
+    if (at.fresh) new_slots[atomicAdd(counters.new_keys, 1u)] = at.slot;
+    if (at.slot == kNoSlot) atomicAdd(counters.refused_samples, 1u);
 }
 
 void main() {
@@ -55,7 +40,8 @@ void main() {
     const vec3 span = to - from;
     const ivec3 step_sign = ivec3(sign(span));
     const vec3 delta = 1.0 / max(abs(span), vec3(1e-9));
-    vec3 next = (mix(from - vec3(block), vec3(block + 1) - from, greaterThan(span, vec3(0.0)))) * delta;
+    // Along an axis that the ray keeps clear of, the next boundary is far away, even when the ray lies in one.
+    vec3 next = mix(from - vec3(block), vec3(block + 1) - from, greaterThanEqual(span, vec3(0.0))) * delta;
     const int steps = abs(last.x - block.x) + abs(last.y - block.y) + abs(last.z - block.z);
     const bool may_insert = counters.table_keys < fusion.max_table_keys;
     for (int i = 0; i <= steps; ++i) {

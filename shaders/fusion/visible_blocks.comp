@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists the blocks whose bounding box meets the view frustum, and widens the depth range of every tile that a box covers.
+// Lists the blocks whose bounding box meets the view frustum, enters them in a dense grid around it, and widens the depth range
+// of every tile that a box covers.
 #include "lib/camera.glsl"
+#include "lib/view_grid.glsl"
 #include "lib/voxel_map.glsl"
-#include "shared/visible_blocks.h"
 
 layout(local_size_x = kVisibleGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };
@@ -12,6 +13,7 @@ layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(std430, binding = 3) buffer Visible { uint visible[]; };  // count, then block ids
 layout(std430, binding = 4) buffer Arguments { uint arguments[]; };
 layout(std430, binding = 5) buffer Tiles { TileRange tiles[]; };
+layout(std430, binding = 6) buffer ViewGrid { uint view_grid[]; };
 
 void append(uint block) {
     const uint item = atomicAdd(visible[0], 1u);
@@ -42,7 +44,8 @@ void main() {
     const float block_m = view.grid.voxel_m * float(kBlockEdge);
     // A voxel's value reaches half a voxel into the next block by interpolation.
     const float margin_m = 0.5 * view.grid.voxel_m;
-    const vec3 corner = to_camera(view.camera, vec3(block_of_key(view.grid, key)) * block_m - margin_m);
+    const ivec3 coordinates = block_of_key(view.grid, key);
+    const vec3 corner = to_camera(view.camera, vec3(coordinates) * block_m - margin_m);
     const mat3 axes = mat3(view.camera.camera_from_world) * (block_m + 2.0 * margin_m);
     const vec3 center = corner + 0.5 * (axes[0] + axes[1] + axes[2]);
     const float radius = 0.8661 * (block_m + 2.0 * margin_m);
@@ -61,7 +64,13 @@ void main() {
         high = max(high, pixel);
     }
     if (far < view.near_m || near > view.far_m) return;
-    if (any(lessThan(high, vec2(-0.5))) || any(greaterThan(low, vec2(view.camera.extent) - 0.5))) return;
+    // The interpolation around a hit at the image's border, or its gradient, needs voxels just outside the frustum.
+    const vec2 reach_px = kGridMarginVox * view.grid.voxel_m / max(near, view.near_m) * view.camera.focal_center_px.xy;
+    const vec2 end_px = vec2(view.camera.extent) - 0.5;
+    if (any(lessThan(high, -0.5 - reach_px)) || any(greaterThan(low, end_px + reach_px))) return;
+    const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates);
+    if (cell != kOutsideGrid) view_grid[cell] = block;
+    if (any(lessThan(high, vec2(-0.5))) || any(greaterThan(low, end_px))) return;
     append(block);
     widen_tiles(low, high, max(near, view.near_m), min(far, view.far_m));
 }

@@ -10,11 +10,11 @@
 layout(constant_id = 0) const uint kVoxelChunks = 1u;
 
 // Runs the statement DO(C) with the literal C of the chunk that holds `block`.
-#define WITH_CHUNK(grid, block, DO)                           \
+#define WITH_CHUNK(chunk_shift, block, DO)                    \
     if (kVoxelChunks == 1u) {                                 \
         DO(0);                                                \
     } else {                                                  \
-        switch ((block) >> (grid).chunk_shift) {              \
+        switch ((block) >> (chunk_shift)) {                   \
             case 0u: DO(0); break;                            \
             case 1u: DO(1); break;                            \
             case 2u: if (kVoxelChunks > 2u) { DO(2); } break; \
@@ -24,8 +24,8 @@ layout(constant_id = 0) const uint kVoxelChunks = 1u;
     }
 
 // A block's index within its chunk.
-uint index_in_chunk(VoxelGrid grid, uint block) {
-    return kVoxelChunks == 1u ? block : block & ((1u << grid.chunk_shift) - 1u);
+uint index_in_chunk(uint chunk_shift, uint block) {
+    return kVoxelChunks == 1u ? block : block & ((1u << chunk_shift) - 1u);
 }
 
 #endif

@@ -23,10 +23,10 @@ void main() {
     uint inside_bits = 0u;
     uint seen_bits = 0u;
     if (block < params.no_block && block_keys[block] != kEmptyKey) {
-        const uint first = (index_in_chunk(params.grid, block) * kBlockWords + item % kBlockWords) * 8u;
+        const uint first = (index_in_chunk(params.grid.chunk_shift, block) * kBlockWords + item % kBlockWords) * 8u;
         uvec4 voxels[8];
 #define LOAD_QUADS(C) [[unroll]] for (uint i = 0u; i < 8u; ++i) voxels[i] = QUAD(C, first + i)
-        WITH_CHUNK(params.grid, block, LOAD_QUADS)
+        WITH_CHUNK(params.grid.chunk_shift, block, LOAD_QUADS)
         [[unroll]] for (uint i = 0u; i < 8u; ++i) {
             const bvec4 was_seen = greaterThan(voxels[i] >> 16, uvec4(0u));
             seen_bits |= bits_of(was_seen, 4u * i);

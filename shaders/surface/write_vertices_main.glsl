@@ -33,10 +33,10 @@ Distance load_distance(uint block, ivec3 at) {
     const Place place = find_voxel(block, at);
     const bool exists = place.block < params.no_block;
     const uint safe = exists ? place.block : 0u;
-    const uint index = index_in_chunk(params.grid, safe) * kBlockVoxels + place.voxel;
+    const uint index = index_in_chunk(params.grid.chunk_shift, safe) * kBlockVoxels + place.voxel;
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
-    WITH_CHUNK(params.grid, safe, LOAD_VOXEL)
+    WITH_CHUNK(params.grid.chunk_shift, safe, LOAD_VOXEL)
     return Distance(exists && voxel_weight(voxel) > 0u, voxel_sdf(voxel));
 }
 
@@ -57,10 +57,10 @@ vec3 gradient_at(uint block, ivec3 at, float center) {
 // Linear colour; w is 1, or all is 0 where no colour was seen.
 vec4 load_color(uint block, ivec3 at) {
     const Place place = find_voxel(block, at);
-    const uint index = index_in_chunk(params.grid, place.block) * kBlockVoxels + place.voxel;
+    const uint index = index_in_chunk(params.grid.chunk_shift, place.block) * kBlockVoxels + place.voxel;
     uint packed;
 #define LOAD_COLOR(C) packed = color[C].voxels[index]
-    WITH_CHUNK(params.grid, place.block, LOAD_COLOR)
+    WITH_CHUNK(params.grid.chunk_shift, place.block, LOAD_COLOR)
     return packed != 0u ? vec4(voxel_color(packed), 1.0) : vec4(0.0);
 }
 

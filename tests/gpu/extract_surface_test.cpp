@@ -43,8 +43,7 @@ void fuse_from_all_sides(FusionRig& rig, const reference::DistanceField& scene, 
     for (const RigidTransform& pose : reference::orbit({0, 0, 0}, 1.0, views)) {
         const Image<float> depth = reference::render_depth(scene, kCamera, pose, 4.0);
         if (paint) {
-            const Image<glm::vec4> color = render_color(depth, pose, paint);
-            rig.fuse(kCamera, pose, depth, &color);
+            rig.fuse(kCamera, pose, depth, ColorView{kCamera, pose, render_color(depth, pose, paint)});
         } else {
             rig.fuse(kCamera, pose, depth);
         }

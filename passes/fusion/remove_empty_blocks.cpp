@@ -1,0 +1,32 @@
+#include "passes/fusion/remove_empty_blocks.h"
+
+#include <cstddef>
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+void add_remove_empty_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
+                             graph::BufferId params) {
+    auto remove = frame.compute("fusion.remove_empty_blocks", spirv::remove_empty_blocks);
+    remove.read("Visible", visible.list).read("Fusion", params).read("Tsdf", ids.tsdf);
+    remove.specialise("kVoxelChunks", map.chunks());
+    ids.block_keys = remove.modify("BlockKeys", ids.block_keys);
+    ids.free_list = remove.modify("FreeList", ids.free_list);
+    ids.counters = remove.modify("Counters", ids.counters);
+    remove.dispatch_indirect(visible.arguments);
+
+    constexpr uint32_t kNone = 0;
+    ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
+    ids.counters = frame.upload_bytes(ids.counters, offsetof(gpu::MapCounters, table_keys),
+                                      std::as_bytes(std::span(&kNone, 1)), false);
+
+    auto rebuild = frame.compute("fusion.rebuild_table", spirv::rebuild_table);
+    rebuild.read("BlockKeys", ids.block_keys).push(map.grid());
+    ids.keys = rebuild.modify("Keys", ids.keys);
+    ids.blocks = rebuild.modify("Blocks", ids.blocks);
+    ids.counters = rebuild.modify("Counters", ids.counters);
+    rebuild.dispatch_indirect(ids.block_arguments);
+}
+
+}  // namespace patina

@@ -1,0 +1,71 @@
+#include "tests/reference/integrate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patina::reference {
+
+namespace {
+
+/// Where a world point appears in a camera, as a whole pixel and the rest.
+struct Projection {
+    uint32_t x = 0, y = 0;
+    glm::dvec2 rest{0};
+    double depth_m = 0;
+};
+
+std::optional<Projection> project_into(const Intrinsics& camera, const RigidTransform& world_from_camera,
+                                       glm::dvec3 world_m) {
+    const glm::dvec3 point(rigid_inverse(world_from_camera) * glm::dvec4(world_m, 1));
+    if (point.z <= 1e-3) return {};
+    const glm::dvec2 pixel = project(camera, point), nearest = glm::floor(pixel + 0.5);
+    if (nearest.x < 0 || nearest.y < 0 || nearest.x >= camera.extent.width || nearest.y >= camera.extent.height) {
+        return {};
+    }
+    return Projection{static_cast<uint32_t>(nearest.x), static_cast<uint32_t>(nearest.y), pixel - nearest, point.z};
+}
+
+void integrate_color(Voxel& voxel, glm::dvec3 center_m, const Observation::Color& color, const Fusion& fusion) {
+    const auto at = project_into(color.camera, color.world_from_camera, center_m);
+    if (!at) return;
+    const glm::dvec4 seen(color.linear.at(at->x, at->y));
+    if (seen.a == 0) return;
+    const double weight = std::min(voxel.weight, fusion.max_color_weight);
+    const double share = voxel.colored ? std::min(fusion.frontal_weight / weight, 1.0) : 1;
+    voxel.color += (glm::dvec3(seen) - voxel.color) * share;
+    voxel.colored = true;
+}
+
+}  // namespace
+
+Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion) {
+    const auto at = project_into(seen.camera, seen.world_from_camera, center_m);
+    if (!at) return voxel;
+    const double reading = seen.depth_m.at(at->x, at->y);
+    const Slope& slope = seen.slope.at(at->x, at->y);
+    if (reading <= 0 || reading > fusion.max_depth_m || slope.plane_factor == 0) return voxel;
+    const double truncation = fusion.truncation_m + fusion.truncation_slope * reading;
+    const double in_front_m = reading + glm::dot(slope.depth_per_px, at->rest) - at->depth_m;
+    if (in_front_m < -truncation) return voxel;
+
+    const double distance_m = std::min(in_front_m * slope.plane_factor, truncation);
+    const double trust = std::clamp(1 + in_front_m / fusion.truncation_m, 0.0, 1.0);
+    const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * trust * trust), 1.0);
+    Voxel updated = voxel;
+    updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
+    updated.weight = std::min(voxel.weight + weight, fusion.max_weight);
+    if (seen.color && std::abs(distance_m) <= fusion.color_band_m)
+        integrate_color(updated, center_m, *seen.color, fusion);
+    return updated;
+}
+
+void integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
+    for (auto& [block, voxels] : volume.blocks) {
+        for (int i = 0; i < 512; ++i) {
+            Voxel& voxel = voxels[static_cast<size_t>(i)];
+            voxel = integrate(voxel, volume.center_m(block, i), seen, fusion);
+        }
+    }
+}
+
+}  // namespace patina::reference
