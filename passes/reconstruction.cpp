@@ -33,13 +33,24 @@ void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera
     }
 }
 
+/// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
+const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
+    const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
+        if (value == 0 || value > most) throw Error(name, " is ", value, ", it must be 1 to ", most);
+    };
+    check_range("fusion.allocation_stride_px", settings.fusion.allocation_stride_px, 64);
+    check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
+    check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
+    return settings;
+}
+
 }  // namespace
 
 ModelView PendingView::get() const { return {position_m_.image<glm::vec4>(), widened(normal_), widened(color_)}; }
 
 Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings)
     : device_(device),
-      settings_(settings),
+      settings_(checked(settings)),
       runner_(device),
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {}

@@ -14,12 +14,14 @@ foreach(WIDTH 256 128)
     # Mesa's shader cache does not tell vector widths apart, so each has its own.
     set(PATINA_ENVIRONMENT_lavapipe${WIDTH}
         VK_DRIVER_FILES=${LAVAPIPE_ICD} VK_ICD_FILENAMES=${LAVAPIPE_ICD} PATINA_DEVICE=cpu
-        LP_NATIVE_VECTOR_WIDTH=${WIDTH} MESA_SHADER_CACHE_DIR=${CMAKE_BINARY_DIR}/mesa-${WIDTH})
+        LP_NATIVE_VECTOR_WIDTH=${WIDTH} MESA_SHADER_CACHE_DIR=${CMAKE_BINARY_DIR}/mesa-${WIDTH}
+        XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/cache-${WIDTH})
 endforeach()
 if(PATINA_SWIFTSHADER_ICD)
     list(APPEND PATINA_DRIVERS swiftshader)
     set(PATINA_ENVIRONMENT_swiftshader
-        VK_DRIVER_FILES=${PATINA_SWIFTSHADER_ICD} VK_ICD_FILENAMES=${PATINA_SWIFTSHADER_ICD} PATINA_DEVICE=cpu)
+        VK_DRIVER_FILES=${PATINA_SWIFTSHADER_ICD} VK_ICD_FILENAMES=${PATINA_SWIFTSHADER_ICD} PATINA_DEVICE=cpu
+        XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/cache-swiftshader)
 else()
     add_test(NAME gpu.swiftshader COMMAND ${CMAKE_COMMAND} -E echo "Skipped: PATINA_SWIFTSHADER_ICD is not set")
     set_tests_properties(gpu.swiftshader PROPERTIES SKIP_REGULAR_EXPRESSION "Skipped: ")
@@ -31,15 +33,24 @@ endif()
 
 # Registers every TEST of a GoogleTest program once per driver, as "PREFIX.DRIVER.Suite.Name" with the driver as label.
 # One process per TEST costs about 60 ms with the caches warm.
+#   DRIVERS   only these, instead of all
+#   FILTER    only TESTs that this GoogleTest filter takes
+#   LABELS    more labels
 function(patina_test_on_drivers TARGET PREFIX)
-    foreach(DRIVER ${PATINA_DRIVERS})
-        set(LIST ${TARGET}_${DRIVER})
-        gtest_discover_tests(${TARGET} TEST_PREFIX "${PREFIX}.${DRIVER}." TEST_LIST ${LIST} DISCOVERY_MODE PRE_TEST)
+    cmake_parse_arguments(ARG "" "FILTER" "DRIVERS;LABELS" ${ARGN})
+    if(NOT ARG_DRIVERS)
+        set(ARG_DRIVERS ${PATINA_DRIVERS})
+    endif()
+    foreach(DRIVER ${ARG_DRIVERS})
+        string(MAKE_C_IDENTIFIER "${TARGET}_${DRIVER}_${ARG_FILTER}" LIST)
+        gtest_discover_tests(${TARGET} TEST_PREFIX "${PREFIX}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${ARG_FILTER}"
+                             DISCOVERY_MODE PRE_TEST)
         # The environment is a list, which gtest_discover_tests() cannot pass on; ctest sets it after discovery.
         set(ENVIRONMENT ${PATINA_ENVIRONMENT_${DRIVER}})
+        set(LABELS ${DRIVER} ${ARG_LABELS})
         set(PROPERTIES_FILE ${CMAKE_CURRENT_BINARY_DIR}/${LIST}_properties.cmake)
         file(CONFIGURE OUTPUT ${PROPERTIES_FILE} @ONLY CONTENT
-             "set_tests_properties(\${@LIST@} PROPERTIES LABELS @DRIVER@ ENVIRONMENT \"@ENVIRONMENT@\")\n")
+             "set_tests_properties(\${@LIST@} PROPERTIES LABELS \"@LABELS@\" ENVIRONMENT \"@ENVIRONMENT@\")\n")
         set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${PROPERTIES_FILE})
     endforeach()
 endfunction()

@@ -1,12 +1,29 @@
 // The patina program: parses the command line and catches errors, once, at its border.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "engine/core/error.h"
 #include "tools/commands/commands.h"
 #include "tools/interrupt.h"
 #include "tools/version.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+constexpr int kInterrupted = 130;  // what shells report for SIGINT
+
+/// Every failure is one line on standard error, whatever a library put into its message.
+int fail(std::string message, int exit_code) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::fprintf(stderr, "patina: %s\n", message.c_str());
+    return exit_code;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace patina;
@@ -21,12 +38,11 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {
-        return app.exit(error);
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+        return fail(std::string(error.what()) + " (patina --help shows the usage)", kUsage);
     } catch (const tools::Interrupted& interrupted) {
-        std::fprintf(stderr, "patina: %s\n", interrupted.what());
-        return 130;  // what shells report for SIGINT
+        return fail(interrupted.what(), kInterrupted);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "patina: %s\n", error.what());
-        return 1;
+        return fail(error.what(), kFailed);
     }
 }

@@ -57,6 +57,14 @@ PassTime summarised(const graph::Timing& timing) {
     return {timing.name, sorted.size(), sorted.front(), sorted[sorted.size() / 2], sorted.back()};
 }
 
+/// Told before the work starts, although the graph is written at its end.
+void check_graph_folder(const std::filesystem::path& dump_graph) {
+    const std::filesystem::path parent = dump_graph.parent_path();
+    if (!parent.empty() && !std::filesystem::is_directory(parent)) {
+        throw Error("the graph cannot be written to '", dump_graph.string(), "': there is no folder '", parent.string(), "'");
+    }
+}
+
 void write_text(const std::filesystem::path& path, const std::string& content) {
     std::ofstream out(path, std::ios::binary);
     out << content;
@@ -66,8 +74,10 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
 /// One run from source to folder.
 class Run {
   public:
-    Run(const RunOptions& options, OutputFolder& folder, vulkan::Device& device, sensor::Source& source)
+    Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder, vulkan::Device& device,
+        sensor::Source& source)
         : options_(options),
+          interrupt_(interrupt),
           folder_(folder),
           device_(device),
           source_(source),
@@ -78,10 +88,9 @@ class Run {
     }
 
     void fuse_all() {
-        const InterruptGuard interrupt;
         Progress progress(info_.frames, options_.quiet);
         for (uint32_t done = 0; done < info_.frames; ++done) {
-            if (interrupt.requested()) stop_early(done);
+            stop_if_interrupted();
             const auto reading = source_.next();
             if (!reading) break;
             ledger_.note(*reading);
@@ -107,6 +116,8 @@ class Run {
         const auto start = Clock::now();
         const Mesh mesh = reconstruction_.extract_surface();
         times_s_.emplace_back("surface", seconds_since(start));
+        check_validation();
+        stop_if_interrupted();
         const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
         folder_.publish("scene.glb");
         folder_.write("trajectory.txt", trajectory_text(poses_));
@@ -117,6 +128,7 @@ class Run {
         times_s_.emplace_back("total", seconds_since(start_));
         const RunRecord record = make_record(scene);
         folder_.write("report.html", report_html(record, dumps_->previews()));
+        stop_if_interrupted();
         folder_.write("run.json", run_json(record));
         if (!options_.quiet) {
             fmt::print("{} of {} frames, {} triangles in {}\n", ledger_.used(), info_.frames, scene.triangles,
@@ -146,11 +158,18 @@ class Run {
         }
     }
 
-    [[noreturn]] void stop_early(uint32_t done) {
+    void stop_if_interrupted() {
+        if (!interrupt_.requested()) return;
         reconstruction_.wait();
         dumps_->finish();
-        throw Interrupted("interrupted after ", done, " of ", info_.frames, " frames; '", folder_.path().string(),
-                          "' holds what was complete, and no run.json");
+        throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames; '",
+                          folder_.path().string(), "' holds what was complete, and no run.json");
+    }
+
+    void check_validation() const {
+        if (const auto messages = device_.validation_messages(); !messages.empty()) {
+            throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
+        }
     }
 
     uint32_t blocks_used() { return options_.settings.map.capacity_blocks - reconstruction_.counters().free_blocks; }
@@ -212,6 +231,7 @@ class Run {
     }
 
     const RunOptions& options_;
+    const InterruptGuard& interrupt_;
     OutputFolder& folder_;
     vulkan::Device& device_;
     sensor::Source& source_;
@@ -229,17 +249,17 @@ class Run {
 }  // namespace
 
 void run(const RunOptions& options) {
+    const InterruptGuard interrupt;  // from the first file to the last, so that none is left half-written
     OutputFolder folder(options.out);
+    check_graph_folder(options.dump_graph);
+    std::optional<vulkan::Device> device;  // outlives the source, which may compute on it
     std::unique_ptr<sensor::Source> source;
     if (!is_synthetic(options)) source = open_recording(options);
-    vulkan::Device device(options.device);
-    if (is_synthetic(options)) source = open_synthetic(options, device);
-    Run job(options, folder, device, *source);
+    device.emplace(options.device);
+    if (is_synthetic(options)) source = open_synthetic(options, *device);
+    Run job(options, interrupt, folder, *device, *source);
     job.fuse_all();
     job.write_results();
-    if (const auto messages = device.validation_messages(); !messages.empty()) {
-        throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
-    }
 }
 
 }  // namespace patina::tools

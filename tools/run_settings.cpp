@@ -78,6 +78,7 @@ std::optional<double> number_of(const toml::node& node) {
 }  // namespace
 
 void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file) {
+    if (!std::filesystem::is_regular_file(file)) throw Error("the settings file '", file.string(), "' does not exist");
     toml::table root;
     try {
         root = toml::parse_file(file.string());

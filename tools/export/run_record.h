@@ -19,9 +19,9 @@ struct DeviceRecord {
     std::string driver;          ///< name and version
 };
 
-/// What became of the sequence's frames: used plus skipped is the number of frames that were due.
+/// What became of the frames that were due: read is used plus skipped.
 struct FrameLedger {
-    uint64_t read = 0;  ///< decoded without a fault
+    uint64_t read = 0;  ///< arrived from the source, skipped ones included
     uint64_t used = 0;  ///< fused into the model
     std::vector<sensor::Skipped> skipped;
 };

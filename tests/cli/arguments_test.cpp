@@ -1,0 +1,97 @@
+#include "tests/cli/run_folder.h"
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using sensor::testing::read_text;
+using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class Arguments : public RunFolderTest {};
+
+constexpr int kUsage = 2;
+
+TEST_F(Arguments, WrongUsageIsOneLine) {
+    EXPECT_THAT(expect_failure(patina({}), kUsage), HasSubstr("subcommand is required"));
+    EXPECT_THAT(expect_failure(patina({"run"}), kUsage), HasSubstr("sequence is required"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--frames", "-3"}), kUsage),
+                HasSubstr("--frames"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--speed"}), kUsage), HasSubstr("--speed"));
+    EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Arguments, HelpIsNoFailure) {
+    const Outcome outcome = patina({"run", "--help"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(outcome.out, HasSubstr("--dump-every"));
+}
+
+TEST_F(Arguments, OutputFolderIsCheckedBeforeAnythingElse) {
+    write_text(beside("file"), "content");
+    // The sequence is missing too: the first complaint is about what the run would write into.
+    for (const fs::path& bad : {beside("file"), beside("file") / "below", fs::path("/proc/patina")}) {
+        EXPECT_THAT(expect_failure(patina({"run", beside("nowhere"), "--out", bad})),
+                    AllOf(HasSubstr("output folder"), HasSubstr(bad.string())));
+    }
+    EXPECT_EQ(read_text(beside("file")), "content");
+    EXPECT_THAT(failure_of_run(sequence(), {"--dump-graph", beside("nowhere") / "graph"}),
+                HasSubstr("there is no folder"));
+}
+
+TEST_F(Arguments, BadSettingsAreNamed) {
+    const auto complaint = [&](const std::string& setting) {
+        return expect_failure(patina({"run", sequence(), "--out", out(), "--set", setting}));
+    };
+    EXPECT_THAT(complaint("map.voxels=3"), AllOf(HasSubstr("no setting 'map.voxels'"), HasSubstr("map.voxel_m")));
+    EXPECT_THAT(complaint("map.voxel_m=thick"), AllOf(HasSubstr("map.voxel_m"), HasSubstr("'thick'")));
+    EXPECT_THAT(complaint("map.voxel_m=-1"), HasSubstr("map.voxel_m"));
+    EXPECT_THAT(complaint("map.voxel_m"), HasSubstr("no '='"));
+    EXPECT_THAT(complaint("map.capacity_blocks=1.5"), HasSubstr("whole number"));
+    EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Arguments, SettingsThatNoRunCanUse) {
+    const auto complaint = [&](const char* setting) { return failure_of_run(sequence(), {"--set", setting}); };
+    EXPECT_THAT(complaint("map.voxel_m=0"), HasSubstr("voxel size is 0 m"));
+    EXPECT_THAT(complaint("map.capacity_blocks=0"), HasSubstr("capacity is 0 blocks"));
+    EXPECT_THAT(complaint("map.capacity_blocks=4294967295"), HasSubstr("capacity is 4294967295 blocks"));
+    EXPECT_THAT(complaint("fusion.allocation_stride_px=0"), HasSubstr("fusion.allocation_stride_px is 0"));
+    EXPECT_THAT(complaint("fusion.max_weight=0"), HasSubstr("fusion.max_weight is 0"));
+    EXPECT_THAT(complaint("fusion.max_color_weight=65536"), HasSubstr("fusion.max_color_weight is 65536"));
+    EXPECT_THAT(complaint("fusion.truncation_m=0.5"), HasSubstr("truncation band is 0.52 m wide"));
+}
+
+TEST_F(Arguments, BadSettingsFilesAreNamed) {
+    const fs::path file = beside("settings.toml");
+    const auto complaint = [&] {
+        return expect_failure(patina({"run", sequence(), "--out", out(), "--settings", file}));
+    };
+    EXPECT_THAT(complaint(), AllOf(HasSubstr("settings.toml"), HasSubstr("does not exist")));
+    write_text(file, "[map]\nvoxel_m = \n");
+    EXPECT_THAT(complaint(), HasSubstr("settings.toml, line 2"));
+    write_text(file, "[map]\nvoxels = 3\n");
+    EXPECT_THAT(complaint(), AllOf(HasSubstr("settings.toml"), HasSubstr("no setting 'map.voxels'")));
+    write_text(file, "voxel_m = 0.01\n");
+    EXPECT_THAT(complaint(), HasSubstr("'voxel_m' is not a table"));
+}
+
+TEST_F(Arguments, SettingsAreEchoed) {
+    const fs::path file = beside("settings.toml");
+    write_text(file, "[map]\nvoxel_m = 0.02\ncapacity_blocks = 1000\n[fusion]\nmax_depth_m = 3\n");
+    const nlohmann::json record = run_quietly(
+        sequence(), {"--settings", file, "--set", "map.capacity_blocks=2000", "--frames", "2", "--seed", "7"});
+    const nlohmann::json& settings = record["settings"];
+    EXPECT_EQ(settings["map.voxel_m"], 0.02);
+    EXPECT_EQ(settings["map.capacity_blocks"], 2000) << "the command line wins over the file";
+    EXPECT_EQ(settings["fusion.max_depth_m"], 3);
+    EXPECT_EQ(settings["fusion.max_weight"], 128) << "defaults are echoed too";
+    EXPECT_EQ(settings["frames"], 2);
+    EXPECT_EQ(record["seed"], 7);
+    EXPECT_EQ(record["frames"]["used"], 2);
+}
+
+}  // namespace
+}  // namespace patina::testing

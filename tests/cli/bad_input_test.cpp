@@ -1,0 +1,146 @@
+#include <functional>
+
+#include "sensor/picture_file.h"
+#include "tests/cli/run_folder.h"
+
+// What the outside does wrong, as a user meets it: one line that names the cause, and nothing lost.
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using sensor::testing::read_text;
+using sensor::testing::replace_text;
+using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class BadInput : public RunFolderTest {
+  protected:
+    /// Runs the sequence, in which frame 1 alone is damaged; returns the reason why it is skipped.
+    std::string reason_of_skipped_frame() {
+        const nlohmann::json record = run_quietly(sequence().string());
+        const nlohmann::json frames = record.value("frames", nlohmann::json::object());
+        EXPECT_EQ(frames.value("read", 0), 3);
+        EXPECT_EQ(frames.value("used", 0), 2);
+        const nlohmann::json skipped = frames.value("skipped", nlohmann::json::array());
+        if (skipped.size() != 1 || skipped[0].value("index", 0) != 1) {
+            ADD_FAILURE() << "skipped: " << skipped;
+            return "";
+        }
+        EXPECT_TRUE(fs::exists(out() / "scene.glb"));
+        return skipped[0].value("reason", "");
+    }
+
+    /// Applies `change` to sequence.json.
+    void edit_sequence(const std::function<void(nlohmann::json&)>& change) {
+        nlohmann::json json = nlohmann::json::parse(read_text(sequence() / "sequence.json"));
+        change(json);
+        write_text(sequence() / "sequence.json", json.dump());
+    }
+};
+
+TEST_F(BadInput, MissingSequence) {
+    EXPECT_THAT(failure_of_run(beside("nowhere")), AllOf(HasSubstr("nowhere"), HasSubstr("does not exist")));
+}
+
+TEST_F(BadInput, FolderThatHoldsNoSequence) {
+    fs::create_directory(beside("empty"));
+    EXPECT_THAT(failure_of_run(beside("empty")), HasSubstr(beside("empty").string()));
+}
+
+TEST_F(BadInput, TruncatedPictureIsSkipped) {
+    sensor::testing::shorten(sequence() / "depth/000001.png", 20);
+    EXPECT_THAT(reason_of_skipped_frame(), AllOf(HasSubstr("depth/000001.png"), HasSubstr("truncated")));
+}
+
+TEST_F(BadInput, MissingPictureIsSkipped) {
+    fs::remove(sequence() / "color/000001.png");
+    EXPECT_THAT(reason_of_skipped_frame(), HasSubstr("color/000001 is missing"));
+}
+
+TEST_F(BadInput, PictureOfAnotherSizeIsSkipped) {
+    sensor::write_png(sequence() / "depth/000001.png", Image<uint16_t>({8, 6}));
+    EXPECT_THAT(reason_of_skipped_frame(),
+                AllOf(HasSubstr("depth/000001.png"), HasSubstr("8 x 6"), HasSubstr("16 x 12")));
+}
+
+TEST_F(BadInput, PoseThatIsNoNumberIsSkipped) {
+    write_text(sequence() / "trajectory.txt", "0 0 0 0 0 0 0 1\n0.03333 nan 0 0 0 0 0 1\n0.06667 0 0 0 0 0 0 1\n");
+    EXPECT_THAT(reason_of_skipped_frame(), HasSubstr("trajectory.txt:2"));
+}
+
+TEST_F(BadInput, FrameWithoutPoseIsSkipped) {
+    write_text(sequence() / "trajectory.txt", "0 0 0 0 0 0 0 1\n0.06667 0 0 0 0 0 0 1\n");
+    EXPECT_THAT(reason_of_skipped_frame(), HasSubstr("no pose"));
+}
+
+TEST_F(BadInput, SkippedFramesAreToldAsTheyHappen) {
+    fs::remove(sequence() / "color/000001.png");
+    const Outcome outcome = patina({"run", sequence(), "--out", out()});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("frame 1 is skipped: "));
+    EXPECT_THAT(outcome.out, HasSubstr("2 of 3 frames"));
+}
+
+TEST_F(BadInput, NoUsableFrame) {
+    for (const auto& picture : fs::directory_iterator(sequence() / "depth")) fs::resize_file(picture, 40);
+    EXPECT_THAT(failure_of_run(sequence()), AllOf(HasSubstr("no frame"), HasSubstr("depth/000000.png")));
+}
+
+TEST_F(BadInput, MissingIntrinsics) {
+    edit_sequence([](nlohmann::json& json) { json["depth"].erase("fx"); });
+    EXPECT_THAT(failure_of_run(sequence()), AllOf(HasSubstr("sequence.json"), HasSubstr("depth.fx")));
+}
+
+TEST_F(BadInput, ZeroFrames) {
+    edit_sequence([](nlohmann::json& json) { json["frames"] = 0; });
+    EXPECT_THAT(failure_of_run(sequence()), AllOf(HasSubstr("sequence.json"), HasSubstr("frames")));
+}
+
+TEST_F(BadInput, NoPoses) {
+    fs::remove(sequence() / "trajectory.txt");
+    EXPECT_THAT(failure_of_run(sequence()), AllOf(HasSubstr("no poses"), HasSubstr("not supported yet")));
+}
+
+TEST_F(BadInput, UnknownScene) {
+    EXPECT_THAT(failure_of_run("synthetic:teapots"), AllOf(HasSubstr("'teapots'"), HasSubstr("cubes")));
+}
+
+TEST_F(BadInput, UnknownSceneOfSynth) {
+    EXPECT_THAT(expect_failure(patina({"synth", "teapots", "--out", beside("teapots")})), HasSubstr("'teapots'"));
+    EXPECT_FALSE(fs::exists(beside("teapots")));
+}
+
+TEST_F(BadInput, InfoOfNothing) {
+    EXPECT_THAT(expect_failure(patina({"info", beside("nowhere")})), HasSubstr("nowhere"));
+}
+
+TEST_F(BadInput, FullVoxelPoolEndsWell) {
+    const Outcome outcome =
+        patina({"run", "synthetic:cubes", "--frames", "2", "--out", out(), "--set", "map.capacity_blocks=200"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    const nlohmann::json record = record_of(out());
+    EXPECT_EQ(record["voxel_pool"]["blocks_used"], 200);
+    const uint64_t refused = record["voxel_pool"]["blocks_refused"];
+    EXPECT_GT(refused, 0u);
+    EXPECT_THAT(outcome.err, HasSubstr("the voxel pool of 200 blocks is full"));
+    EXPECT_THAT(outcome.out, HasSubstr(std::to_string(refused) + " requests for a block were refused"));
+    EXPECT_EQ(read_text(out() / "scene.glb").substr(0, 4), "glTF");
+    EXPECT_GT(record["totals"]["triangles"], 0);
+}
+
+const Program::Environment kNoDriver{{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
+
+TEST_F(BadInput, NoDevice) {
+    EXPECT_THAT(failure_of_run(sequence(), {}, kNoDriver), HasSubstr("no Vulkan driver was found: install"));
+    EXPECT_THAT(expect_failure(patina({"doctor"}, kNoDriver)), HasSubstr("no Vulkan driver was found: install"));
+}
+
+TEST_F(BadInput, UnknownDevice) {
+    EXPECT_THAT(failure_of_run(sequence(), {"--device", "abacus"}), AllOf(HasSubstr("'abacus'"), HasSubstr("0 '")));
+    EXPECT_THAT(failure_of_run(sequence(), {"--device", "7"}), AllOf(HasSubstr("'7'"), HasSubstr("0 '")));
+}
+
+}  // namespace
+}  // namespace patina::testing

@@ -1,0 +1,121 @@
+#include "passes/reconstruction.h"
+
+#include <algorithm>
+
+#include "sensor/synthetic/synthetic_source.h"
+#include "tests/gpu/gpu_test.h"
+#include "tools/rgbd_frame.h"
+
+namespace patina {
+namespace {
+
+using ::testing::IsEmpty;
+
+/// Small enough for hundreds of reconstructions, large enough to chunk nothing away.
+ReconstructionSettings small_settings() {
+    ReconstructionSettings settings;
+    settings.map.voxel_m = 0.02f;
+    settings.map.capacity_blocks = 4096;
+    settings.fusion.truncation_m = 0.06f;
+    return settings;
+}
+
+/// A few frames of the built-in scene.
+struct Cubes {
+    Cubes(vulkan::Device& device, uint32_t count) {
+        sensor::SyntheticSource source(device, sensor::make_scene("cubes"), count);
+        info = source.info();
+        while (auto reading = source.next()) frames.push_back(std::get<sensor::Frame>(std::move(*reading)));
+    }
+
+    void add_to(Reconstruction& reconstruction, uint32_t index) const {
+        reconstruction.add(tools::to_rgbd(info, frames[index]));
+    }
+
+    sensor::SequenceInfo info;
+    std::vector<sensor::Frame> frames;
+};
+
+class ReconstructionTest : public GpuTest {
+  protected:
+    /// Shows the last frame to the checker, which must find it right and each of its barriers needed.
+    void expect_sound(Reconstruction& reconstruction, const std::string& which) {
+        const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+        EXPECT_THAT(graph::check(compiled.description, compiled.plan), IsEmpty()) << which;
+        EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), IsEmpty()) << which;
+    }
+
+    const Cubes cubes_{device(), 4};
+};
+
+TEST_F(ReconstructionTest, EveryFrameShapeIsOrderedByBarriersThatAreAllNeeded) {
+    for (const bool view_every_frame : {false, true}) {
+        ReconstructionSettings settings = small_settings();
+        settings.remove_every = 2;
+        settings.view_every_frame = view_every_frame;
+        Reconstruction reconstruction(device(), settings);
+        for (uint32_t i = 0; i < 4; ++i) {
+            cubes_.add_to(reconstruction, i);
+            expect_sound(reconstruction, text("frame ", i, view_every_frame ? " with" : " without", " view"));
+        }
+        const PendingView view = reconstruction.view(cubes_.info.color, *cubes_.frames[3].world_from_camera);
+        expect_sound(reconstruction, "view");
+        reconstruction.extract_surface();
+        expect_sound(reconstruction, "last frame of the surface extraction");
+        EXPECT_TRUE(view.ready());
+    }
+}
+
+TEST_F(ReconstructionTest, AFrameOfAKnownShapeIsNotCompiledAgain) {
+    ReconstructionSettings settings = small_settings();
+    settings.remove_every = 0;
+    Reconstruction reconstruction(device(), settings);
+    cubes_.add_to(reconstruction, 0);
+    const uint32_t compilations = reconstruction.runner().compilations();
+    for (uint32_t i = 1; i < 4; ++i) cubes_.add_to(reconstruction, i);
+    EXPECT_EQ(reconstruction.runner().compilations(), compilations);
+}
+
+TEST_F(ReconstructionTest, OneFrameOfGeometryTakesFewDispatches) {
+    ReconstructionSettings settings = small_settings();
+    settings.remove_every = 1;
+    settings.view_every_frame = true;
+    Reconstruction reconstruction(device(), settings);
+    cubes_.add_to(reconstruction, 0);
+    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    const auto dispatches = std::ranges::count_if(compiled.plan.order, [&](uint32_t pass) {
+        return std::ranges::none_of(compiled.description.passes[pass].accesses, [](const graph::Access& access) {
+            return graph::scope_of(access.use).stages == graph::kStageTransfer;
+        });
+    });
+    EXPECT_GT(dispatches, 8);
+    EXPECT_LE(dispatches, 25);
+}
+
+TEST_F(ReconstructionTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
+    vulkan::DeviceOptions options;
+    options.selector = device().caps().name;
+    options.validation = true;
+    constexpr uint32_t kEnough = 200;
+    uint32_t failures = 0;
+    for (bool succeeded = false; !succeeded; ++failures) {
+        ASSERT_LT(failures, kEnough) << "the run never succeeds";
+        options.fail_allocation_at = failures + 1;
+        vulkan::Device failing(options);
+        try {
+            Reconstruction reconstruction(failing, small_settings());
+            cubes_.add_to(reconstruction, 0);
+            const PendingView view = reconstruction.view(cubes_.info.color, *cubes_.frames[0].world_from_camera);
+            reconstruction.extract_surface();
+            succeeded = true;
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), ::testing::ContainsRegex("out of memory.*'.+'")) << "allocation " << failures + 1;
+        }
+        EXPECT_THAT(failing.validation_messages(), IsEmpty()) << "allocation " << failures + 1;
+        EXPECT_EQ(failing.shared_context().use_count(), 1) << "something outlives allocation " << failures + 1;
+    }
+    EXPECT_GT(failures, 10u);
+}
+
+}  // namespace
+}  // namespace patina
