@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <variant>
+
+#include <glm/glm.hpp>
 
 #include "engine/core/camera.h"
 #include "engine/core/image.h"
@@ -17,8 +18,8 @@ using SrgbPixel = glm::u8vec3;
 /// A colour picture: 8-bit sRGB, or linear radiance as floats.
 using ColorImage = std::variant<Image<SrgbPixel>, Image<glm::vec3>>;
 
-/// A depth picture: raw integer units (see SequenceInfo::metres_per_unit), or metres. 0, the format's own invalid value (which
-/// readers turn into 0) and non-finite values mean 'no reading'.
+/// A depth picture: raw integer units (see SequenceInfo::metres_per_unit), or metres. 0, the format's own invalid value
+/// (which readers turn into 0) and non-finite values mean 'no reading'.
 using DepthImage = std::variant<Image<uint16_t>, Image<float>>;
 
 /// Exposure of one frame; only ratios between frames and sequences of one camera matter.

@@ -27,15 +27,9 @@ PictureFile load(const std::filesystem::path& path) {
     if (!format) throw Error(file.name, " is neither PNG, JPEG nor OpenEXR: it has ", file.bytes.size(), " bytes");
     file.format = *format;
     switch (file.format) {
-        case PictureFormat::kPng:
-            file.extent = check_png(file.bytes, file.name);
-            break;
-        case PictureFormat::kJpeg:
-            file.extent = check_jpeg(file.bytes, file.name);
-            break;
-        case PictureFormat::kExr:
-            file.extent = exr_extent(path);
-            break;
+        case PictureFormat::kPng: file.extent = check_png(file.bytes, file.name); break;
+        case PictureFormat::kJpeg: file.extent = check_jpeg(file.bytes, file.name); break;
+        case PictureFormat::kExr: file.extent = exr_extent(path); break;
     }
     return file;
 }

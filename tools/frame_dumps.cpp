@@ -26,7 +26,8 @@ FrameDump to_dump(const ModelView& view) {
 
 }  // namespace
 
-FrameDumps::FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every) : folder_(folder), dump_every_(dump_every) {
+FrameDumps::FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every)
+    : folder_(folder), dump_every_(dump_every) {
     // At the end of each quarter, when the model holds what the camera has seen so far.
     for (uint32_t i = 1; i <= kPreviews; ++i) {
         const uint32_t at = static_cast<uint32_t>(uint64_t{frames} * i / kPreviews);

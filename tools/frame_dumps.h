@@ -17,7 +17,8 @@ namespace patina::tools {
 /// previews/NNNNNN.png.
 class FrameDumps {
   public:
-    /// `dump_every`: EXR of every so many frames of the sequence, 0 for none. A few previews are spread over the `frames` frames.
+    /// `dump_every`: EXR of every so many frames of the sequence, 0 for none. A few previews are spread over the
+    /// `frames` frames.
     FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every);
 
     /// To be called after each fused frame: asks for what this frame owes, and writes what has arrived.

@@ -10,8 +10,8 @@ class Interrupted : public Error {
     using Error::Error;
 };
 
-/// While it lives, SIGINT and SIGTERM are noted instead of ending the program, so that work can stop between frames. A second
-/// signal ends the program at once.
+/// While it lives, SIGINT and SIGTERM are noted instead of ending the program, so that work can stop between frames. A
+/// second signal ends the program at once.
 class InterruptGuard {
   public:
     InterruptGuard();

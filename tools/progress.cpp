@@ -1,9 +1,9 @@
 #include "tools/progress.h"
 
+#include <cstdio>
+
 #include <fmt/format.h>
 #include <unistd.h>
-
-#include <cstdio>
 
 namespace patina::tools {
 

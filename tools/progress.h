@@ -6,8 +6,8 @@
 
 namespace patina::tools {
 
-/// Tells a person how far a run is, on standard error: one line that is rewritten on a terminal, one line a second elsewhere,
-/// nothing when quiet.
+/// Tells a person how far a run is, on standard error: one line that is rewritten on a terminal, one line a second
+/// elsewhere, nothing when quiet.
 class Progress {
   public:
     Progress(uint32_t total, bool quiet);

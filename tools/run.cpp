@@ -1,11 +1,11 @@
 #include "tools/run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <optional>
+
+#include <fmt/format.h>
 
 #include "engine/graph/plan/plan.h"
 #include "sensor/ledger.h"
@@ -40,15 +40,17 @@ bool is_synthetic(const RunOptions& options) { return options.sequence.starts_wi
 std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
     auto source = sensor::open_sequence(options.sequence, options.format);
     if (!source->info().has_poses) {
-        throw Error("the sequence '", options.sequence,
-                    "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
+        throw Error(
+            "the sequence '", options.sequence,
+            "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
     }
     return std::make_unique<sensor::PrefetchSource>(std::move(source));
 }
 
 std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
     const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
-    return std::make_unique<sensor::SyntheticSource>(device, sensor::make_scene(options.sequence.substr(kSynthetic.size())), frames);
+    return std::make_unique<sensor::SyntheticSource>(
+        device, sensor::make_scene(options.sequence.substr(kSynthetic.size())), frames);
 }
 
 PassTime summarised(const graph::Timing& timing) {
@@ -61,7 +63,8 @@ PassTime summarised(const graph::Timing& timing) {
 void check_graph_folder(const std::filesystem::path& dump_graph) {
     const std::filesystem::path parent = dump_graph.parent_path();
     if (!parent.empty() && !std::filesystem::is_directory(parent)) {
-        throw Error("the graph cannot be written to '", dump_graph.string(), "': there is no folder '", parent.string(), "'");
+        throw Error("the graph cannot be written to '", dump_graph.string(), "': there is no folder '", parent.string(),
+                    "'");
     }
 }
 
@@ -106,8 +109,8 @@ class Run {
         dumps_->finish();
         if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
         if (ledger_.used() == 0) {
-            throw Error("no frame of '", options_.sequence, "' could be used; the first was skipped because: ",
-                        ledger_.skipped().front().reason);
+            throw Error("no frame of '", options_.sequence,
+                        "' could be used; the first was skipped because: ", ledger_.skipped().front().reason);
         }
         times_s_.emplace_back("frames", seconds_since(start_));
     }
@@ -216,16 +219,19 @@ class Run {
     std::vector<std::string> warnings(const gpu::MapCounters& counters) const {
         std::vector<std::string> list;
         if (counters.refused_blocks > 0) {
-            list.push_back(fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
-                                       "map.capacity_blocks, or map.voxel_m",
-                                       counters.refused_blocks, options_.settings.map.capacity_blocks));
+            list.push_back(
+                fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
+                            "map.capacity_blocks, or map.voxel_m",
+                            counters.refused_blocks, options_.settings.map.capacity_blocks));
         }
         if (counters.refused_samples > 0) {
-            list.push_back(fmt::format("the voxel table was full: {} ray samples were left out", counters.refused_samples));
+            list.push_back(
+                fmt::format("the voxel table was full: {} ray samples were left out", counters.refused_samples));
         }
         if (counters.outside_samples > 0) {
-            list.push_back(fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",
-                                       counters.outside_samples));
+            list.push_back(
+                fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",
+                            counters.outside_samples));
         }
         return list;
     }

@@ -23,8 +23,8 @@ struct RunOptions {
     ReconstructionSettings settings;
 };
 
-/// Reconstructs a sequence and writes the run's folder; run.json comes last. Throws Error for whatever stops the run, Interrupted when the
-/// user does; what was complete in the folder stays.
+/// Reconstructs a sequence and writes the run's folder; run.json comes last. Throws Error for whatever stops the run,
+/// Interrupted when the user does; what was complete in the folder stays.
 void run(const RunOptions& options);
 
 }  // namespace patina::tools

@@ -1,11 +1,11 @@
 #include "tools/run_settings.h"
 
-#include <toml++/toml.h>
-
 #include <cmath>
 #include <optional>
 #include <sstream>
 #include <type_traits>
+
+#include <toml++/toml.h>
 
 #include "engine/core/error.h"
 
@@ -37,7 +37,8 @@ void for_each_setting(Settings& s, Visit&& visit) {
 std::string known_keys() {
     std::string keys;
     const ReconstructionSettings defaults;
-    for_each_setting(defaults, [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
+    for_each_setting(defaults,
+                     [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
 }
 
@@ -55,15 +56,16 @@ bool assign(Value& setting, double number) {
     return true;
 }
 
-void set(ReconstructionSettings& settings, const std::string& key, std::optional<double> number, const std::string& written,
-         const std::string& where) {
+void set(ReconstructionSettings& settings, const std::string& key, std::optional<double> number,
+         const std::string& written, const std::string& where) {
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;
         known = true;
         if (!number || !assign(setting, *number)) {
-            throw Error(where, ": ", key, " is ", written, ", it must be a non-negative ",
-                        std::is_floating_point_v<std::remove_reference_t<decltype(setting)>> ? "number" : "whole number");
+            throw Error(
+                where, ": ", key, " is ", written, ", it must be a non-negative ",
+                std::is_floating_point_v<std::remove_reference_t<decltype(setting)>> ? "number" : "whole number");
         }
     });
     if (!known) throw Error(where, ": there is no setting '", key, "'; known are ", known_keys());

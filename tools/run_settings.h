@@ -1,15 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "passes/reconstruction.h"
 
 namespace patina::tools {
 
-/// Overrides settings from a TOML file, tables [map], [fusion], [input]. Throws Error naming the file, the key, and what is wrong.
+/// Overrides settings from a TOML file, tables [map], [fusion], [input]. Throws Error naming the file, the key, and
+/// what is wrong.
 void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file);
 
 /// Overrides one setting from "fusion.max_depth_m=3". Throws Error naming the key or the value.

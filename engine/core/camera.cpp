@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <limits>
+
+#include <glm/gtc/quaternion.hpp>
 
 namespace patina {
 

@@ -14,8 +14,9 @@ std::string text(const Parts&... parts) {
     return out.str();
 }
 
-/// What the outside causes: a file, a device, memory, settings, or a badly wired graph. The message is one sentence that
-/// names the pass or file, the resource or line, and the two values that disagree. Caught once, at a program's border.
+/// What the outside causes: a file, a device, memory, settings, or a badly wired graph. The message is one sentence
+/// that names the pass or file, the resource or line, and the two values that disagree. Caught once, at a program's
+/// border.
 class Error : public std::runtime_error {
   public:
     template <class... Parts>
@@ -28,10 +29,11 @@ namespace detail {
 
 }  // namespace patina
 
-/// Stops the program on a bug in our own code; the further arguments are the values that show it. Active in every build.
-#define PATINA_ASSERT(condition, ...)                                                                         \
-    do {                                                                                                      \
-        if (!(condition)) {                                                                                   \
-            ::patina::detail::assertion_failed(#condition, __FILE__, __LINE__, ::patina::text(__VA_ARGS__));  \
-        }                                                                                                     \
+/// Stops the program on a bug in our own code; the further arguments are the values that show it. Active in every
+/// build.
+#define PATINA_ASSERT(condition, ...)                                                                        \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            ::patina::detail::assertion_failed(#condition, __FILE__, __LINE__, ::patina::text(__VA_ARGS__)); \
+        }                                                                                                    \
     } while (false)

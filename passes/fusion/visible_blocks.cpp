@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "spirv/shaders.h"
 
@@ -10,29 +11,49 @@ namespace patina {
 namespace {
 
 /// The view grid's most cells: 128 MiB, which every device can bind.
-constexpr double kMaxGridCells = 1 << 25;
+constexpr uint64_t kMaxGridCells = uint64_t{1} << 25;
 
-/// The box of blocks around the frustum between the camera and far_m.
-void set_grid(gpu::ViewParams& params) {
-    const glm::dmat4 world_from_camera = glm::inverse(glm::dmat4(params.camera.camera_from_world));
-    const double block_m = double(params.grid.voxel_m) * gpu::kBlockEdge;
-    glm::dvec3 low(world_from_camera[3]), high(low);
+/// The camera's centre and where the corners of its image lie at far_m, in camera coordinates (metres).
+std::array<glm::dvec3, 5> frustum_points(const gpu::ViewParams& params) {
+    const glm::dvec4 k(params.camera.focal_center_px);
+    std::array<glm::dvec3, 5> points{};
     for (int corner = 0; corner < 4; ++corner) {
         const double u = corner & 1 ? params.camera.extent.x - 0.5 : -0.5;
         const double v = corner & 2 ? params.camera.extent.y - 0.5 : -0.5;
-        const glm::dvec4 k(params.camera.focal_center_px);
-        const glm::dvec3 ray((u - k.z) / k.x, (v - k.w) / k.y, 1);
-        const glm::dvec3 point(world_from_camera * glm::dvec4(ray * double(params.far_m), 1));
-        low = glm::min(low, point);
-        high = glm::max(high, point);
+        points[corner] = glm::dvec3((u - k.z) / k.x, (v - k.w) / k.y, 1) * double(params.far_m);
     }
-    // One block more on each side, for blocks that reach into the frustum by their margin alone.
-    params.grid_low = glm::ivec4(glm::ivec3(glm::floor(low / block_m)) - 1, 0);
-    params.grid_size = glm::uvec4(glm::uvec3(glm::ivec3(glm::floor(high / block_m)) + 2 - glm::ivec3(params.grid_low)), 0);
+    return points;
 }
 
-uint64_t cells_of(const gpu::ViewParams& params) {
-    return uint64_t{params.grid_size.x} * params.grid_size.y * params.grid_size.z;
+double block_edge_m(const gpu::ViewParams& params) { return double(params.grid.voxel_m) * gpu::kBlockEdge; }
+
+/// Cells enough for the frustum however the camera is turned, so that frames keep their shape: a cube as wide as its
+/// two points farthest apart. One block more on each side, for blocks that reach into the frustum by their margin
+/// alone.
+uint64_t cells_for_any_pose(const gpu::ViewParams& params) {
+    double widest_m = 0;
+    const auto points = frustum_points(params);
+    for (const glm::dvec3& a : points) {
+        for (const glm::dvec3& b : points) widest_m = std::max(widest_m, glm::length(a - b));
+    }
+    const auto edge = static_cast<uint64_t>(widest_m / block_edge_m(params)) + 4;
+    return edge * edge * edge;
+}
+
+/// The box of blocks around the frustum.
+void place_grid(gpu::ViewParams& params) {
+    const glm::dmat4 world_from_camera = glm::inverse(glm::dmat4(params.camera.camera_from_world));
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
+    for (const glm::dvec3& point : frustum_points(params)) {
+        const glm::dvec3 world(world_from_camera * glm::dvec4(point, 1));
+        low = glm::min(low, world);
+        high = glm::max(high, world);
+    }
+    const double block_m = block_edge_m(params);
+    const glm::ivec3 first = glm::ivec3(glm::floor(low / block_m)) - 1;
+    const glm::ivec3 last = glm::ivec3(glm::floor(high / block_m)) + 1;
+    params.grid_low = glm::ivec4(first, 0);
+    params.grid_size = glm::uvec4(glm::uvec3(last - first + 1), 0);
 }
 
 }  // namespace
@@ -45,11 +66,8 @@ VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const
     params.near_m = near_m;
     params.far_m = far_m;
     params.tiles = (camera.extent + gpu::kTileEdge - 1u) / gpu::kTileEdge;
-    set_grid(params);
-    while (static_cast<double>(cells_of(params)) > kMaxGridCells) {
-        params.far_m *= 0.9f;
-        set_grid(params);
-    }
+    while (cells_for_any_pose(params) > kMaxGridCells) params.far_m *= 0.9f;
+    place_grid(params);
 
     VisibleBlocks visible;
     visible.extent = {camera.extent.x, camera.extent.y};
@@ -59,7 +77,8 @@ VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const
     visible.tiles = frame.fill(
         frame.create_buffer("fusion.tiles", params.tiles.x * params.tiles.y * sizeof(gpu::TileRange)), UINT32_MAX);
 
-    visible.grid = frame.fill(frame.create_buffer("fusion.view_grid", cells_of(params) * sizeof(uint32_t)), gpu::kNoBlock);
+    visible.grid = frame.fill(frame.create_buffer("fusion.view_grid", cells_for_any_pose(params) * sizeof(uint32_t)),
+                              gpu::kNoBlock);
 
     auto pass = frame.compute("fusion.visible_blocks", spirv::visible_blocks);
     pass.read("BlockKeys", ids.block_keys).read("Counters", ids.counters).read("View", visible.view);

@@ -11,14 +11,15 @@ struct VisibleBlocks {
     graph::BufferId view;       ///< gpu::ViewParams
     graph::BufferId list;       ///< u32: count, then block ids in no particular order
     graph::BufferId arguments;  ///< dispatch of one group per listed block, in rows of gpu::kGroupsPerRow
-    graph::BufferId grid;       ///< u32 per block of the box around the frustum, x fastest: block id, kNoBlock where none is visible
-    graph::BufferId tiles;      ///< gpu::TileRange per tile of kTileEdge x kTileEdge pixels, row by row
-    Extent2D extent;            ///< of the camera's image
+    graph::BufferId
+        grid;  ///< u32 per block of the box around the frustum, x fastest: block id, kNoBlock where none is visible
+    graph::BufferId tiles;  ///< gpu::TileRange per tile of kTileEdge x kTileEdge pixels, row by row
+    Extent2D extent;        ///< of the camera's image
 };
 
 /// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, and finds the depth range
 /// in which the rays of each image tile can meet blocks (ray interval splatting, Niessner et al. 2013). far_m is
-/// shortened where the grid of blocks around the frustum would take more than 128 MiB (at 5 mm voxels beyond 9 m).
+/// shortened where the grid of blocks around the frustum would take more than 128 MiB (at 5 mm voxels beyond some 9 m).
 VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                  const gpu::Camera& camera, float near_m, float far_m);
 

@@ -30,9 +30,9 @@ VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : s
     if (!(settings.voxel_m >= 1e-4f && settings.voxel_m <= 1.0f)) {
         throw Error("the voxel size is ", settings.voxel_m, " m, it must be 0.0001 to 1");
     }
-    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets. A small
-    // pool's table still takes all keys of a frame: which of them get a block is a matter of the keys, but which would
-    // find room in a full table is one of who comes first.
+    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets. A
+    // small pool's table still takes all keys of a frame: which of them get a block is a matter of the keys, but which
+    // would find room in a full table is one of who comes first.
     table_slots_ = std::bit_ceil(std::max(capacity, 32768u)) * 4;
     grid_.voxel_m = settings.voxel_m;
     grid_.bucket_mask = table_slots_ / gpu::kBucketSlots - 1;

@@ -29,8 +29,9 @@ struct VoxelMapIds {
     graph::BufferId counters;          ///< gpu::MapCounters
     graph::BufferId assign_arguments;  ///< dispatch over the new slots
     graph::BufferId block_arguments;   ///< dispatch over all block ids below the high-water mark, 64 a group
-    graph::BufferId tsdf;   ///< u32 per voxel, chunked: snorm16 distance in units of kSdfRangeVox voxels | u16 weight
-    graph::BufferId color;  ///< u32 per voxel, chunked: 11 + 11 + 10 bits of root-encoded linear colour; 0 where none was seen
+    graph::BufferId tsdf;  ///< u32 per voxel, chunked: snorm16 distance in units of kSdfRangeVox voxels | u16 weight
+    graph::BufferId
+        color;  ///< u32 per voxel, chunked: 11 + 11 + 10 bits of root-encoded linear colour; 0 where none was seen
 };
 
 /// The sparse TSDF volume: a hash table of 32-bit block keys in buckets of four, and a pool of blocks of 8^3 voxels

@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 namespace patina {
 

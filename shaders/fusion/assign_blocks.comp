@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup per new key: pops a block from the free list, clears its voxels, and enters it in the table; or leaves the key
-// without a block when it was not among those accepted.
-#include "lib/voxel_map.glsl"
+// One workgroup per new key: pops a block from the free list, clears its voxels, and enters it in the table; or leaves
+// the key without a block when it was not among those accepted.
 #include "lib/voxel_chunks.glsl"
+#include "lib/voxel_map.glsl"
 #include "shared/allocate_blocks.h"
 
 layout(local_size_x = kAssignGroup) in;
@@ -13,8 +13,10 @@ layout(std430, binding = 2) readonly buffer FreeList { uint free_list[]; };
 layout(std430, binding = 3) buffer Counters { MapCounters counters; };
 layout(std430, binding = 4) buffer Blocks { uint blocks[]; };
 layout(std430, binding = 5) buffer BlockKeys { uint block_keys[]; };
-layout(std430, binding = 6) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxVoxelChunks];
-layout(std430, binding = 12) buffer Color { uvec4 quads[]; } color[kMaxVoxelChunks];
+layout(std430, binding = 6) buffer Tsdf { uvec4 quads[]; }
+tsdf[kMaxVoxelChunks];
+layout(std430, binding = 12) buffer Color { uvec4 quads[]; }
+color[kMaxVoxelChunks];
 layout(push_constant) uniform Push { VoxelGrid grid; };
 
 shared uint block;
@@ -36,10 +38,10 @@ void main() {
     barrier();
     if (block == kNoBlock) return;
     const uint first = index_in_chunk(grid.chunk_shift, block) * (kBlockVoxels / 4u);
-#define CLEAR(C)                                                                                    \
-    for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels / 4u; i += kAssignGroup) {              \
-        tsdf[C].quads[first + i] = uvec4(0u);                                                       \
-        color[C].quads[first + i] = uvec4(0u);                                                      \
+#define CLEAR(C)                                                                       \
+    for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels / 4u; i += kAssignGroup) { \
+        tsdf[C].quads[first + i] = uvec4(0u);                                          \
+        color[C].quads[first + i] = uvec4(0u);                                         \
     }
     WITH_CHUNK(grid.chunk_shift, block, CLEAR)
 }

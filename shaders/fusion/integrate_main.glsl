@@ -1,7 +1,7 @@
 // Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block; an
-// invocation takes four voxels along x at a time (one 16-byte load and store). Curless and Levoy's running average of the distance from the
-// plane through the reading: the projective distance d - z would depend on the viewing direction, and blur what several
-// views see.
+// invocation takes four voxels along x at a time (one 16-byte load and store). Curless and Levoy's running average of
+// the distance from the plane through the reading: the projective distance d - z would depend on the viewing direction,
+// and blur what several views see.
 #include "lib/camera.glsl"
 #include "lib/slope.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -15,10 +15,12 @@ layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform Fusion { FusionParams fusion; };
 layout(binding = 3, r32f) uniform readonly image2D depth_m;
 layout(binding = 4, r32ui) uniform readonly uimage2D slope;
-layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; } tsdf[kMaxVoxelChunks];
+layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; }
+tsdf[kMaxVoxelChunks];
 #if PATINA_WITH_COLOR
 layout(binding = 6, rgba16f) uniform readonly image2D color_linear;
-layout(std430, binding = 7) buffer Color { uvec4 quads[]; } color[kMaxVoxelChunks];
+layout(std430, binding = 7) buffer Color { uvec4 quads[]; }
+color[kMaxVoxelChunks];
 #endif
 
 // Homogeneous pixel coordinates of four voxels along x: they are linear in the voxel's index.
@@ -43,7 +45,8 @@ vec2 pixel_of(Row row, int i) {
 struct Sample {
     bool valid;
     float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
-    float weight;    // whole; kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is noisier
+    float weight;    // whole; kWeightOne for a surface that faces the camera; less for an inclined one, whose depth is
+                     // noisier
 };
 
 // The nearest reading to a point that appears at `pixel`, `z` metres before the camera.
@@ -52,9 +55,9 @@ Sample sample_depth(vec2 pixel, float z) {
     const float reading = imageLoad(depth_m, ivec2(nearest)).x;
     const uint inclination = imageLoad(slope, ivec2(nearest)).x;
     const float plane_factor = slope_plane_factor(inclination);
-    // Behind the surface a reading speaks for a stretch of the ray as long as the truncation band, however inclined: at a
-    // limb the ray soon leaves the object again. And it knows less and less: beyond an edge there is free space that other
-    // views see.
+    // Behind the surface a reading speaks for a stretch of the ray as long as the truncation band, however inclined: at
+    // a limb the ray soon leaves the object again. And it knows less and less: beyond an edge there is free space that
+    // other views see.
     const float along_m = reading + dot(slope_depth_per_px(inclination), pixel - nearest) - z;
     const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
     const float trust = clamp(1.0 + along_m * fusion.inverse_truncation, 0.0, 1.0);
@@ -89,7 +92,8 @@ void integrate_quad(uint block, uint quad, ivec3 voxel, uint dither) {
     const vec3 world_m = (vec3(voxel) + 0.5) * fusion.grid.voxel_m;
     const Row row = row_of(fusion.depth_camera, world_m);
     Sample seen[4];
-    [[unroll]] for (int i = 0; i < 4; ++i) seen[i] = sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
+    [[unroll]] for (int i = 0; i < 4; ++i) seen[i] =
+        sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[quad]
 #define STORE_TSDF(C) tsdf[C].quads[quad] = voxels
     uvec4 voxels;
@@ -122,8 +126,8 @@ void main() {
     const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
     const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
     const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u);
-    // Few invocations with several quads each: on software devices every eight invocations of a group cost as much to start
-    // as the work on a quad.
+    // Few invocations with several quads each: on software devices every eight invocations of a group cost as much to
+    // start as the work on a quad.
     [[unroll]] for (uint i = 0u; i < kQuadsPerInvocation; ++i) {
         const uint quad = i * kIntegrateGroup + gl_LocalInvocationIndex;
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);

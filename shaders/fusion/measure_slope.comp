@@ -13,8 +13,8 @@ float load(ivec2 pixel) {
     return pixel == inside ? imageLoad(smooth_depth_m, inside).x : 0.0;
 }
 
-// Depth per pixel from the neighbours on both sides, or from the one that belongs to the same surface. `known` becomes false
-// where none does.
+// Depth per pixel from the neighbours on both sides, or from the one that belongs to the same surface. `known` becomes
+// false where none does.
 float difference(float before, float here, float after, float jump_m, inout bool known) {
     const bool has_before = before > 0.0 && abs(here - before) <= jump_m;
     const bool has_after = after > 0.0 && abs(after - here) <= jump_m;
@@ -32,8 +32,8 @@ void main() {
     const vec2 depth_per_px =
         vec2(difference(load(pixel - ivec2(1, 0)), here, load(pixel + ivec2(1, 0)), jump_m, known),
              difference(load(pixel - ivec2(0, 1)), here, load(pixel + ivec2(0, 1)), jump_m, known));
-    // The plane z = here + gx du + gy dv, as a plane in space: its normal is (-gx fx, -gy fy, z + gx (u - cx) + gy (v - cy)),
-    // whose product with the ray (x, y, 1) is z.
+    // The plane z = here + gx du + gy dv, as a plane in space: its normal is (-gx fx, -gy fy, z + gx (u - cx) + gy (v -
+    // cy)), whose product with the ray (x, y, 1) is z.
     const vec2 from_center = vec2(pixel) - params.focal_center_px.zw;
     const vec3 normal = vec3(-depth_per_px * params.focal_center_px.xy, here + dot(depth_per_px, from_center));
     const float plane_factor = here / max(length(normal), 1e-6);

@@ -1,4 +1,5 @@
-// Body of the ray casting shaders. The includer declares the view's grid of blocks and the map's distances and how to load them:
+// Body of the ray casting shaders. The includer declares the view's grid of blocks and the map's distances and how to
+// load them:
 //   CELL(i)         uint, the block id in a cell of the view grid
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 // The march reads nearest voxels; interpolation happens once, at the hit.
@@ -11,8 +12,10 @@
 layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
 layout(std140, binding = 0) uniform View { ViewParams view; };
 layout(std430, binding = 1) readonly buffer Tiles { TileRange tiles[]; };
-layout(binding = 2, rgba32f) uniform writeonly image2D position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
-layout(binding = 3, rgba16f) uniform writeonly image2D normal;      // world, unit length, towards free space; 0 where nothing was hit
+layout(binding = 2, rgba32f) uniform writeonly image2D
+    position_m;  // world; w: depth along the optical axis, 0 where nothing was hit
+layout(binding = 3,
+       rgba16f) uniform writeonly image2D normal;  // world, unit length, towards free space; 0 where nothing was hit
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
 ivec3 grid_low;
@@ -26,7 +29,8 @@ uint load_voxel(ivec3 coordinates) {
     const bool have = cell != kOutsideGrid && found != kNoBlock;
     const uint block = have ? found : 0u;
     const ivec3 within = coordinates & 7;
-    const uint index = index_in_chunk(chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index =
+        index_in_chunk(chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
     WITH_CHUNK(chunk_shift, block, LOAD_VOXEL)
@@ -70,8 +74,8 @@ struct Bracket {
     float outside_share;  // where between them the distances, taken as linear, are zero
 };
 
-// Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent branch
-// costs as much as its longest path.
+// Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent
+// branch costs as much as its longest path.
 Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_per_vox) {
     float outside_depth = depth;
     float here = 1.0, outside = 1.0;  // in units of kSdfRangeVox; 1 stands for unknown space
@@ -111,19 +115,25 @@ void main() {
     float depth = range.near_bits == 0xffffffffu ? far + 1.0 : max(uintBitsToFloat(range.near_bits), view.near_m);
     vec4 hit_position = vec4(0.0);
     vec4 hit_normal = vec4(0.0);
+    bool marching = true;
+    float estimate = 0.0;
     for (uint attempt = 0u; attempt < kMaxAttempts && depth < far; ++attempt) {
-        const Bracket bracket = march(origin, direction, depth, far, depth_per_vox);
-        if (!bracket.found) break;
-        const float estimate = mix(bracket.outside_depth, bracket.inside_depth, bracket.outside_share);
+        if (marching) {
+            const Bracket bracket = march(origin, direction, depth, far, depth_per_vox);
+            if (!bracket.found) break;
+            estimate = mix(bracket.outside_depth, bracket.inside_depth, bracket.outside_share);
+            depth = bracket.inside_depth;
+        }
         const Cell cell = interpolate(origin + direction * estimate - 0.5);
-        // One Newton step along the ray from the secant of nearest values, within the two steps that bracket the surface.
+        // A Newton step along the ray. Nearest voxels are off by up to a voxel across the surface, and by more along a
+        // ray that grazes it; such a ray can even pass through a voxel whose centre is inside and yet stay outside.
         const float slope = dot(cell.gradient, direction);
-        const float newton = estimate - cell.sdf / (slope < 0.0 ? slope : -1e9);
-        const float hit = clamp(newton, bracket.outside_depth - depth_per_vox, bracket.inside_depth + depth_per_vox);
-        // A ray that grazes the surface can pass through a voxel whose centre is inside and yet stay outside.
-        const float residual_vox = (cell.sdf + slope * (hit - estimate)) * kSdfRangeVox;
-        if (cell.complete && abs(residual_vox) > kMaxResidualVox) {
-            depth = bracket.inside_depth + depth_per_vox;
+        const float hit = estimate - cell.sdf / min(slope, -1e-6);
+        const float moved_vox = abs(hit - estimate) / depth_per_vox;
+        if (cell.complete && moved_vox > kAcceptedStepVox) {
+            marching = moved_vox > kLongestStepVox;
+            depth = marching ? depth + depth_per_vox : depth;
+            estimate = hit;
             continue;
         }
         // Where the cell has corners that nobody saw, the nearest voxels have to do.

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One workgroup: decides which of this frame's new keys get a block. While the pool suffices, all do. Else the keys whose hash
-// falls into the first bins do, as many whole bins as fit: the choice depends on the keys alone, not on who came first.
+// One workgroup: decides which of this frame's new keys get a block. While the pool suffices, all do. Else the keys
+// whose hash falls into the first bins do, as many whole bins as fit: the choice depends on the keys alone, not on who
+// came first.
 #include "lib/voxel_map.glsl"
 #include "shared/allocate_blocks.h"
 

@@ -9,7 +9,8 @@ layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform writeonly image2D color_linear;
 layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(std430, binding = 3) readonly buffer ViewGrid { uint view_grid[]; };
-layout(std430, binding = 4) readonly buffer Color { uint voxels[]; } color[kMaxVoxelChunks];
+layout(std430, binding = 4) readonly buffer Color { uint voxels[]; }
+color[kMaxVoxelChunks];
 #include "lib/view_grid.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -19,7 +20,8 @@ uint load_color(ivec3 coordinates) {
     const uint block = cell == kOutsideGrid ? kNoBlock : view_grid[cell];
     if (block == kNoBlock) return 0u;
     const ivec3 within = coordinates & 7;
-    const uint index = index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index =
+        index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint packed;
 #define LOAD_COLOR(C) packed = color[C].voxels[index]
     WITH_CHUNK(view.grid.chunk_shift, block, LOAD_COLOR)

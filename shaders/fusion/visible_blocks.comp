@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists the blocks whose bounding box meets the view frustum, enters them in a dense grid around it, and widens the depth range
-// of every tile that a box covers.
+// Lists the blocks whose bounding box meets the view frustum, enters them in a dense grid around it, and widens the
+// depth range of every tile that a box covers.
 #include "lib/camera.glsl"
 #include "lib/view_grid.glsl"
 #include "lib/voxel_map.glsl"

@@ -8,7 +8,8 @@
 uint cached_key = kEmptyKey;
 uint cached_block = kNoBlock;
 
-// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most look-ups stay in one block.
+// The block at block coordinates, kNoBlock where there is none. Remembers the last answer: most look-ups stay in one
+// block.
 uint find_block(VoxelGrid grid, ivec3 coordinates) {
     const uint key = key_of_block(grid, coordinates);
     if (key != cached_key) {

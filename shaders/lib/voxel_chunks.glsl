@@ -5,22 +5,34 @@
 #define PATINA_LIB_VOXEL_CHUNKS_GLSL
 #include "shared/voxel_map.h"
 
-// How many chunks the pool has. One, the most common, is compiled without a selection; chunks that are not there are compiled
-// away, as software devices run through every case.
+// How many chunks the pool has. One, the most common, is compiled without a selection; chunks that are not there are
+// compiled away, as software devices run through every case.
 layout(constant_id = 0) const uint kVoxelChunks = 1u;
 
 // Runs the statement DO(C) with the literal C of the chunk that holds `block`.
-#define WITH_CHUNK(chunk_shift, block, DO)                    \
-    if (kVoxelChunks == 1u) {                                 \
-        DO(0);                                                \
-    } else {                                                  \
-        switch ((block) >> (chunk_shift)) {                   \
-            case 0u: DO(0); break;                            \
-            case 1u: DO(1); break;                            \
-            case 2u: if (kVoxelChunks > 2u) { DO(2); } break; \
-            case 3u: if (kVoxelChunks > 3u) { DO(3); } break; \
-            default: if (kVoxelChunks > 4u) { DO(4); } break; \
-        }                                                     \
+#define WITH_CHUNK(chunk_shift, block, DO)  \
+    if (kVoxelChunks == 1u) {               \
+        DO(0);                              \
+    } else {                                \
+        switch ((block) >> (chunk_shift)) { \
+            case 0u: DO(0); break;          \
+            case 1u: DO(1); break;          \
+            case 2u:                        \
+                if (kVoxelChunks > 2u) {    \
+                    DO(2);                  \
+                }                           \
+                break;                      \
+            case 3u:                        \
+                if (kVoxelChunks > 3u) {    \
+                    DO(3);                  \
+                }                           \
+                break;                      \
+            default:                        \
+                if (kVoxelChunks > 4u) {    \
+                    DO(4);                  \
+                }                           \
+                break;                      \
+        }                                   \
     }
 
 // A block's index within its chunk.

@@ -33,16 +33,16 @@ uint pack_voxel(float sdf, uint weight) {
     return (uint(int(floor(clamp(sdf, -1.0, 1.0) * 32767.0 + 0.5))) & 0xffffu) | weight << 16;
 }
 
-// A voxel's colour is 11 + 11 + 10 bits, the square root of linear / kColorRange: dark tones keep their precision, and steps
-// are finer than those of 8-bit sRGB. 0: no colour yet; black is stored as the smallest red.
+// A voxel's colour is 11 + 11 + 10 bits, the square root of linear / kColorRange: dark tones keep their precision, and
+// steps are finer than those of 8-bit sRGB. 0: no colour yet; black is stored as the smallest red.
 const vec3 kColorLevels = vec3(2047.0, 2047.0, 1023.0);
 vec3 voxel_color(uint color) {
     const vec3 root = vec3(color & 0x7ffu, color >> 11 & 0x7ffu, color >> 22) / kColorLevels;
     return root * root * kColorRange;
 }
 
-// Rounds up or down by chance, so that a running average does not stall where its steps become smaller than a level; `dither`
-// is a hash of the voxel and the frame.
+// Rounds up or down by chance, so that a running average does not stall where its steps become smaller than a level;
+// `dither` is a hash of the voxel and the frame.
 uint pack_color(vec3 linear, uint dither) {
     const vec3 chance = vec3(dither & 0x3ffu, dither >> 10 & 0x3ffu, dither >> 20 & 0x3ffu) * (1.0 / 1024.0);
     const uvec3 level = uvec3(sqrt(clamp(linear * (1.0 / kColorRange), 0.0, 1.0)) * kColorLevels + chance);

@@ -15,15 +15,15 @@ struct FusionParams {
     VoxelGrid grid;
     Camera depth_camera;
     Camera color_camera;
-    float truncation_m;      // truncation distance t(z) = truncation_m + truncation_slope * z
+    float truncation_m;  // truncation distance t(z) = truncation_m + truncation_slope * z
     float truncation_slope;
-    float max_depth_m;       // farther readings are not fused
-    float max_weight;        // of a voxel
-    float color_band_m;      // voxels this near to the surface take colour
+    float max_depth_m;   // farther readings are not fused
+    float max_weight;    // of a voxel
+    float color_band_m;  // voxels this near to the surface take colour
     float max_color_weight;
-    uint stride_px;          // every so many pixels in x and y touch blocks
-    uint phase;              // which of the stride^2 pixels, changes from frame to frame
-    uint max_table_keys;     // beyond it nothing is inserted
+    uint stride_px;       // every so many pixels in x and y touch blocks
+    uint phase;           // which of the stride^2 pixels, changes from frame to frame
+    uint max_table_keys;  // beyond it nothing is inserted
     uint frame_index;
     float inverse_truncation;  // 1 / truncation_m
     float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)

@@ -1,9 +1,10 @@
-// Lets one header define a struct for C++ and GLSL. In C++ it opens namespace patina::gpu, where the names of GLSL's types
-// mean GLM's; in GLSL it does nothing. Rules: 32-bit members only, no vec3, padding spelled out; the build compares every
-// field's offset and type with the SPIR-V.
+// Lets one header define a struct for C++ and GLSL. In C++ it opens namespace patina::gpu, where the names of GLSL's
+// types mean GLM's; in GLSL it does nothing. Rules: 32-bit members only, no vec3, padding spelled out; the build
+// compares every field's offset and type with the SPIR-V.
 #ifdef __cplusplus
 #pragma once
 #include <cstdint>
+
 #include <glm/glm.hpp>
 namespace patina::gpu {
 using uint = uint32_t;

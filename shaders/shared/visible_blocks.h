@@ -6,7 +6,7 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kVisibleGroup = 64u;
-INTEROP_CONST uint kTileEdge = 8u;  // pixels
+INTEROP_CONST uint kTileEdge = 8u;          // pixels
 INTEROP_CONST float kGridMarginVox = 2.0f;  // how far outside the frustum the view grid holds blocks
 
 // Where to look, and how far; a uniform buffer shared by the passes that look from one camera.
@@ -15,9 +15,9 @@ struct ViewParams {
     Camera camera;
     float near_m;  // along the optical axis
     float far_m;
-    uvec2 tiles;       // of kTileEdge pixels, the last ones cut off
-    ivec4 grid_low;    // xyz: the lowest block coordinates of the box around the frustum; w unused
-    uvec4 grid_size;   // xyz: the box's size in blocks; w unused
+    uvec2 tiles;      // of kTileEdge pixels, the last ones cut off
+    ivec4 grid_low;   // xyz: the lowest block coordinates of the box around the frustum; w unused
+    uvec4 grid_size;  // xyz: the box's size in blocks; w unused
 };
 
 // Depth range of a tile as the bits of positive floats, which order like the floats: both start as all ones and shrink.

@@ -6,8 +6,10 @@
 #include "shared/test_voxel_map.h"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Tsdf { uint voxels[]; } tsdf[kMaxVoxelChunks];
-layout(std430, binding = 5) readonly buffer Color { uint voxels[]; } color[kMaxVoxelChunks];
+layout(std430, binding = 0) readonly buffer Tsdf { uint voxels[]; }
+tsdf[kMaxVoxelChunks];
+layout(std430, binding = 5) readonly buffer Color { uint voxels[]; }
+color[kMaxVoxelChunks];
 layout(std430, binding = 10) writeonly buffer GatheredTsdf { uint gathered_tsdf[]; };
 layout(std430, binding = 11) writeonly buffer GatheredColor { uint gathered_color[]; };
 layout(push_constant) uniform Push { TestMapParams params; };
@@ -18,8 +20,8 @@ void main() {
     const uint from = index_in_chunk(params.grid.chunk_shift, block) * kBlockVoxels;
     const uint to = block * kBlockVoxels;
     for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels; i += 64u) {
-#define COPY(C)                                          \
-    gathered_tsdf[to + i] = tsdf[C].voxels[from + i];    \
+#define COPY(C)                                       \
+    gathered_tsdf[to + i] = tsdf[C].voxels[from + i]; \
     gathered_color[to + i] = color[C].voxels[from + i]
         WITH_CHUNK(params.grid.chunk_shift, block, COPY)
     }

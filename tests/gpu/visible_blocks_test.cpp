@@ -106,9 +106,9 @@ TEST_F(VisibleBlocksTest, RangesAreNoWiderThanTheBlocks) {
 
 TEST_F(VisibleBlocksTest, ArgumentsCoverTheList) {
     FusionRig rig = filled();
-    const reference::ViewVolume all{pinhole_camera({160, 120}), reference::look_at({0, 0, -12}, {0, 0, 0}), 0.1, 20};
+    const reference::ViewVolume all{pinhole_camera({160, 120}), reference::look_at({0, 0, -9}, {0, 0, 0}), 0.1, 9};
     const Seen seen = look(rig, all);
-    EXPECT_EQ(seen.blocks.size(), rig.allocated().size());
+    ASSERT_GT(seen.blocks.size(), 2 * gpu::kGroupsPerRow) << "the list must need several rows";
     EXPECT_EQ(seen.groups,
               glm::uvec3(gpu::kGroupsPerRow, (seen.blocks.size() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow, 1));
     FusionRig empty(device(), runner());

@@ -1,9 +1,9 @@
 #include "engine/core/camera.h"
 
-#include <gtest/gtest.h>
+#include <limits>
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
+#include <gtest/gtest.h>
 
 namespace patina {
 namespace {

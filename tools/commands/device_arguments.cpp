@@ -7,7 +7,8 @@ namespace patina::tools {
 namespace {
 
 std::filesystem::path cache_folder() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return std::filesystem::path(cache) / "patina";
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
+        return std::filesystem::path(cache) / "patina";
     if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "patina";
     return {};
 }
@@ -15,9 +16,12 @@ std::filesystem::path cache_folder() {
 }  // namespace
 
 void DeviceArguments::add_to(CLI::App& command) {
-    command.add_option("--device", selector, "Index, part of the name, or type (discrete, integrated, virtual, cpu) of the device")
+    command
+        .add_option("--device", selector,
+                    "Index, part of the name, or type (discrete, integrated, virtual, cpu) of the device")
         ->envname("PATINA_DEVICE");
-    command.add_flag("--validation", validation, "Check every Vulkan call (slow); a message ends the command with an error");
+    command.add_flag("--validation", validation,
+                     "Check every Vulkan call (slow); a message ends the command with an error");
 }
 
 vulkan::DeviceOptions DeviceArguments::options() const {

@@ -9,7 +9,8 @@
 namespace patina::tools {
 
 void add_info(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "Print what a recorded sequence holds, and what about it is implausible");
+    CLI::App* command =
+        app.add_subcommand("info", "Print what a recorded sequence holds, and what about it is implausible");
     struct Arguments {
         std::string sequence, format;
     };

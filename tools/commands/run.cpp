@@ -20,13 +20,17 @@ void add_run(CLI::App& app) {
     command->add_option("sequence", run_options.sequence, "Folder of a sequence, or synthetic:SCENE")->required();
     command->add_option("--out", run_options.out, "Folder for the results")->required();
     command->add_option("--format", run_options.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
-    command->add_option("--frames", run_options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
+    command->add_option("--frames", run_options.frames,
+                        "Use at most so many frames (synthetic scenes: 120 by default)");
     command->add_option("--dump-every", run_options.dump_every, "Write frames/NNNNNN.exr of every so many frames");
-    command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")->capture_default_str();
+    command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")
+        ->capture_default_str();
     command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");
     command->add_option("--dump-graph", run_options.dump_graph, "Write PATH.dot and PATH.json of the last fused frame");
     command->add_option("--settings", arguments->settings_file, "TOML file with settings");
-    command->add_option("--set", arguments->assignments, "One setting as KEY=VALUE, such as fusion.max_depth_m=3; may be repeated")
+    command
+        ->add_option("--set", arguments->assignments,
+                     "One setting as KEY=VALUE, such as fusion.max_depth_m=3; may be repeated")
         ->take_all();
     arguments->device.add_to(*command);
     command->callback([arguments] {

@@ -1,9 +1,10 @@
-#include <fmt/format.h>
+#include "tools/synth.h"
 
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "tools/commands/commands.h"
-#include "tools/synth.h"
 
 namespace patina::tools {
 
