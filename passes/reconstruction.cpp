@@ -5,12 +5,12 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/shader_camera.h"
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/visible_blocks.h"
-#include "passes/model/camera.h"
 #include "passes/surface/extract_surface.h"
 
 namespace patina {

@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "engine/core/shader_camera.h"
 #include "shared/encode_frame.h"
 #include "shared/trace_scene.h"
 #include "spirv/shaders.h"
@@ -41,15 +42,6 @@ gpu::TraceObject to_gpu(const SceneObject& object) {
     out.kd = glm::vec4(*object.material.kd, 0);
     out.ks_alpha = glm::vec4(object.material.ks, object.material.alpha);
     out.id = object.material.id;
-    return out;
-}
-
-gpu::Camera to_gpu(const Intrinsics& camera, const RigidTransform& world_from_camera) {
-    if (camera.distorted()) throw Error("the pass 'synthetic.trace_scene' takes a camera without lens distortion");
-    gpu::Camera out{};
-    out.camera_from_world = glm::mat4(rigid_inverse(world_from_camera));
-    out.focal_center_px = {camera.fx, camera.fy, camera.cx, camera.cy};
-    out.extent = {camera.extent.width, camera.extent.height};
     return out;
 }
 
@@ -95,6 +87,7 @@ SceneBuffers upload_scene(graph::Frame& frame, const Scene& scene) {
 TracedImages add_trace_scene(graph::Frame& frame, const SceneBuffers& scene, const Intrinsics& camera,
                              const RigidTransform& world_from_camera, Shadows shadows) {
     using vulkan::Format;
+    if (camera.distorted()) throw Error("the pass 'synthetic.trace_scene' takes a camera without lens distortion");
     auto pass = frame.compute("synthetic.trace_scene", spirv::trace_scene);
     pass.read("Objects", scene.objects).read("Lights", scene.lights);
     const TracedImages out{.radiance = pass.create("radiance", {camera.extent, Format::kRgba32f}),
@@ -102,7 +95,7 @@ TracedImages add_trace_scene(graph::Frame& frame, const SceneBuffers& scene, con
                            .object_id = pass.create("object_id", {camera.extent, Format::kR32u}),
                            .normal = pass.create("normal", {camera.extent, Format::kRgba16f})};
     pass.specialise("kShadows", shadows == Shadows::kHard ? 1 : 0);
-    pass.push(gpu::TraceSceneParams{to_gpu(camera, world_from_camera), scene.rectangle_count, scene.box_count,
+    pass.push(gpu::TraceSceneParams{make_camera(camera, world_from_camera), scene.rectangle_count, scene.box_count,
                                     scene.sphere_count, scene.light_count});
     const uint32_t bundles = (camera.extent.height + gpu::kTraceSceneRays - 1) / gpu::kTraceSceneRays;
     pass.dispatch_covering(Extent2D{camera.extent.width, bundles});

@@ -4,10 +4,10 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "engine/core/shader_camera.h"
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/fusion/remove_empty_blocks.h"
-#include "passes/model/camera.h"
 #include "shared/test_voxel_map.h"
 #include "spirv/shaders.h"
 

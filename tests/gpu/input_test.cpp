@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "passes/model/camera.h"
+#include "engine/core/shader_camera.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/shader_camera.h"
 #include "passes/fusion/visible_blocks.h"
-#include "passes/model/camera.h"
 #include "tests/gpu/fusion_rig.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"

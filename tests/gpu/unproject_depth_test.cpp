@@ -3,7 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
 
-#include "passes/model/camera.h"
+#include "engine/core/shader_camera.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 #include "tests/reference/unproject_depth.h"

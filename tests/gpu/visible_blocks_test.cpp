@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "passes/model/camera.h"
+#include "engine/core/shader_camera.h"
 #include "tests/gpu/fusion_rig.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"

@@ -1,4 +1,4 @@
-#include "passes/model/camera.h"
+#include "engine/core/shader_camera.h"
 
 namespace patina {
 
