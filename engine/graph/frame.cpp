@@ -108,9 +108,9 @@ ImageId Frame::upload(const std::string& name, ImageShape shape, std::span<const
     return {{id.resource, versions_[id.resource]}};
 }
 
-BufferId Frame::fill(BufferId id, uint32_t value) {
+BufferId Frame::fill(BufferId id, uint32_t value, uint64_t bytes) {
     add_transfer("fill." + description_.resources[id.resource].name, id.resource, Use::kTransferWrite,
-                 work::Fill{id.resource, value});
+                 work::Fill{id.resource, value, bytes});
     return {{id.resource, versions_[id.resource]}};
 }
 

@@ -111,6 +111,7 @@ struct Dispatch {
 struct Fill {
     uint32_t resource = 0;
     uint32_t value = 0;
+    uint64_t bytes = 0;  ///< of each chunk; UINT64_MAX fills it whole
 };
 
 /// Host memory to a resource.
@@ -224,8 +225,8 @@ class Frame {
     ImageId upload(const std::string& name, ImageShape shape, std::span<const std::byte> pixels);
     BufferId upload_bytes(BufferId id, uint64_t offset, std::span<const std::byte> bytes, bool whole);
 
-    /// Sets every u32 of a buffer (all its chunks).
-    BufferId fill(BufferId id, uint32_t value);
+    /// Sets every u32 of a buffer (all its chunks), or of its first `bytes`; the rest is then undefined.
+    BufferId fill(BufferId id, uint32_t value, uint64_t bytes = UINT64_MAX);
 
     /// Copies a part of a buffer over a part of another.
     BufferId copy(BufferId source, uint64_t source_offset, BufferId destination, uint64_t destination_offset,

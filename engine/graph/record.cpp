@@ -182,7 +182,8 @@ class Recorder {
 
     void record_work(const work::Fill& fill) {
         for (const auto& chunk : buffers(fill.resource)) {
-            into_.commands.fillBuffer(*chunk->object().buffer, 0, VK_WHOLE_SIZE, fill.value);
+            into_.commands.fillBuffer(*chunk->object().buffer, 0,
+                                      fill.bytes < chunk->bytes() ? fill.bytes : VK_WHOLE_SIZE, fill.value);
         }
     }
 

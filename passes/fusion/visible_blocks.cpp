@@ -77,8 +77,9 @@ VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const
     visible.tiles = frame.fill(
         frame.create_buffer("fusion.tiles", params.tiles.x * params.tiles.y * sizeof(gpu::TileRange)), UINT32_MAX);
 
+    const uint64_t cells = uint64_t{params.grid_size.x} * params.grid_size.y * params.grid_size.z;
     visible.grid = frame.fill(frame.create_buffer("fusion.view_grid", cells_for_any_pose(params) * sizeof(uint32_t)),
-                              gpu::kNoBlock);
+                              gpu::kNoBlock, cells * sizeof(uint32_t));
 
     auto pass = frame.compute("fusion.visible_blocks", spirv::visible_blocks);
     pass.read("BlockKeys", ids.block_keys).read("Counters", ids.counters).read("View", visible.view);

@@ -67,7 +67,8 @@ TEST_F(AllocateBlocksTest, ARayInABlockBoundaryReachesTheEndOfItsBand) {
 
 TEST_F(AllocateBlocksTest, MissingAndFarReadingsAllocateNothing) {
     FusionRig rig(device(), runner());
-    for (const float depth : {0.0f, 4.001f, -1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    const float too_far = rig.settings().max_depth_m + 0.001f;
+    for (const float depth : {0.0f, too_far, -1.0f, std::numeric_limits<float>::quiet_NaN()}) {
         for (int frame = 0; frame < 4; ++frame) rig.fuse(camera_, pose_, Image<float>(camera_.extent, depth));
     }
     EXPECT_TRUE(rig.allocated().empty());

@@ -200,7 +200,8 @@ TEST_F(IntegrateTest, ReadingsThatSayNothingChangeNothing) {
     const MapContent before = rig.content();
     rig.fuse(kCamera, RigidTransform(1.0), Image<float>(kCamera.extent, 0.0f), color_of(kCamera, RigidTransform(1.0)));
     EXPECT_EQ(rig.content(), before);  // no reading
-    rig.fuse(kCamera, RigidTransform(1.0), Image<float>(kCamera.extent, 4.01f), color_of(kCamera, RigidTransform(1.0)));
+    const Image<float> too_far(kCamera.extent, rig.settings().max_depth_m + 0.01f);
+    rig.fuse(kCamera, RigidTransform(1.0), too_far, color_of(kCamera, RigidTransform(1.0)));
     EXPECT_EQ(rig.content(), before);  // beyond max_depth_m
     // Every pixel alone on its depth: no plane.
     Image<float> flying(kCamera.extent);

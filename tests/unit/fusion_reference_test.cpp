@@ -8,6 +8,7 @@
 #include "tests/reference/analytic_scene.h"
 #include "tests/reference/integrate.h"
 #include "tests/reference/raycast.h"
+#include "tests/reference/shade_color.h"
 #include "tests/reference/visible_blocks.h"
 
 namespace patina::reference {
@@ -121,6 +122,23 @@ TEST(FusionReference, RaysMeetASampledSphereWhereItIs) {
     EXPECT_LE(differing, hits / 20);
     // From within, the surface is met from its back alone.
     EXPECT_EQ(raycast(volume, kCamera, RigidTransform(1.0), 0.01, 2).pixels(), std::vector<float>(64 * 48, 0.0f));
+}
+
+TEST(ShadeColorReference, MeansTheColouredVoxelsByTheirShares) {
+    reference::Volume volume;
+    volume.voxel_m = 0.01;
+    auto& voxels = volume.blocks[{0, 0, 0}];
+    voxels.resize(512);
+    voxels[0].colored = voxels[1].colored = true;
+    voxels[0].color = {1, 0, 0};
+    voxels[1].color = {0, 1, 0};
+    const glm::dvec4 quarter = reference::color_at(volume, {0.0075, 0.005, 0.005});
+    EXPECT_NEAR(quarter.r, 0.75, 1e-12);
+    EXPECT_NEAR(quarter.g, 0.25, 1e-12);
+    EXPECT_EQ(quarter.a, 1);
+    // Off towards voxels without colour, what has one counts alone.
+    EXPECT_NEAR(reference::color_at(volume, {0.005, 0.009, 0.005}).r, 1, 1e-12);
+    EXPECT_EQ(reference::color_at(volume, {0.045, 0.045, 0.045}), glm::dvec4(0));
 }
 
 }  // namespace
