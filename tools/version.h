@@ -2,6 +2,7 @@
 
 namespace patina::tools {
 
-inline constexpr const char* kVersion = PATINA_VERSION;
+/// Patina's version, "0.1.0".
+extern const char* const kVersion;
 
 }  // namespace patina::tools

@@ -37,7 +37,6 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.phase = frame_index * 5u % (params.stride_px * params.stride_px);
     params.max_table_keys = map.table_slots() / 2;
     params.frame_index = frame_index;
-    params.inverse_truncation = 1 / params.truncation_m;
     params.inverse_sdf_range = 1 / (gpu::kSdfRangeVox * voxel_m);
     return params;
 }

@@ -13,7 +13,7 @@ struct FusionSettings {
     float truncation_m = 0.02f;       ///< t(z) = truncation_m + truncation_slope * z, at least 3 voxels
     float truncation_slope = 0.005f;  ///< grows with the sensor's noise
     float max_depth_m = 6.0f;         ///< farther readings are not fused
-    uint32_t max_weight = 32;         ///< samples after which a voxel's distance becomes a sliding average: poses drift
+    uint32_t max_weight = 6;          ///< samples after which a distance becomes a sliding average: poses drift
     uint32_t max_color_weight = 64;
     bool color = true;                  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame

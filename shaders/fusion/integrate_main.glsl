@@ -60,11 +60,11 @@ Sample sample_depth(vec2 pixel, float z) {
     // other views see.
     const float along_m = reading + dot(slope_depth_per_px(inclination), pixel - nearest) - z;
     const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
-    const float trust = clamp(1.0 + along_m * fusion.inverse_truncation, 0.0, 1.0);
+    const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
     Sample result;
     result.signed_m = min(along_m * plane_factor, truncation);
     // Whole numbers add up without loss, and so in any order.
-    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * trust + 0.5), 1.0);
+    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * sqrt(trust) + 0.5), 1.0);
     result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;
     return result;
 }

@@ -25,8 +25,8 @@ struct FusionParams {
     uint phase;           // which of the stride^2 pixels, changes from frame to frame
     uint max_table_keys;  // beyond it nothing is inserted
     uint frame_index;
-    float inverse_truncation;  // 1 / truncation_m
     float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)
+    uint pad0;
 };
 
 INTEROP_END

@@ -87,7 +87,7 @@ TEST_F(Arguments, SettingsAreEchoed) {
     EXPECT_EQ(settings["map.voxel_m"], 0.02);
     EXPECT_EQ(settings["map.capacity_blocks"], 2000) << "the command line wins over the file";
     EXPECT_EQ(settings["fusion.max_depth_m"], 3);
-    EXPECT_EQ(settings["fusion.max_weight"], 32) << "defaults are echoed too";
+    EXPECT_EQ(settings["fusion.max_weight"], 6) << "defaults are echoed too";
     EXPECT_EQ(settings["frames"], 2);
     EXPECT_EQ(record["seed"], 7);
     EXPECT_EQ(record["frames"]["used"], 2);

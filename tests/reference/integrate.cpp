@@ -49,8 +49,8 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     if (in_front_m < -truncation) return voxel;
 
     const double distance_m = std::min(in_front_m * slope.plane_factor, truncation);
-    const double trust = std::clamp(1 + in_front_m / fusion.truncation_m, 0.0, 1.0);
-    const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * trust * trust), 1.0);
+    const double trust = std::clamp(1 + in_front_m / truncation, 0.0, 1.0);
+    const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * std::pow(trust, 1.5)), 1.0);
     Voxel updated = voxel;
     updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
     updated.weight = std::min(voxel.weight + weight, fusion.max_weight);

@@ -1,0 +1,7 @@
+#include "tools/version.h"
+
+namespace patina::tools {
+
+const char* const kVersion = PATINA_VERSION;
+
+}  // namespace patina::tools
