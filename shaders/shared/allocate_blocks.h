@@ -25,7 +25,7 @@ struct FusionParams {
     uint phase;           // which of the stride^2 pixels, changes from frame to frame
     uint max_table_keys;  // beyond it nothing is inserted
     uint frame_index;
-    float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)
+    float inverse_sdf_range;  // 1 / (kSdfRangeVox * voxel_m)
     uint pad0;
 };
 

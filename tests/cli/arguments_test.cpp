@@ -61,7 +61,7 @@ TEST_F(Arguments, SettingsThatNoRunCanUse) {
     EXPECT_THAT(complaint("fusion.allocation_stride_px=0"), HasSubstr("fusion.allocation_stride_px is 0"));
     EXPECT_THAT(complaint("fusion.max_weight=0"), HasSubstr("fusion.max_weight is 0"));
     EXPECT_THAT(complaint("fusion.max_color_weight=65536"), HasSubstr("fusion.max_color_weight is 65536"));
-    EXPECT_THAT(complaint("fusion.truncation_m=0.5"), HasSubstr("truncation band is 0.52 m wide"));
+    EXPECT_THAT(complaint("fusion.truncation_m=0.5"), HasSubstr("truncation band is 0.53 m wide"));
 }
 
 TEST_F(Arguments, BadSettingsFilesAreNamed) {

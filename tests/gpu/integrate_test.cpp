@@ -131,8 +131,8 @@ TEST_F(IntegrateTest, AFrontalPlaneIsIntegratedByTheBook) {
             continue;
         }
         EXPECT_NEAR(voxel->sdf_m, std::min(in_front_m, truncation), kStepM) << z;
-        const double trust = std::clamp(1 + in_front_m / fusion.truncation_m, 0.0, 1.0);
-        EXPECT_EQ(voxel->weight, std::max(std::round(16 * trust * trust), 1.0)) << z;
+        const double trust = std::clamp(1 + in_front_m / truncation, 0.0, 1.0);
+        EXPECT_EQ(voxel->weight, std::max(std::round(16 * std::pow(trust, 1.5)), 1.0)) << z;
         EXPECT_EQ(voxel->colored, std::abs(in_front_m) <= 0.018) << z;
         if (voxel->colored) {
             EXPECT_NEAR(glm::length(voxel->color - glm::dvec3(0.5, 0.25, 2)), 0, 0.007);

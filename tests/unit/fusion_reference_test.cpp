@@ -84,7 +84,7 @@ TEST(FusionReference, AFrontalPlaneIsIntegratedByTheBook) {
     EXPECT_EQ(sdf_at(0.99).weight, 16);
     EXPECT_NEAR(sdf_at(0.5).sdf_m, 0.02, 1e-12);
     EXPECT_NEAR(sdf_at(1.01).sdf_m, -0.01, 1e-12);
-    EXPECT_EQ(sdf_at(1.01).weight, 4);  // half the band behind the surface: a quarter
+    EXPECT_EQ(sdf_at(1.01).weight, 6);  // half the band behind the surface: 16 / 2^1.5, rounded
     EXPECT_EQ(sdf_at(1.021).weight, 0);
     EXPECT_EQ(integrate({}, {0.6, 0, 1}, seen, fusion).weight, 0);  // beside the image
 
