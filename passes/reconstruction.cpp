@@ -49,8 +49,7 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 ModelView PendingView::get() const { return {position_m_.image<glm::vec4>(), widened(normal_), widened(color_)}; }
 
 Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings)
-    : device_(device),
-      settings_(checked(settings)),
+    : settings_(checked(settings)),
       runner_(device),
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {}

@@ -89,7 +89,6 @@ class Reconstruction {
     void check(const RgbdFrame& frame) const;
     void take_counts();
 
-    vulkan::Device& device_;
     ReconstructionSettings settings_;
     graph::Runner runner_;
     VoxelMap map_;
