@@ -105,10 +105,14 @@ TEST_F(VisibleBlocksTest, RangesAreNoWiderThanTheBlocks) {
 }
 
 TEST_F(VisibleBlocksTest, ArgumentsCoverTheList) {
-    FusionRig rig = filled();
-    const reference::ViewVolume all{pinhole_camera({160, 120}), reference::look_at({0, 0, -9}, {0, 0, 0}), 0.1, 9};
+    // A wall large enough for several rows of groups, looked at from far enough to see all of it.
+    const Intrinsics wide{{96, 64}, 40, 40, 47.5, 31.5, {}};
+    FusionRig rig(device(), runner(), {0.01f});
+    for (int i = 0; i < 4; ++i) rig.fuse(wide, RigidTransform(1.0), Image<float>(wide.extent, 2.0f));
+    const reference::ViewVolume all{wide, reference::look_at({0, 0, -1.5}, {0, 0, 0}), 0.1, 5};
     const Seen seen = look(rig, all);
     ASSERT_GT(seen.blocks.size(), 2 * gpu::kGroupsPerRow) << "the list must need several rows";
+    EXPECT_EQ(seen.blocks.size(), rig.allocated().size());
     EXPECT_EQ(seen.groups,
               glm::uvec3(gpu::kGroupsPerRow, (seen.blocks.size() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow, 1));
     FusionRig empty(device(), runner());
