@@ -13,6 +13,7 @@ namespace patina::sensor {
 struct PointLight {
     glm::dvec3 position_m{0};  ///< world
     glm::dvec3 intensity{0};   ///< RGB
+    double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for, 0 when it is a point; not in files
 };
 
 /// A Ward material (paper, Eq. 2-4).

@@ -11,6 +11,7 @@
 #include "sensor/ledger.h"
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tools/export/report.h"
 #include "tools/export/run_record.h"
@@ -50,7 +51,7 @@ std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
 std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
     const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
     return std::make_unique<sensor::SyntheticSource>(
-        device, sensor::make_scene(options.sequence.substr(kSynthetic.size())), frames);
+        device, sensor::load_scene(options.sequence.substr(kSynthetic.size())), frames);
 }
 
 PassTime summarised(const graph::Timing& timing) {

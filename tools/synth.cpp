@@ -6,6 +6,7 @@
 
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "sensor/truth.h"
 #include "sensor/write_sequence.h"
@@ -14,7 +15,7 @@ namespace patina::tools {
 namespace fs = std::filesystem;
 
 void synthesise(vulkan::Device& device, const std::string& scene, uint32_t frames, const fs::path& out) {
-    sensor::SyntheticSource source(device, sensor::make_scene(scene), frames);
+    sensor::SyntheticSource source(device, sensor::load_scene(scene), frames);
     sensor::SequenceWriter writer(out, source.info());
     const fs::path truth = writer.partial_folder() / "truth";
     std::error_code failure;

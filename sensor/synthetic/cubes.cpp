@@ -39,14 +39,15 @@ void add(Scene& scene, SceneObject object) {
 }
 
 void add_cube(Scene& scene, const RigidTransform& world_from_object, Material material) {
-    add(scene, {BoxShape{glm::dvec3(kHalfEdge_m)}, world_from_object, std::move(material)});
+    add(scene, {{{BoxShape{glm::dvec3(kHalfEdge_m)}, world_from_object}}, std::move(material)});
 }
 
 Material material(const char* name, glm::dvec3 kd, glm::dvec3 ks, double alpha) { return {0, name, kd, ks, alpha}; }
 
 void add_floor(Scene& scene) {
     const RigidTransform horizontal = placed(glm::dvec3(0), {1, 0, 0}, degrees(90));
-    add(scene, {RectangleShape{{2.0, 2.0}}, horizontal, material("floor", {0.42, 0.40, 0.37}, glm::dvec3(0.05), 0.20)});
+    add(scene,
+        {{{RectangleShape{{2.0, 2.0}}, horizontal}}, material("floor", {0.42, 0.40, 0.37}, glm::dvec3(0.05), 0.20)});
 }
 
 void add_upright_cubes(Scene& scene) {
@@ -87,13 +88,13 @@ Scene make_cubes() {
                     {at_height(2.3, 2.2, -0.4), glm::dvec3(12.8, 13.2, 13.9)},
                     {at_height(-0.5, 2.6, 2.2), glm::dvec3(14.4, 14.0, 13.7)}};
     // At most 1.0 m/s and 15 degrees/s: a person walking around the scene with a hand-held camera.
-    scene.path = {.target_m = at_height(0, 0.2, 0),
-                  .distance_m = 4,
-                  .azimuth_amplitude_rad = degrees(120),
-                  .azimuth_period_s = 60,
-                  .elevation_rad = degrees(35),
-                  .elevation_amplitude_rad = degrees(10),
-                  .elevation_period_s = 9};
+    scene.path = OrbitPath{.target_m = at_height(0, 0.2, 0),
+                           .distance_m = 4,
+                           .azimuth_amplitude_rad = degrees(120),
+                           .azimuth_period_s = 60,
+                           .elevation_rad = degrees(35),
+                           .elevation_amplitude_rad = degrees(10),
+                           .elevation_period_s = 9};
     return scene;
 }
 

@@ -1,49 +1,54 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "engine/core/camera.h"
+#include "engine/core/image.h"
+#include "sensor/synthetic/path.h"
+#include "sensor/synthetic/recording.h"
+#include "sensor/synthetic/shape.h"
 #include "sensor/truth.h"
 
 namespace patina::sensor {
 
-/// A rectangle in the plane z = 0 of its object's frame, seen from both sides.
-struct RectangleShape {
-    glm::dvec2 half_size_m{0.5};
+/// kd that varies over a surface. Pictures repeat in both directions and are interpolated bilinearly. The coordinates
+/// (u, v) run along the surface: in metres on a rectangle (x, y), on each face of a box (its two axes in the order of
+/// their names), around and along a cylinder (its discs: x, z) and, as longitude and latitude times radius, on a
+/// sphere; a mesh has its own texture coordinates.
+struct Texture {
+    std::shared_ptr<const Image<glm::vec3>> kd;  ///< linear albedo
+    glm::dvec2 repeat{1};                        ///< what one repeat of the picture spans in (u, v)
 };
 
-/// A box around the origin of its object's frame.
-struct BoxShape {
-    glm::dvec3 half_size_m{0.5};
+/// A shape and where it is.
+struct Part {
+    Shape shape;
+    RigidTransform world_from_part{1.0};
 };
 
-/// A sphere around the origin of its object's frame.
-struct SphereShape {
-    double radius_m = 0.5;
-};
-
-/// A body of one Ward material. The material's id is also the object's: what label images show, in 1 .. 65535, unique
-/// within the scene. Its kd must be given.
+/// A thing of one Ward material, made of one or more parts. The material's id is also the object's: what label images
+/// show, in 1 .. 65535, unique within the scene. Either its kd is given, or a texture.
 struct SceneObject {
-    std::variant<RectangleShape, BoxShape, SphereShape> shape;
-    RigidTransform world_from_object{1.0};
+    std::vector<Part> parts;
     Material material;
+    std::optional<Texture> texture{};
 };
 
-/// A camera that looks at a target from a fixed distance while azimuth and elevation oscillate:
-/// azimuth(t) = amplitude sin(2 pi t / period), and elevation likewise around its mean.
-struct OrbitPath {
-    glm::dvec3 target_m{0};
-    double distance_m = 4;
-    double azimuth_amplitude_rad = 0;
-    double azimuth_period_s = 1;
-    double elevation_rad = 0;  ///< mean, above the horizon
-    double elevation_amplitude_rad = 0;
-    double elevation_period_s = 1;
+/// Light from afar, a latitude-longitude picture of radiance: its centre column lies in the direction +z, its top row
+/// straight up (-y); columns to the right turn towards +x.
+struct Environment {
+    std::shared_ptr<const Image<glm::vec3>> radiance;  ///< linear pixel values
+};
+
+/// How the lighting sequence (paper, Section 3.2) is recorded.
+struct LightingRecording {
+    CameraPath path;
+    uint32_t frames = 60;
 };
 
 /// A synthetic scene as plain data: everything in the world, and how it is recorded. World axes are those of an OpenCV
@@ -52,25 +57,24 @@ struct OrbitPath {
 struct Scene {
     std::string name;
     std::vector<SceneObject> objects;
+    /// Lamps. One whose radius is above 0 is a sphere that shines evenly, with the radiance intensity / (pi radius^2):
+    /// cameras see it, it has depth, no reflectance and label 0, and casts no shadow.
     std::vector<PointLight> lights;
-    OrbitPath path;
+    std::optional<Environment> environment;
+    CameraPath path;
+    std::optional<LightingRecording> lighting;
     double fps = 30;
     Intrinsics camera{{512, 424}, 365.0, 365.0, 255.5, 211.5, {}};  ///< a Kinect v2's depth camera; no distortion
+    std::optional<ColorCamera> color_camera;                        ///< empty: colour is registered to depth
     double metres_per_unit = 0.001;                                 ///< of the depth pictures
     double max_metres = 8;
+    Recording recording;
 };
-
-/// The camera's pose after `time_s`: at the path's distance from the target, which the optical axis passes through,
-/// the image upright. The elevation must stay below 90 degrees.
-RigidTransform world_from_camera(const OrbitPath& path, double time_s);
-
-/// The pose of an object turned by `angle_rad` about `axis` (of any length), then moved to `position_m`.
-RigidTransform placed(glm::dvec3 position_m, glm::dvec3 axis, double angle_rad);
 
 /// What goes into truth/materials.json: every object's material, in the objects' order.
 std::vector<Material> materials_of(const Scene& scene);
 
-/// The built-in scene of that name. Throws Error listing the names when there is none.
-Scene make_scene(const std::string& name);
+/// The radiance of a sphere-shaped lamp; 0 for a point.
+glm::dvec3 emitted_radiance(const PointLight& light);
 
 }  // namespace patina::sensor

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "sensor/synthetic/encode.h"
+
 namespace patina::sensor {
 namespace {
 
@@ -29,14 +31,14 @@ Image<Pixel> unpacked(const Image<glm::uvec2>& encoded, Unpack unpack) {
 
 }  // namespace
 
-SyntheticSource::SyntheticSource(vulkan::Device& device, Scene scene, uint32_t frames, Shadows shadows)
-    : runner_(device), scene_(std::move(scene)), shadows_(shadows), info_(info_of(scene_, frames)) {}
+SyntheticSource::SyntheticSource(vulkan::Device& device, Scene scene, uint32_t frames)
+    : runner_(device), scene_(std::move(scene)), model_(runner_, scene_), info_(info_of(scene_, frames)) {}
 
 Image<glm::uvec2> SyntheticSource::render(const RigidTransform& world_from_camera) {
     graph::Frame frame = runner_.begin();
-    const SceneBuffers buffers = upload_scene(frame, scene_);
-    const TracedImages traced = add_trace_scene(frame, buffers, scene_.camera, world_from_camera, shadows_);
-    const graph::Readback encoded = frame.read_back(add_encode_frame(frame, traced, scene_.metres_per_unit));
+    const RenderedImages rendered =
+        add_render(frame, model_, scene_.camera, world_from_camera, scene_.recording.render, next_index_ - 1);
+    const graph::Readback encoded = frame.read_back(add_encode_frame(frame, rendered, scene_.metres_per_unit));
     runner_.submit(std::move(frame));
     runner_.wait();
     return {scene_.camera.extent, encoded.as<glm::uvec2>()};

@@ -2,8 +2,8 @@
 
 #include "engine/graph/runner.h"
 #include "sensor/source.h"
+#include "sensor/synthetic/render.h"
 #include "sensor/synthetic/scene.h"
-#include "sensor/synthetic/trace.h"
 
 namespace patina::sensor {
 
@@ -13,8 +13,8 @@ namespace patina::sensor {
 /// that must be the thread that runs other frames on this device.
 class SyntheticSource : public Source {
   public:
-    /// The device must outlive the source. A scene that cannot be traced (see upload_scene) makes next() throw.
-    SyntheticSource(vulkan::Device& device, Scene scene, uint32_t frames, Shadows shadows = Shadows::kNone);
+    /// The device must outlive the source. A scene that cannot be traced (see SceneModel) makes it throw.
+    SyntheticSource(vulkan::Device& device, Scene scene, uint32_t frames);
 
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override;
@@ -30,7 +30,7 @@ class SyntheticSource : public Source {
 
     graph::Runner runner_;
     Scene scene_;
-    Shadows shadows_;
+    SceneModel model_;
     SequenceInfo info_;
     uint32_t next_index_ = 0;
     Image<uint16_t> labels_;

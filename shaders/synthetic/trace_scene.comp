@@ -12,7 +12,9 @@ layout(std430, binding = 1) readonly buffer Lights { TraceLight lights[]; };
 layout(rgba32f, binding = 2) uniform writeonly image2D radiance;
 layout(r32f, binding = 3) uniform writeonly image2D depth_m;
 layout(r32ui, binding = 4) uniform writeonly uimage2D object_id;
-layout(rgba16f, binding = 5) uniform writeonly image2D normal;
+layout(rgba32f, binding = 5) uniform writeonly image2D normal;
+layout(rgba32f, binding = 6) uniform writeonly image2D kd;
+layout(rgba32f, binding = 7) uniform writeonly image2D ks_alpha;
 layout(push_constant) uniform Push { TraceSceneParams params; };
 
 const float kMiss = 1e30;
@@ -152,13 +154,15 @@ void shade(Surface surfaces[kTraceSceneRays], out vec3 colors[kTraceSceneRays]) 
     }
 }
 
-void store(ivec2 pixel, Hit hit, vec3 color, vec3 surface_normal) {
+void store(ivec2 pixel, Hit hit, vec3 color, Surface surface) {
     if (any(greaterThanEqual(uvec2(pixel), params.camera.extent))) return;
     const bool missed = hit.t == kMiss;
     imageStore(radiance, pixel, missed ? vec4(0.0) : vec4(color, 1.0));
     imageStore(depth_m, pixel, vec4(missed ? 0.0 : hit.t));
     imageStore(object_id, pixel, uvec4(missed ? 0u : objects[hit.object].id));
-    imageStore(normal, pixel, missed ? vec4(0.0) : vec4(surface_normal, 0.0));
+    imageStore(normal, pixel, missed ? vec4(0.0) : vec4(surface.normal, 0.0));
+    imageStore(kd, pixel, missed ? vec4(0.0) : vec4(surface.kd, 0.0));
+    imageStore(ks_alpha, pixel, missed ? vec4(0.0) : surface.ks_alpha);
 }
 
 void main() {
@@ -174,5 +178,5 @@ void main() {
     trace(rays, hits);
     EACH_RAY surfaces[k] = surface_at(rays[k], hits[k]);
     shade(surfaces, colors);
-    EACH_RAY store(ivec2(first + uvec2(0u, k)), hits[k], colors[k], surfaces[k].normal);
+    EACH_RAY store(ivec2(first + uvec2(0u, k)), hits[k], colors[k], surfaces[k]);
 }

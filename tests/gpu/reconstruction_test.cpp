@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
 #include "tools/rgbd_frame.h"
@@ -23,7 +24,7 @@ ReconstructionSettings small_settings() {
 /// A few frames of the built-in scene.
 struct Cubes {
     Cubes(vulkan::Device& device, uint32_t count) {
-        sensor::SyntheticSource source(device, sensor::make_scene("cubes"), count);
+        sensor::SyntheticSource source(device, sensor::load_scene("cubes"), count);
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<sensor::Frame>(std::move(*reading)));
     }

@@ -10,6 +10,7 @@
 
 #include "sensor/open.h"
 #include "sensor/picture_file.h"
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
 
@@ -37,7 +38,7 @@ TEST_F(SynthTest, WrittenSequenceGivesTheFramesOfTheLiveSource) {
     const fs::path out = folder_ / "cubes";
     tools::synthesise(device(), "cubes", 3, out);
     const auto written = sensor::open_sequence(out);
-    sensor::SyntheticSource live(device(), sensor::make_scene("cubes"), 3);
+    sensor::SyntheticSource live(device(), sensor::load_scene("cubes"), 3);
     EXPECT_EQ(written->info().frames, 3u);
     EXPECT_EQ(written->info().color, live.info().color);
     EXPECT_EQ(written->info().depth, live.info().depth);

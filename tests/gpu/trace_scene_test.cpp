@@ -8,17 +8,16 @@
 #include <set>
 #include <vector>
 
-#include <glm/gtc/packing.hpp>
-
+#include "sensor/synthetic/render.h"
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
-#include "sensor/synthetic/trace.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace patina {
 namespace {
 
+using sensor::RenderSettings;
 using sensor::Scene;
-using sensor::Shadows;
 
 class TraceSceneTest : public GpuTest {
   protected:
@@ -26,24 +25,21 @@ class TraceSceneTest : public GpuTest {
         Image<glm::vec4> radiance;
         Image<float> depth_m;
         Image<uint32_t> object_id;
-        Image<glm::u16vec4> normal_half;
+        Image<glm::vec4> normals;
 
-        glm::vec3 normal(uint32_t x, uint32_t y) const {
-            const glm::u16vec4 h = normal_half.at(x, y);
-            return {glm::unpackHalf1x16(h.x), glm::unpackHalf1x16(h.y), glm::unpackHalf1x16(h.z)};
-        }
+        glm::vec3 normal(uint32_t x, uint32_t y) const { return glm::vec3(normals.at(x, y)); }
     };
 
     Traced trace(const Scene& scene, const Intrinsics& camera, const RigidTransform& world_from_camera,
-                 Shadows shadows = Shadows::kNone) {
+                 const RenderSettings& settings = {.shadows = false}) {
+        const sensor::SceneModel model(runner(), scene);
         graph::Frame frame = runner().begin();
-        const auto buffers = sensor::upload_scene(frame, scene);
-        const auto images = sensor::add_trace_scene(frame, buffers, camera, world_from_camera, shadows);
+        const auto images = sensor::add_render(frame, model, camera, world_from_camera, settings);
         const auto radiance = frame.read_back(images.radiance), depth_m = frame.read_back(images.depth_m);
         const auto object_id = frame.read_back(images.object_id), normal = frame.read_back(images.normal);
         run(std::move(frame));
         return {radiance.image<glm::vec4>(), depth_m.image<float>(), object_id.image<uint32_t>(),
-                normal.image<glm::u16vec4>()};
+                normal.image<glm::vec4>()};
     }
 
     /// How many pixels show another object than the reference does.
@@ -96,10 +92,10 @@ Scene mixed_scene() {
     const sensor::Material gloss{1, "gloss", glm::dvec3(0.3, 0.2, 0.1), glm::dvec3(0.1, 0.2, 0.3), 0.15};
     const auto with_id = [&](uint32_t id) { return sensor::Material{id, "", gloss.kd, gloss.ks, gloss.alpha}; };
     scene.objects = {
-        {sensor::SphereShape{0.5}, sensor::placed({-0.6, -0.5, 0.2}, {0, 1, 0}, 0), with_id(7)},
-        {sensor::BoxShape{{0.3, 0.2, 0.4}}, sensor::placed({0.5, -0.6, -0.3}, {1, 2, 3}, 0.9), with_id(65535)},
-        {sensor::RectangleShape{{1.5, 1.0}}, sensor::placed({0, 0, 0}, {1, 0, 0}, 1.4), gloss},
-        {sensor::SphereShape{0.2}, sensor::placed({0.2, -0.3, -0.9}, {0, 1, 0}, 0), with_id(3)},
+        {{{sensor::SphereShape{0.5}, sensor::placed({-0.6, -0.5, 0.2}, {0, 1, 0}, 0)}}, with_id(7)},
+        {{{sensor::BoxShape{{0.3, 0.2, 0.4}}, sensor::placed({0.5, -0.6, -0.3}, {1, 2, 3}, 0.9)}}, with_id(65535)},
+        {{{sensor::RectangleShape{{1.5, 1.0}}, sensor::placed({0, 0, 0}, {1, 0, 0}, 1.4)}}, gloss},
+        {{{sensor::SphereShape{0.2}, sensor::placed({0.2, -0.3, -0.9}, {0, 1, 0}, 0)}}, with_id(3)},
     };
     scene.lights = {{{1.5, -2.5, -2.0}, {4, 5, 6}}, {{-2.0, -1.5, -1.0}, {3, 3, 3}}};
     return scene;
@@ -109,7 +105,7 @@ Scene mixed_scene() {
 RigidTransform above_front() { return sensor::placed({0.05, -1.6, -3}, {1, 0, 0}, -0.4); }
 
 TEST_F(TraceSceneTest, MatchesTheReferenceOnCubes) {
-    const Scene scene = sensor::make_scene("cubes");
+    const Scene scene = sensor::load_scene("cubes");
     for (const Extent2D extent : {Extent2D{1, 1}, {8, 8}, {13, 7}, {32, 4}, {65, 33}, {512, 424}}) {
         for (const double time_s : {0.0, 7.3, 21.0}) {
             SCOPED_TRACE(text(extent, " at ", time_s, " s"));
@@ -127,9 +123,8 @@ TEST_F(TraceSceneTest, MatchesTheReferenceOnAllShapesWithAndWithoutShadows) {
     const Scene scene = mixed_scene();
     const Intrinsics camera = camera_of({301, 203});
     std::vector<glm::vec4> unshadowed;
-    for (const Shadows shadows : {Shadows::kNone, Shadows::kHard}) {
-        const bool hard = shadows == Shadows::kHard;
-        const Traced got = trace(scene, camera, above_front(), shadows);
+    for (const bool hard : {false, true}) {
+        const Traced got = trace(scene, camera, above_front(), {.shadows = hard});
         auto expected = reference::trace_scene(scene, camera, above_front(), hard);
         EXPECT_LE(count_other_ids(got, expected), 3u);
         if (!hard) {
@@ -154,7 +149,7 @@ TEST_F(TraceSceneTest, FacingDiffusePlaneIsKdOverPiTimesIntensityOverSquaredDist
     Scene scene;
     scene.name = "plane";
     const glm::dvec3 kd(0.2, 0.5, 0.8), intensity(3, 2, 1);
-    scene.objects = {{sensor::RectangleShape{{5, 5}}, sensor::placed({0, 0, distance_m}, {1, 0, 0}, 0),
+    scene.objects = {{{{sensor::RectangleShape{{5, 5}}, sensor::placed({0, 0, distance_m}, {1, 0, 0}, 0)}},
                       sensor::Material{9, "plane", kd, glm::dvec3(0), 0.1}}};
     scene.lights = {{{0, 0, 0}, intensity}};  // at the camera
     for (const Extent2D extent : {Extent2D{1, 1}, {9, 9}, {65, 33}}) {
@@ -175,7 +170,8 @@ TEST_F(TraceSceneTest, BoxShowsEachOfItsSixNormals) {
     Scene scene;
     scene.name = "box";
     const RigidTransform world_from_box = sensor::placed({0.3, -0.2, 0.1}, {3, 1, 2}, 0.8);
-    scene.objects = {{sensor::BoxShape{{0.2, 0.3, 0.4}}, world_from_box, {1, "box", glm::dvec3(1), glm::dvec3(0), 1}}};
+    scene.objects = {
+        {{{sensor::BoxShape{{0.2, 0.3, 0.4}}, world_from_box}}, {1, "box", glm::dvec3(1), glm::dvec3(0), 1}}};
     const Intrinsics camera{{5, 5}, 200, 200, 2, 2, {}};
     for (int axis = 0; axis < 3; ++axis) {
         for (const double sign : {-1.0, 1.0}) {
@@ -194,8 +190,7 @@ TEST_F(TraceSceneTest, BoxShowsEachOfItsSixNormals) {
 // A light within the plane and one behind it: the Ward lobe has no value there, and must not become infinite or NaN.
 TEST_F(TraceSceneTest, LightsAtAndBelowTheHorizonAddNothing) {
     Scene scene = mixed_scene();
-    scene.objects = {{sensor::RectangleShape{{5, 5}},
-                      sensor::placed({0, 0, 2}, {1, 0, 0}, 0),
+    scene.objects = {{{{sensor::RectangleShape{{5, 5}}, sensor::placed({0, 0, 2}, {1, 0, 0}, 0)}},
                       {1, "plane", glm::dvec3(0.5), glm::dvec3(0.5), 0.05}}};
     scene.lights = {{{1, 0, 2}, {9, 9, 9}}, {{0, 0, 3}, {9, 9, 9}}, {{0, 0, 2}, {9, 9, 9}}};
     const Traced got = trace(scene, camera_of({33, 33}), RigidTransform(1.0));
@@ -216,8 +211,9 @@ TEST_F(TraceSceneTest, RefusesWhatItCannotTrace) {
         Scene scene = mixed_scene();
         spoil(scene);
         try {
+            const sensor::SceneModel model(runner(), scene);
             graph::Frame frame = runner().begin();
-            sensor::add_trace_scene(frame, sensor::upload_scene(frame, scene), scene.camera, RigidTransform(1.0));
+            sensor::add_render(frame, model, scene.camera, RigidTransform(1.0));
             ADD_FAILURE() << "no error: " << message;
         } catch (const Error& error) {
             EXPECT_THAT(error.what(), ::testing::HasSubstr(message));
@@ -226,7 +222,7 @@ TEST_F(TraceSceneTest, RefusesWhatItCannotTrace) {
     expect_error("has id 0,", [](Scene& s) { s.objects[1].material.id = 0; });
     expect_error("has id 65536,", [](Scene& s) { s.objects[1].material.id = 65536; });
     expect_error("another object's", [](Scene& s) { s.objects[1].material.id = 7; });
-    expect_error("no kd", [](Scene& s) { s.objects[1].material.kd.reset(); });
+    expect_error("neither kd", [](Scene& s) { s.objects[1].material.kd.reset(); });
     expect_error("alpha 0,", [](Scene& s) { s.objects[1].material.alpha = 0; });
     expect_error("distortion", [](Scene& s) { s.camera.distortion[0] = 0.1; });
 }
@@ -252,7 +248,7 @@ const std::vector<sensor::SrgbPixel>& colors(const Recorded& r) {
 const std::vector<uint16_t>& depths(const Recorded& r) { return std::get<Image<uint16_t>>(r.frame.depth).pixels(); }
 
 TEST_F(SyntheticSourceTest, YieldsEveryFrameOnceWithTimePoseAndTheSameBytesEachTime) {
-    const Scene scene = sensor::make_scene("cubes");
+    const Scene scene = sensor::load_scene("cubes");
     const auto first = record(device(), scene, 3), second = record(device(), scene, 3);
     ASSERT_EQ(first.size(), 3u);
     for (uint32_t i = 0; i < 3; ++i) {
@@ -273,10 +269,10 @@ double srgb(double linear) {
 }
 
 TEST_F(SyntheticSourceTest, EncodesColorDepthAndLabelsAsASequenceHoldsThem) {
-    Scene scene = sensor::make_scene("cubes");
+    Scene scene = sensor::load_scene("cubes");
     scene.lights[0].intensity *= 3;  // so that some pixels are clipped
     const Recorded got = record(device(), scene, 1).front();
-    const Traced traced = trace(scene, scene.camera, world_from_camera(scene.path, 0));
+    const Traced traced = trace(scene, scene.camera, world_from_camera(scene.path, 0), scene.recording.render);
     size_t clipped = 0;
     for (size_t i = 0; i < colors(got).size(); ++i) {
         const glm::vec4 radiance = traced.radiance.pixels()[i];
@@ -295,7 +291,7 @@ TEST_F(SyntheticSourceTest, DepthBeyondSixteenBitsIsNoReading) {
     Scene scene = mixed_scene();
     scene.camera = camera_of({32, 24});
     scene.metres_per_unit = 1e-5;  // 65535 units are 0.66 m
-    scene.path.distance_m = 3;
+    std::get<sensor::OrbitPath>(scene.path).distance_m = 3;
     EXPECT_THAT(depths(record(device(), scene, 1).front()), ::testing::Each(0));
 }
 
@@ -324,7 +320,7 @@ Appearance appearance_of(const Recorded& recorded) {
 
 /// The cubes in 15 frames over the camera path's whole minute.
 Scene slow_cubes() {
-    Scene scene = sensor::make_scene("cubes");
+    Scene scene = sensor::load_scene("cubes");
     scene.fps = 0.25;
     return scene;
 }

@@ -10,6 +10,7 @@
 namespace patina::reference {
 namespace {
 
+using sensor::Part;
 using sensor::SceneObject;
 
 struct Hit {
@@ -36,14 +37,14 @@ struct World {
     std::vector<Ball> balls;
 };
 
-void add(World& world, const SceneObject& object, const sensor::RectangleShape& shape) {
-    const glm::dmat4& m = object.world_from_object;
+void add(World& world, const SceneObject& object, const Part& part, const sensor::RectangleShape& shape) {
+    const glm::dmat4& m = part.world_from_part;
     world.faces.push_back({glm::dvec3(m[3]), glm::dvec3(m[0]) * shape.half_size_m.x,
                            glm::dvec3(m[1]) * shape.half_size_m.y, &object, true});
 }
 
-void add(World& world, const SceneObject& object, const sensor::BoxShape& shape) {
-    const glm::dmat4& m = object.world_from_object;
+void add(World& world, const SceneObject& object, const Part& part, const sensor::BoxShape& shape) {
+    const glm::dmat4& m = part.world_from_part;
     for (int axis = 0; axis < 3; ++axis) {
         const auto half_edge = [&](int i) { return glm::dvec3(m[i % 3]) * shape.half_size_m[i % 3]; };
         const glm::dvec3 u = half_edge(axis + 1), v = half_edge(axis + 2);
@@ -52,11 +53,19 @@ void add(World& world, const SceneObject& object, const sensor::BoxShape& shape)
     }
 }
 
-void add(World& world, const SceneObject& object, const sensor::SphereShape& shape) {
-    world.balls.push_back({glm::dvec3(object.world_from_object[3]), shape.radius_m, &object});
+void add(World& world, const SceneObject& object, const Part& part, const sensor::SphereShape& shape) {
+    world.balls.push_back({glm::dvec3(part.world_from_part[3]), shape.radius_m, &object});
 }
 
 /// `direction` has unit length. A box's face is seen from outside only.
+void add(World&, const SceneObject& object, const Part&, const sensor::CylinderShape&) {
+    PATINA_ASSERT(false, "cylinder ", object.material.name);
+}
+
+void add(World&, const SceneObject& object, const Part&, const sensor::MeshShape&) {
+    PATINA_ASSERT(false, "mesh ", object.material.name);
+}
+
 std::optional<Hit> intersect(const Face& face, glm::dvec3 origin_m, glm::dvec3 direction) {
     const glm::dvec3 outward = glm::normalize(glm::cross(face.half_edge_u, face.half_edge_v));
     const double facing = glm::dot(outward, direction);
@@ -115,7 +124,8 @@ Image<TracedPixel> trace_scene(const sensor::Scene& scene, const Intrinsics& cam
                                const RigidTransform& world_from_camera, bool shadows) {
     World world;
     for (const SceneObject& object : scene.objects)
-        std::visit([&](const auto& shape) { add(world, object, shape); }, object.shape);
+        for (const Part& part : object.parts)
+            std::visit([&](const auto& shape) { add(world, object, part, shape); }, part.shape);
     Image<TracedPixel> image(camera.extent);
     const glm::dvec3 center_m(world_from_camera[3]);
     for (uint32_t y = 0; y < camera.extent.height; ++y) {

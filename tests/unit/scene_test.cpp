@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include "sensor/synthetic/scene_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -18,11 +19,12 @@ constexpr int kFrames = 1000;
 RigidTransform pose(const Scene& scene, int frame) { return world_from_camera(scene.path, frame / scene.fps); }
 
 TEST(CameraPath, StaysFourMetresFromTheTargetAndLooksAtItUpright) {
-    const Scene scene = make_scene("cubes");
+    const Scene scene = load_scene("cubes");
     for (int i = 0; i < kFrames; ++i) {
         const RigidTransform world_from_camera = pose(scene, i);
         EXPECT_LT(rotation_defect(world_from_camera), 1e-14);
-        const glm::dvec3 target_m(rigid_inverse(world_from_camera) * glm::dvec4(scene.path.target_m, 1));
+        const glm::dvec3 target_m(rigid_inverse(world_from_camera) *
+                                  glm::dvec4(std::get<OrbitPath>(scene.path).target_m, 1));
         EXPECT_LT(glm::distance(target_m, glm::dvec3(0, 0, 4)), 1e-12);
         EXPECT_EQ(world_from_camera[0].y, 0) << "the camera's x axis must be level";
         EXPECT_GT(world_from_camera[1].y, 0) << "the camera's y axis must point down";
@@ -30,7 +32,7 @@ TEST(CameraPath, StaysFourMetresFromTheTargetAndLooksAtItUpright) {
 }
 
 TEST(CameraPath, MovesAsAPersonWithACameraDoes) {
-    const Scene scene = make_scene("cubes");
+    const Scene scene = load_scene("cubes");
     for (int i = 1; i + 1 < kFrames; ++i) {
         const glm::dvec3 before(pose(scene, i - 1)[3]), now(pose(scene, i)[3]), after(pose(scene, i + 1)[3]);
         EXPECT_LT(glm::distance(before, now) * scene.fps, 1.05) << "m/s";
@@ -39,7 +41,7 @@ TEST(CameraPath, MovesAsAPersonWithACameraDoes) {
 }
 
 TEST(CameraPath, OscillatesAroundTheScene) {
-    const Scene scene = make_scene("cubes");
+    const Scene scene = load_scene("cubes");
     double leftmost = 0, rightmost = 0, lowest = 10, highest = 0;
     for (int i = 0; i < 60 * 30; ++i) {
         const glm::dvec3 center_m(pose(scene, i)[3]);
@@ -57,11 +59,11 @@ TEST(CameraPath, OscillatesAroundTheScene) {
 
 /// The corners of a box in the world.
 std::vector<glm::dvec3> corners(const SceneObject& object) {
-    const glm::dvec3 half_size_m = std::get<BoxShape>(object.shape).half_size_m;
+    const glm::dvec3 half_size_m = std::get<BoxShape>(object.parts.front().shape).half_size_m;
     std::vector<glm::dvec3> points;
     for (int i = 0; i < 8; ++i) {
         const glm::dvec3 sign((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, (i & 4) ? 1 : -1);
-        points.emplace_back(object.world_from_object * glm::dvec4(sign * half_size_m, 1));
+        points.emplace_back(object.parts.front().world_from_part * glm::dvec4(sign * half_size_m, 1));
     }
     return points;
 }
@@ -70,10 +72,11 @@ std::vector<glm::dvec3> corners(const SceneObject& object) {
 bool disjoint(const SceneObject& a, const SceneObject& b) {
     std::vector<glm::dvec3> axes;
     for (int i = 0; i < 3; ++i) {
-        axes.emplace_back(a.world_from_object[i]);
-        axes.emplace_back(b.world_from_object[i]);
+        axes.emplace_back(a.parts.front().world_from_part[i]);
+        axes.emplace_back(b.parts.front().world_from_part[i]);
         for (int j = 0; j < 3; ++j)
-            axes.push_back(glm::cross(glm::dvec3(a.world_from_object[i]), glm::dvec3(b.world_from_object[j])));
+            axes.push_back(glm::cross(glm::dvec3(a.parts.front().world_from_part[i]),
+                                      glm::dvec3(b.parts.front().world_from_part[j])));
     }
     const auto interval = [](const SceneObject& object, glm::dvec3 axis) {
         glm::dvec2 range(INFINITY, -INFINITY);
@@ -88,12 +91,12 @@ bool disjoint(const SceneObject& a, const SceneObject& b) {
 }
 
 TEST(Cubes, HaveEdgesOf40CentimetresAndStandOnTheFloorOrOneAnother) {
-    const Scene scene = make_scene("cubes");
+    const Scene scene = load_scene("cubes");
     ASSERT_GT(scene.objects.size(), 5u);
-    EXPECT_TRUE(std::holds_alternative<RectangleShape>(scene.objects.front().shape));
+    EXPECT_TRUE(std::holds_alternative<RectangleShape>(scene.objects.front().parts.front().shape));
     for (size_t i = 1; i < scene.objects.size(); ++i) {
         const SceneObject& cube = scene.objects[i];
-        EXPECT_EQ(std::get<BoxShape>(cube.shape).half_size_m, glm::dvec3(0.2)) << cube.material.name;
+        EXPECT_EQ(std::get<BoxShape>(cube.parts.front().shape).half_size_m, glm::dvec3(0.2)) << cube.material.name;
         double lowest_m = INFINITY;
         for (const glm::dvec3& p : corners(cube)) lowest_m = std::min(lowest_m, -p.y);
         const bool stacked = std::abs(lowest_m - 0.4) < 1e-12;
@@ -106,7 +109,7 @@ TEST(Cubes, HaveEdgesOf40CentimetresAndStandOnTheFloorOrOneAnother) {
 
 TEST(Cubes, MaterialsAreAlbedosWithUniqueIds) {
     std::set<uint32_t> ids;
-    for (const Material& m : materials_of(make_scene("cubes"))) {
+    for (const Material& m : materials_of(load_scene("cubes"))) {
         EXPECT_TRUE(ids.insert(m.id).second && m.id > 0) << m.name;
         ASSERT_TRUE(m.kd) << m.name;
         for (int c = 0; c < 3; ++c) EXPECT_LE((*m.kd)[c] + m.ks[c], 1) << m.name;
@@ -117,7 +120,7 @@ TEST(Cubes, MaterialsAreAlbedosWithUniqueIds) {
 
 TEST(Scene, UnknownNameIsAnErrorThatListsTheKnown) {
     try {
-        make_scene("spheres");
+        load_scene("spheres");
         FAIL() << "no error";
     } catch (const Error& error) {
         EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr("'spheres'"), ::testing::HasSubstr("cubes")));

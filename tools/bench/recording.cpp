@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "sensor/open.h"
 #include "sensor/resample.h"
+#include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 
 namespace patina::bench {
@@ -86,7 +87,7 @@ Recording load(const RecordingOptions& options, const vulkan::DeviceOptions& dev
         return read_all(sensor::open_sequence(options.sequence, options.format), options);
     }
     vulkan::Device device(device_options);
-    auto scene = sensor::make_scene(options.sequence.substr(kSynthetic.size()));
+    auto scene = sensor::load_scene(options.sequence.substr(kSynthetic.size()));
     return read_all(std::make_unique<sensor::SyntheticSource>(device, std::move(scene), options.frames), options);
 }
 

@@ -1,0 +1,66 @@
+#include "sensor/synthetic/path.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/core/error.h"
+
+namespace patina::sensor {
+namespace {
+
+constexpr glm::dvec3 kDown(0, 1, 0);
+
+double oscillation(double amplitude, double period_s, double time_s) {
+    return amplitude * std::sin(2 * std::numbers::pi * time_s / period_s);
+}
+
+RigidTransform looking(glm::dvec3 center_m, glm::dvec3 forward) {
+    const glm::dvec3 sideways = glm::cross(kDown, forward);
+    PATINA_ASSERT(glm::length(sideways) > 1e-6, "optical axis ", forward.x, ' ', forward.y, ' ', forward.z);
+    const glm::dvec3 right = glm::normalize(sideways);
+    const glm::dvec3 down = glm::cross(forward, right);
+    return {glm::dvec4(right, 0), glm::dvec4(down, 0), glm::dvec4(forward, 0), glm::dvec4(center_m, 1)};
+}
+
+RigidTransform pose(const OrbitPath& path, double time_s) {
+    const double azimuth = path.azimuth_rad + oscillation(path.azimuth_amplitude_rad, path.azimuth_period_s, time_s);
+    const double elevation =
+        path.elevation_rad + oscillation(path.elevation_amplitude_rad, path.elevation_period_s, time_s);
+    const glm::dvec3 forward(-std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                             std::cos(elevation) * std::cos(azimuth));
+    return looking(path.target_m - path.distance_m * forward, forward);
+}
+
+/// Uniform Catmull-Rom between b and c.
+glm::dvec3 spline(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d, double t) {
+    return 0.5 * (2.0 * b + t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a))));
+}
+
+RigidTransform pose(const WaypointPath& path, double time_s) {
+    const auto count = static_cast<int64_t>(path.waypoints.size());
+    PATINA_ASSERT(count >= 2, "waypoints ", count);
+    const double phase = time_s / path.period_s * static_cast<double>(count);
+    const auto segment = static_cast<int64_t>(std::floor(phase));
+    const auto at = [&](int64_t offset) {
+        return path.waypoints[static_cast<size_t>(((segment + offset) % count + count) % count)];
+    };
+    const Waypoint a = at(-1), b = at(0), c = at(1), d = at(2);
+    const double t = phase - std::floor(phase);
+    const glm::dvec3 position_m = spline(a.position_m, b.position_m, c.position_m, d.position_m, t);
+    const glm::dvec3 target_m = spline(a.target_m, b.target_m, c.target_m, d.target_m, t);
+    return looking(position_m, glm::normalize(target_m - position_m));
+}
+
+}  // namespace
+
+RigidTransform world_from_camera(const CameraPath& path, double time_s) {
+    return std::visit([&](const auto& kind) { return pose(kind, time_s); }, path);
+}
+
+RigidTransform placed(glm::dvec3 position_m, glm::dvec3 axis, double angle_rad) {
+    return glm::rotate(glm::translate(RigidTransform(1.0), position_m), angle_rad, glm::normalize(axis));
+}
+
+}  // namespace patina::sensor

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/core/camera.h"
+
+namespace patina::sensor {
+
+/// A camera that looks at a target from a fixed distance while azimuth and elevation oscillate:
+/// azimuth(t) = mean + amplitude sin(2 pi t / period), and elevation likewise.
+struct OrbitPath {
+    glm::dvec3 target_m{0};
+    double distance_m = 4;
+    double azimuth_rad = 0;  ///< mean; 0 looks along +z
+    double azimuth_amplitude_rad = 0;
+    double azimuth_period_s = 1;
+    double elevation_rad = 0;  ///< mean, above the horizon
+    double elevation_amplitude_rad = 0;
+    double elevation_period_s = 1;
+};
+
+/// Where the camera is, and what its optical axis passes through.
+struct Waypoint {
+    glm::dvec3 position_m{0};
+    glm::dvec3 target_m{0, 0, 1};
+};
+
+/// A closed tour through waypoints, at equal times: a Catmull-Rom spline of positions and one of targets. At least two.
+struct WaypointPath {
+    std::vector<Waypoint> waypoints;
+    double period_s = 10;  ///< of the whole tour
+};
+
+using CameraPath = std::variant<OrbitPath, WaypointPath>;
+
+/// The camera's pose after `time_s`, the image upright. The optical axis must stay off the vertical.
+RigidTransform world_from_camera(const CameraPath& path, double time_s);
+
+/// The pose of an object turned by `angle_rad` about `axis` (of any length), then moved to `position_m`.
+RigidTransform placed(glm::dvec3 position_m, glm::dvec3 axis, double angle_rad);
+
+}  // namespace patina::sensor

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "sensor/synthetic/scene.h"
+
+namespace patina::sensor {
+
+/// What changes a scene as it is loaded.
+struct SceneChanges {
+    std::filesystem::path mesh;    ///< takes the place of every mesh whose height the scene file sets; empty: none
+    std::optional<uint64_t> vary;  ///< seed for other materials, lights and path of the same kind
+};
+
+/// Loads a scene: a JSON file, or the name of a built-in one (see scene_names). Throws Error, one sentence with file,
+/// path in the JSON and value, for whatever is wrong in the file or in what it names.
+Scene load_scene(const std::string& name_or_file, const SceneChanges& changes = {});
+
+/// The names of the built-in scenes, as "balls, bunnies, cubes, office".
+std::string scene_names();
+
+}  // namespace patina::sensor
