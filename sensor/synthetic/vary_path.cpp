@@ -93,9 +93,9 @@ std::vector<Sample> samples_of(const Path& path, const Clearance& clearance) {
 }
 
 double least_clearance_m(const std::vector<Sample>& samples) {
-    return std::min_element(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
-               return a.clearance_m < b.clearance_m;
-           })->clearance_m;
+    return std::min_element(samples.begin(), samples.end(),
+                            [](const Sample& a, const Sample& b) { return a.clearance_m < b.clearance_m; })
+        ->clearance_m;
 }
 
 /// Whether each sample lies within the free space around its predecessor: then nothing was passed through.

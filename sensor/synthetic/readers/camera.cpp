@@ -99,7 +99,6 @@ WaypointPath read_tour(const JsonValue& value) {
 }
 
 CameraPath read_path(const JsonValue& value) {
-    value.expect_keys({"orbit", "tour"});
     const auto [kind, settings] = read_kind(value, {"orbit", "tour"});
     const CameraPath path = kind == "orbit" ? CameraPath(read_orbit(settings)) : CameraPath(read_tour(settings));
     const SteepestView view = steepest_view(path);
