@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <system_error>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
+#include "sensor/synthetic/environment.h"
 #include "sensor/synthetic/lighting_sequence.h"
 #include "sensor/synthetic/noise.h"
 #include "sensor/synthetic/synthetic_source.h"
@@ -39,7 +41,7 @@ void set_extent(sensor::Scene& scene, Extent2D extent) {
     if (!scene.color_camera) return;
     Intrinsics& color = scene.color_camera->camera;
     const auto scaled = [](uint32_t size, uint32_t to, uint32_t from) {
-        return std::max(1u, static_cast<uint32_t>(std::lround(double{1} * size * to / from)));
+        return std::max(1u, static_cast<uint32_t>(std::lround(static_cast<double>(size) * to / from)));
     };
     color = scaled_to(color, {scaled(color.extent.width, extent.width, before.width),
                               scaled(color.extent.height, extent.height, before.height)});
@@ -58,6 +60,9 @@ sensor::Scene scene_of(const SynthOptions& options) {
     recording.render.area_lights = options.area_lights.value_or(recording.render.area_lights);
     recording.render.bounces = options.bounces.value_or(recording.render.bounces);
     recording.render.samples = options.samples.value_or(recording.render.samples);
+    if (options.environment) {
+        scene.environment = {std::make_shared<Image<glm::vec3>>(sensor::read_environment(*options.environment))};
+    }
     recording.exr = options.exr.value_or(recording.exr);
     if (options.extent) set_extent(scene, *options.extent);
     return scene;

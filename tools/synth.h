@@ -33,6 +33,7 @@ struct SynthOptions {
     std::optional<bool> area_lights{};
     std::optional<uint32_t> bounces{};
     std::optional<uint32_t> samples{};
+    std::optional<std::filesystem::path> environment{};  ///< picture of radiance, .hdr or .exr
     std::optional<bool> exr{};
     std::optional<Extent2D> extent{};  ///< of the depth camera; a colour camera of its own scales likewise
 };

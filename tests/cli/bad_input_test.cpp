@@ -119,6 +119,7 @@ TEST_F(BadInput, SynthOfWhatIsNotThere) {
     };
     EXPECT_THAT(complaint("--noise", "xtion"), AllOf(HasSubstr("'xtion'"), HasSubstr("kinect2")));
     EXPECT_THAT(complaint("--frames", "0"), HasSubstr("0 frames"));
+    EXPECT_THAT(complaint("--environment", "nowhere.hdr"), HasSubstr("nowhere.hdr"));
     EXPECT_FALSE(fs::exists(out()));
     EXPECT_THAT(expect_failure(patina({"synth", "cubes", "--out", sequence()})), HasSubstr("exists and is not empty"));
 }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <variant>
 
@@ -15,6 +16,7 @@
 #include "sensor/picture_file.h"
 #include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
+#include "sensor/truth.h"
 #include "tests/gpu/gpu_test.h"
 #include "tools/truth_frame.h"
 
@@ -166,6 +168,44 @@ TEST_F(SynthTest, LinearColorIsKeptInExr) {
     sensor::SyntheticSource live(device(), scene, {.frames = 1});
     const auto expected = std::get<sensor::Frame>(live.next().value());
     EXPECT_EQ(pixels, std::get<Image<glm::vec3>>(expected.color).pixels());
+}
+
+/// A scene file with an unregistered colour camera, a visible lamp and a lighting path.
+void write_lamp_scene(const fs::path& file) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file)
+        << R"({"name": "lamp", "camera": {"width": 32, "height": 24, "fx": 30, "fy": 30, "cx": 16, "cy": 12},
+        "color_camera": {"camera": {"width": 40, "height": 30, "fx": 35, "fy": 35, "cx": 20, "cy": 15},
+                         "color_from_depth": [1, 0, 0, 0.05, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+        "objects": [{"name": "ball", "material": {"kd": [0.5, 0.4, 0.3], "ks": 0.1, "alpha": 0.2},
+                     "parts": [{"sphere": {"radius": 0.4}}]}],
+        "lights": [{"position": [0.5, -0.5, -0.8], "intensity": [1, 1, 1], "radius": 0.1}],
+        "path": {"orbit": {"target": [0, 0, 0], "distance": 2}},
+        "lighting": {"path": {"orbit": {"target": [0.5, -0.5, -0.8], "distance": 1.5}}, "frames": 2}})";
+}
+
+TEST_F(SynthTest, LightingSequenceIsASequenceOfItsOwn) {
+    write_lamp_scene(folder_ / "lamp.json");
+    const fs::path out = folder_ / "lamp";
+    tools::synthesise(device(), {.scene = folder_ / "lamp.json", .out = out, .frames = 1, .quiet = true});
+    const auto main = sensor::open_sequence(out), lighting = sensor::open_sequence(out / "lighting");
+    EXPECT_EQ(main->info().frames, 1u);
+    EXPECT_EQ(main->info().color.extent, (Extent2D{40, 30}));
+    EXPECT_EQ(main->info().color_from_depth[3], glm::dvec4(0.05, 0, 0, 1));
+    EXPECT_EQ(lighting->info().frames, 2u);
+    EXPECT_EQ(lighting->info().color, main->info().color);
+    const auto bright = std::get<sensor::Frame>(main->next().value());
+    const auto dark = std::get<sensor::Frame>(lighting->next().value());
+    EXPECT_EQ(bright.exposure, sensor::Exposure{});
+    EXPECT_NEAR(dark.exposure.exposure_s, 0.01 * 0.8 * std::numbers::pi * 0.01, 1e-9);
+    EXPECT_TRUE(fs::exists(out / "lighting/truth/trajectory.txt"));
+    EXPECT_EQ(sensor::read_lights(out / "truth/lights.json").size(), 1u);
+    EXPECT_EQ(sensor::read_materials(out / "truth/materials.json").at(0).name, "ball");
+
+    tools::synthesise(
+        device(),
+        {.scene = folder_ / "lamp.json", .out = folder_ / "b", .frames = 1, .lighting = false, .quiet = true});
+    EXPECT_FALSE(fs::exists(folder_ / "b/lighting"));
 }
 
 TEST_F(SynthTest, LeavesNothingBehindWhenItFails) {

@@ -3,38 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <vector>
 
+#include "sensor/synthetic/lighting_sequence.h"
 #include "sensor/synthetic/noise.h"
-#include "sensor/synthetic/render.h"
 #include "sensor/synthetic/scene_file.h"
-#include "tests/gpu/gpu_test.h"
+#include "tests/gpu/trace_rig.h"
 
 namespace patina {
 namespace {
 
 using sensor::Scene;
 
-class SyntheticSourceTest : public GpuTest {
+class SyntheticSourceTest : public TraceTest {
   protected:
-    struct Rendered {
-        Image<glm::vec4> radiance;
-        Image<float> depth_m;
-        Image<uint32_t> object_id;
-    };
-
     /// What the renderer gives for the first frame of the scene's sequence.
-    Rendered render(const Scene& scene) { return render(scene, scene.camera, world_from_camera(scene.path, 0)); }
-
-    Rendered render(const Scene& scene, const Intrinsics& camera, const RigidTransform& pose) {
-        const sensor::SceneModel model(runner(), scene);
-        graph::Frame frame = runner().begin();
-        const auto images = sensor::add_render(frame, model, camera, pose, scene.recording.render, 0);
-        const auto radiance = frame.read_back(images.radiance), depth_m = frame.read_back(images.depth_m);
-        const auto object_id = frame.read_back(images.object_id);
-        run(std::move(frame));
-        return {radiance.image<glm::vec4>(), depth_m.image<float>(), object_id.image<uint32_t>()};
+    Traced render(const Scene& scene) {
+        return trace(scene, scene.camera, world_from_camera(scene.path, 0), scene.recording.render);
     }
 };
 
@@ -85,7 +72,7 @@ TEST_F(SyntheticSourceTest, EncodesColorDepthAndLabelsAsASequenceHoldsThem) {
     Scene scene = sensor::load_scene("cubes");
     scene.lights[0].intensity *= 3;  // so that some pixels are clipped
     const Recorded got = record(device(), scene, 1).front();
-    const Rendered rendered = render(scene);
+    const Traced rendered = render(scene);
     size_t clipped = 0;
     for (size_t i = 0; i < colors(got).size(); ++i) {
         const glm::vec4 radiance = rendered.radiance.pixels()[i];
@@ -114,7 +101,7 @@ TEST_F(SyntheticSourceTest, ExposureScalesLinearColorWithoutClipping) {
     const Recorded got = record(device(), scene, {.frames = 1, .exposure = 0.25}).front();
     EXPECT_EQ(got.frame.exposure, (sensor::Exposure{0.0025, 1}));
     const auto& pixels = std::get<Image<glm::vec3>>(got.frame.color).pixels();
-    const Rendered rendered = render(scene);
+    const Traced rendered = render(scene);
     float brightest = 0;
     for (size_t i = 0; i < pixels.size(); ++i) {
         ASSERT_EQ(pixels[i], 0.25f * glm::vec3(rendered.radiance.pixels()[i]));
@@ -136,8 +123,9 @@ TEST_F(SyntheticSourceTest, ColorCameraOfItsOwnSeesFromItsPlace) {
 
     const RigidTransform world_from_depth = world_from_camera(scene.path, 0);
     EXPECT_EQ(got.world_from_camera, world_from_depth);
-    const Rendered by_depth = render(scene, scene.camera, world_from_depth);
-    const Rendered by_color = render(scene, color.camera, world_from_depth * rigid_inverse(color.color_from_depth));
+    const Traced by_depth = trace(scene, scene.camera, world_from_depth, scene.recording.render);
+    const Traced by_color =
+        trace(scene, color.camera, world_from_depth * rigid_inverse(color.color_from_depth), scene.recording.render);
     const auto& codes = std::get<Image<sensor::SrgbPixel>>(got.color);
     ASSERT_EQ(codes.extent(), color.camera.extent);
     for (size_t i = 0; i < codes.pixels().size(); ++i)
@@ -177,6 +165,36 @@ TEST_F(SyntheticSourceTest, NoiseDependsOnSeedAndFrameAlone) {
     EXPECT_EQ(first[0].truth.labels.pixels(), other[1].truth.labels.pixels()) << "truth has no noise";
 }
 
+TEST_F(SyntheticSourceTest, LightingSequenceShowsLampsUnclippedAndLittleElse) {
+    Scene scene = small_cubes();
+    scene.lights = {{{0, -1.2, -1.2}, {4, 2, 1}, 0.1}, {{0.9, -1.2, -1.2}, {1, 1, 1}, 0.1}};
+    scene.lighting = sensor::LightingRecording{scene.path, 1};
+    const auto lighting = sensor::lighting_sequence(scene).value();
+    const Recorded got = record(device(), lighting.scene, {.frames = 1, .exposure = lighting.exposure}).front();
+    EXPECT_NEAR(got.frame.exposure.exposure_s, 0.01 * 0.8 / (4 / (std::numbers::pi * 0.01)), 1e-9);
+    const Traced main = render(scene);
+    size_t bright = 0, dim = 0, other = 0;
+    for (size_t i = 0; i < colors(got).size(); ++i) {
+        const sensor::SrgbPixel color = colors(got)[i];
+        if (color.r == std::lround(srgb(0.8))) {
+            ++bright;
+            EXPECT_EQ(color, sensor::SrgbPixel(glm::round(glm::dvec3(srgb(0.8), srgb(0.4), srgb(0.2)))));
+        } else if (color.r == std::lround(srgb(0.2))) {
+            ++dim;
+        } else {
+            EXPECT_LT(color.r, 60) << "linear 0.045";
+            ++other;
+            continue;
+        }
+        EXPECT_GT(depths(got)[i], 0) << "a lamp has depth";
+        EXPECT_EQ(got.truth.labels.pixels()[i], 0);
+        EXPECT_GT(main.radiance.pixels()[i].r, 1) << "and clips in the main sequence";
+    }
+    EXPECT_GT(bright, 10u);
+    EXPECT_GT(dim, 10u);
+    EXPECT_GT(other, 5000u);
+}
+
 TEST_F(SyntheticSourceTest, TruthIsSeenWhereItIsAskedFor) {
     const auto recorded = record(device(), small_cubes(), {.frames = 5, .truth_every = 2});
     ASSERT_EQ(recorded.size(), 5u);
@@ -212,9 +230,10 @@ Appearance appearance_of(const Recorded& recorded) {
     return a;
 }
 
-/// The cubes in 15 frames over the camera path's whole minute.
+/// The cubes in 15 frames over the camera path's whole minute, at half the resolution.
 Scene slow_cubes() {
     Scene scene = sensor::load_scene("cubes");
+    scene.camera = scaled_to(scene.camera, {256, 212});
     scene.fps = 0.25;
     return scene;
 }
@@ -227,7 +246,7 @@ TEST_F(SyntheticSourceTest, CubesAreWellExposedAndAllVisible) {
         EXPECT_LT(a.clipped, 0.01) << "frame " << recorded.frame.index;
         EXPECT_GT(a.mean_green, 100) << "frame " << recorded.frame.index;
         EXPECT_LT(a.mean_green, 180) << "frame " << recorded.frame.index;
-        for (const auto& [id, pixels] : a.pixels_of) frames_with[id] += pixels >= 100;
+        for (const auto& [id, pixels] : a.pixels_of) frames_with[id] += pixels >= 25;
     }
     EXPECT_EQ(frames_with.size(), scene.objects.size());
     for (const auto& [id, frames] : frames_with) EXPECT_GE(frames, 12) << "object " << id;

@@ -69,6 +69,8 @@ void add_recording_options(CLI::App& command, SynthOptions& options) {
     add_switch(command, "--area-lights", options.area_lights, "Lamps with a radius shine from all their surface");
     add_optional(command, "--bounces", options.bounces, "How often light is reflected before it reaches what is seen");
     add_optional(command, "--samples", options.samples, "Random samples per pixel, where there is something to sample");
+    add_optional(command, "--environment", options.environment,
+                 "Light from afar: latitude-longitude picture, .hdr or .exr");
     add_switch(command, "--exr", options.exr, "Colour as linear OpenEXR without clipping, not as 8-bit sRGB");
     command.add_option_function<std::string>(
         "--extent", [&options](const std::string& text) { options.extent = parse_extent(text); },
