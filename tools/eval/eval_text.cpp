@@ -1,0 +1,144 @@
+#include "tools/eval/eval_text.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "tools/eval/table.h"
+
+namespace patina::eval {
+namespace {
+
+constexpr size_t kTerminalColumns = 120;
+constexpr size_t kLongestName = 24;
+constexpr size_t kShortestCell = 7;
+
+bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
+
+/// Code points, which for names are as good as columns.
+size_t length_of(const std::string& text) {
+    return static_cast<size_t>(std::ranges::count_if(text, [](char byte) { return !continues_character(byte); }));
+}
+
+/// Without what would move the terminal's cursor, and not longer than a name may be.
+std::string printable(std::string text) {
+    std::ranges::replace_if(
+        text, [](char byte) { return static_cast<unsigned char>(byte) < ' ' || byte == 0x7f; }, '?');
+    if (length_of(text) <= kLongestName) return text;
+    while (length_of(text) >= kLongestName) text.pop_back();
+    return text + "~";
+}
+
+std::string padded(const std::string& text, size_t width) {
+    return text + std::string(width - std::min(width, length_of(text)), ' ');
+}
+
+std::string right(const std::string& text, size_t width) {
+    return std::string(width - std::min(width, length_of(text)), ' ') + text;
+}
+
+std::string centred(const std::string& text, size_t width) {
+    return padded(std::string((width - std::min(width, length_of(text))) / 2, ' ') + text, width);
+}
+
+std::string trimmed(std::string line) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + '\n';
+}
+
+/// As many metrics beside each other as the terminal has room for, then the next below.
+class MetricPrinter {
+  public:
+    explicit MetricPrinter(const ScoreTable& table) : table_(table) {
+        for (const std::string& row : table.rows) {
+            rows_.push_back(printable(row));
+            label_width_ = std::max(label_width_, length_of(rows_.back()));
+        }
+        for (const std::string& column : table.columns) cell_width_ = std::max(cell_width_, length_of(column) + 1);
+        // One more column keeps neighbouring metrics apart.
+        metric_width_ = 1 + table.columns.size() * cell_width_;
+    }
+
+    std::string text() const {
+        const size_t room = std::max<size_t>(1, (kTerminalColumns - label_width_) / metric_width_);
+        std::string text;
+        for (size_t first = 0; first < table_.metrics.size(); first += room) {
+            text += block(first, std::min(first + room, table_.metrics.size())) + '\n';
+        }
+        return text;
+    }
+
+  private:
+    std::string block(size_t first, size_t last) const {
+        std::string heads(label_width_, ' '), columns(label_width_, ' ');
+        for (size_t metric = first; metric < last; ++metric) {
+            heads += ' ' + centred(table_.metrics[metric].metric, metric_width_ - 1);
+            columns += ' ';
+            for (const std::string& column : table_.columns) columns += right(column, cell_width_);
+        }
+        std::string text = trimmed(heads) + trimmed(columns);
+        for (size_t row = 0; row < rows_.size(); ++row) {
+            std::string line = padded(rows_[row], label_width_);
+            for (size_t metric = first; metric < last; ++metric) {
+                line += ' ';
+                for (const std::string& cell : table_.metrics[metric].cells[row]) line += right(cell, cell_width_);
+            }
+            text += trimmed(line);
+        }
+        return text;
+    }
+
+    const ScoreTable& table_;
+    std::vector<std::string> rows_;
+    size_t label_width_ = 0, cell_width_ = kShortestCell, metric_width_ = 0;
+};
+
+std::string object_names(const Evaluation& evaluation) {
+    if (evaluation.objects.size() > kMostObjectColumns) return {};  // the rows name them
+    std::string line;
+    for (size_t i = 0; i < evaluation.objects.size(); ++i) {
+        line += (i == 0 ? "" : ", ") + short_name(i) + ' ' + printable(evaluation.objects[i].name);
+    }
+    return line.empty() ? line : line + "\n\n";
+}
+
+std::string score_text(const Evaluation& evaluation) {
+    if (evaluation.objects.empty()) return "No object of the truth is seen.\n\n";
+    std::string text = object_names(evaluation) + MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
+    if (has_unfilled(evaluation)) {
+        text += "With unfilled pixels counted as zero:\n\n" +
+                MetricPrinter(score_table(evaluation, Pixels::kUnfilledAsZero)).text();
+    }
+    return text;
+}
+
+std::string light_text(const LightErrors& lights) {
+    std::string text;
+    for (const LightRow& row : light_rows(lights)) {
+        text += fmt::format("  {} at ({}) m: {}", row.light, row.position, row.match);
+        if (row.position_error != "-") {
+            text += fmt::format(", off by {}, intensity {}, after the common factor {}", row.position_error,
+                                row.intensity_error, row.after_factor);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string eval_text(const Evaluation& evaluation) {
+    std::string text = fmt::format("{} against {}: {} frames of {} x {} (truth has {}, the run {})\n\n", evaluation.run,
+                                   evaluation.sequence, evaluation.frames.size(), evaluation.extent.width,
+                                   evaluation.extent.height, evaluation.truth_frames, evaluation.run_frames);
+    text += score_text(evaluation);
+    const std::vector<Finding> list = findings(evaluation);
+    for (const Finding& finding : list) text += padded(finding.name, 16) + finding.value + '\n';
+    if (evaluation.lights) text += light_text(*evaluation.lights);
+    const std::vector<std::string> notes = absences(evaluation);
+    if (!list.empty() && !notes.empty()) text += '\n';
+    for (const std::string& note : notes) text += "Note: " + note + '\n';
+    return text;
+}
+
+}  // namespace patina::eval
