@@ -9,140 +9,143 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+/// Members of one struct, so that each conversion finds all others whatever their order.
+struct Convert {
+    static Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// An infinite PSNR becomes null: JSON has no infinity.
-Json to_json(const Scores& scores) {
-    return {{"mad", scores.mad}, {"rmse", scores.rmse}, {"psnr_db", scores.psnr_db}, {"ssim", scores.ssim}};
-}
+    /// An infinite PSNR becomes null: JSON has no infinity.
+    static Json to_json(const Scores& scores) {
+        return {{"mad", scores.mad}, {"rmse", scores.rmse}, {"psnr_db", scores.psnr_db}, {"ssim", scores.ssim}};
+    }
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? to_json(*value) : Json();
-}
+    template <class Value>
+    static Json or_null(const std::optional<Value>& value) {
+        return value ? to_json(*value) : Json();
+    }
 
-Json to_json(const Comparison& comparison) {
-    return {{"coverage", comparison.coverage},
-            {"filled", or_null(comparison.filled)},
-            {"unfilled_as_zero", to_json(comparison.unfilled_as_zero)}};
-}
+    static Json to_json(const Comparison& comparison) {
+        return {{"coverage", comparison.coverage},
+                {"filled", or_null(comparison.filled)},
+                {"unfilled_as_zero", to_json(comparison.unfilled_as_zero)}};
+    }
 
-/// What `value` gives for each frame, as one list.
-template <class Points, class ValueOf>
-Json column(const Points& points, ValueOf&& value_of) {
-    Json list = Json::array();
-    for (const auto& point : points) list.push_back(value_of(point));
-    return list;
-}
+    /// What `value` gives for each frame, as one list.
+    template <class Points, class ValueOf>
+    static Json column(const Points& points, ValueOf&& value_of) {
+        Json list = Json::array();
+        for (const auto& point : points) list.push_back(value_of(point));
+        return list;
+    }
 
-/// One list per score instead of one object per frame: short, and what a plot needs.
-template <class ScoresOf>
-Json score_columns(const std::vector<FramePoint>& frames, ScoresOf&& scores_of) {
-    const auto list = [&](double Scores::*member) {
-        return column(frames, [&](const FramePoint& point) {
-            const Scores* scores = scores_of(point);
-            return scores ? Json(scores->*member) : Json();
-        });
-    };
-    return {{"mad", list(&Scores::mad)},
-            {"rmse", list(&Scores::rmse)},
-            {"psnr_db", list(&Scores::psnr_db)},
-            {"ssim", list(&Scores::ssim)}};
-}
+    /// One list per score instead of one object per frame: short, and what a plot needs.
+    template <class ScoresOf>
+    static Json score_columns(const std::vector<FramePoint>& frames, ScoresOf&& scores_of) {
+        const auto list = [&](double Scores::*member) {
+            return column(frames, [&](const FramePoint& point) {
+                const Scores* scores = scores_of(point);
+                return scores ? Json(scores->*member) : Json();
+            });
+        };
+        return {{"mad", list(&Scores::mad)},
+                {"rmse", list(&Scores::rmse)},
+                {"psnr_db", list(&Scores::psnr_db)},
+                {"ssim", list(&Scores::ssim)}};
+    }
 
-Json to_json(const std::vector<FramePoint>& frames) {
-    return {{"frame", column(frames, [](const FramePoint& point) { return Json(point.frame); })},
-            {"truth_mean", column(frames, [](const FramePoint& point) { return to_json(point.truth_mean); })},
-            {"run_mean", column(frames, [](const FramePoint& point) { return or_null(point.run_mean); })},
-            {"coverage", column(frames, [](const FramePoint& point) { return Json(point.comparison.coverage); })},
-            {"filled", score_columns(frames,
-                                     [](const FramePoint& point) {
-                                         return point.comparison.filled ? &*point.comparison.filled : nullptr;
-                                     })},
-            {"unfilled_as_zero",
-             score_columns(frames, [](const FramePoint& point) { return &point.comparison.unfilled_as_zero; })}};
-}
+    static Json to_json(const std::vector<FramePoint>& frames) {
+        return {{"frame", column(frames, [](const FramePoint& point) { return Json(point.frame); })},
+                {"truth_mean", column(frames, [](const FramePoint& point) { return to_json(point.truth_mean); })},
+                {"run_mean", column(frames, [](const FramePoint& point) { return or_null(point.run_mean); })},
+                {"coverage", column(frames, [](const FramePoint& point) { return Json(point.comparison.coverage); })},
+                {"filled", score_columns(frames,
+                                         [](const FramePoint& point) {
+                                             return point.comparison.filled ? &*point.comparison.filled : nullptr;
+                                         })},
+                {"unfilled_as_zero",
+                 score_columns(frames, [](const FramePoint& point) { return &point.comparison.unfilled_as_zero; })}};
+    }
 
-Json to_json(const ObjectQuantity& quantity) {
-    return {{"mean", to_json(quantity.mean)}, {"frames", to_json(quantity.frames)}};
-}
+    static Json to_json(const ObjectQuantity& quantity) {
+        return {{"mean", to_json(quantity.mean)}, {"frames", to_json(quantity.frames)}};
+    }
 
-template <class Value>
-Json to_json(const PerQuantity<std::optional<Value>>& values) {
-    Json object = Json::object();
-    for (const Quantity quantity : kQuantities) object[name_of(quantity)] = or_null(values[quantity]);
-    return object;
-}
+    template <class Value>
+    static Json to_json(const PerQuantity<std::optional<Value>>& values) {
+        Json object = Json::object();
+        for (const Quantity quantity : kQuantities) object[name_of(quantity)] = or_null(values[quantity]);
+        return object;
+    }
 
-Json to_json(const ObjectSegmentation& segmentation) {
-    return {{"best_label", segmentation.best_label ? Json(*segmentation.best_label) : Json()},
-            {"iou", segmentation.iou},
-            {"best_label_share", segmentation.best_label_share},
-            {"labels", segmentation.labels},
-            {"foreign_share", segmentation.foreign_share}};
-}
+    static Json to_json(const ObjectSegmentation& segmentation) {
+        return {{"best_label", segmentation.best_label ? Json(*segmentation.best_label) : Json()},
+                {"iou", segmentation.iou},
+                {"best_label_share", segmentation.best_label_share},
+                {"labels", segmentation.labels},
+                {"foreign_share", segmentation.foreign_share}};
+    }
 
-Json to_json(const ObjectResult& object) {
-    return {{"id", object.id},
-            {"name", object.name},
-            {"pixels", object.pixels},
-            {"quantities", to_json(object.quantities)},
-            {"segmentation", or_null(object.segmentation)}};
-}
+    static Json to_json(const ObjectResult& object) {
+        return {{"id", object.id},
+                {"name", object.name},
+                {"pixels", object.pixels},
+                {"quantities", to_json(object.quantities)},
+                {"segmentation", or_null(object.segmentation)}};
+    }
 
-Json to_json(const SegmentationResult& segmentation) {
-    return {{"iou", segmentation.iou},
-            {"best_label_share", segmentation.best_label_share},
-            {"labels", segmentation.labels},
-            {"foreign_share", segmentation.foreign_share}};
-}
+    static Json to_json(const SegmentationResult& segmentation) {
+        return {{"iou", segmentation.iou},
+                {"best_label_share", segmentation.best_label_share},
+                {"labels", segmentation.labels},
+                {"foreign_share", segmentation.foreign_share}};
+    }
 
-Json to_json(const PixelErrors& errors) {
-    return {{"pixels", errors.pixels}, {"coverage", errors.coverage}, {"median", errors.median},
-            {"mean", errors.mean},     {"p90", errors.p90},           {"rmse", errors.rmse}};
-}
+    static Json to_json(const PixelErrors& errors) {
+        return {{"pixels", errors.pixels}, {"coverage", errors.coverage}, {"median", errors.median},
+                {"mean", errors.mean},     {"p90", errors.p90},           {"rmse", errors.rmse}};
+    }
 
-Json to_json(const RelativePoseError& error) {
-    return {{"pairs", error.pairs},
-            {"step_s", error.step_s},
-            {"translation_rmse_m", error.translation_rmse_m},
-            {"translation_max_m", error.translation_max_m},
-            {"rotation_rmse_deg", error.rotation_rmse_deg},
-            {"rotation_max_deg", error.rotation_max_deg}};
-}
+    static Json to_json(const RelativePoseError& error) {
+        return {{"pairs", error.pairs},
+                {"step_s", error.step_s},
+                {"translation_rmse_m", error.translation_rmse_m},
+                {"translation_max_m", error.translation_max_m},
+                {"rotation_rmse_deg", error.rotation_rmse_deg},
+                {"rotation_max_deg", error.rotation_max_deg}};
+    }
 
-Json to_json(const TrajectoryErrors& errors) {
-    return {{"truth_poses", errors.truth_poses},
-            {"poses", errors.poses},
-            {"ate_rmse_m", errors.ate_rmse_m},
-            {"ate_max_m", errors.ate_max_m},
-            {"unaligned_rmse_m", errors.unaligned_rmse_m},
-            {"per_frame", or_null(errors.per_frame)},
-            {"per_second", or_null(errors.per_second)}};
-}
+    static Json to_json(const TrajectoryErrors& errors) {
+        return {{"truth_poses", errors.truth_poses},
+                {"poses", errors.poses},
+                {"ate_rmse_m", errors.ate_rmse_m},
+                {"ate_max_m", errors.ate_max_m},
+                {"unaligned_rmse_m", errors.unaligned_rmse_m},
+                {"per_frame", or_null(errors.per_frame)},
+                {"per_second", or_null(errors.per_second)}};
+    }
 
-Json to_json(const sensor::PointLight& light) {
-    return {{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
-}
+    static Json to_json(const sensor::PointLight& light) {
+        return {{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
+    }
 
-Json to_json(const LightMatch& match) {
-    return {{"truth", match.truth},
-            {"run", match.run},
-            {"position_error_m", match.position_error_m},
-            {"intensity_error", to_json(match.intensity_error)},
-            {"intensity_error_after_factor", to_json(match.intensity_error_after_factor)}};
-}
+    static Json to_json(const LightMatch& match) {
+        return {{"truth", match.truth},
+                {"run", match.run},
+                {"position_error_m", match.position_error_m},
+                {"intensity_error", to_json(match.intensity_error)},
+                {"intensity_error_after_factor", to_json(match.intensity_error_after_factor)}};
+    }
 
-template <class Value>
-Json list_of(const std::vector<Value>& values) {
-    return column(values, [](const Value& value) { return to_json(value); });
-}
+    template <class Value>
+    static Json list_of(const std::vector<Value>& values) {
+        return column(values, [](const Value& value) { return to_json(value); });
+    }
 
-Json to_json(const LightErrors& lights) {
-    return {{"radius_m", lights.radius_m},          {"truth", list_of(lights.truth)}, {"run", list_of(lights.run)},
-            {"matches", list_of(lights.matches)},   {"missed", lights.missed},        {"invented", lights.invented},
-            {"common_factor", lights.common_factor}};
-}
+    static Json to_json(const LightErrors& lights) {
+        return {{"radius_m", lights.radius_m},          {"truth", list_of(lights.truth)}, {"run", list_of(lights.run)},
+                {"matches", list_of(lights.matches)},   {"missed", lights.missed},        {"invented", lights.invented},
+                {"common_factor", lights.common_factor}};
+    }
+};
 
 bool holds_object(const Json& json) {
     return json.is_object() || (json.is_array() && std::ranges::any_of(json, holds_object));
@@ -178,13 +181,13 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"frames", evaluation.frames},
                        {"truth_frames", evaluation.truth_frames},
                        {"run_frames", evaluation.run_frames},
-                       {"objects", list_of(evaluation.objects)},
-                       {"object_means", to_json(evaluation.object_means)},
-                       {"depth_mm", or_null(evaluation.depth_mm)},
-                       {"normal_deg", or_null(evaluation.normal_deg)},
-                       {"segmentation", or_null(evaluation.segmentation)},
-                       {"trajectory", or_null(evaluation.trajectory)},
-                       {"lights", or_null(evaluation.lights)}};
+                       {"objects", Convert::list_of(evaluation.objects)},
+                       {"object_means", Convert::to_json(evaluation.object_means)},
+                       {"depth_mm", Convert::or_null(evaluation.depth_mm)},
+                       {"normal_deg", Convert::or_null(evaluation.normal_deg)},
+                       {"segmentation", Convert::or_null(evaluation.segmentation)},
+                       {"trajectory", Convert::or_null(evaluation.trajectory)},
+                       {"lights", Convert::or_null(evaluation.lights)}};
     std::string text;
     append(text, json, "");
     return text + '\n';
