@@ -58,11 +58,18 @@ uint32_t JsonValue::positive_integer() const {
 std::vector<double> JsonValue::numbers(size_t count) const {
     if (!value_.is_array() || value_.size() != count) fail(text("must be an array of ", count, " numbers"));
     std::vector<double> values;
-    for (size_t i = 0; i < count; ++i) {
-        values.push_back(JsonValue(file_, text(key_, "[", i, "]"), value_[i]).number());
-    }
+    for (size_t i = 0; i < count; ++i) values.push_back(element(i).number());
     return values;
 }
+
+std::vector<JsonValue> JsonValue::elements() const {
+    if (!value_.is_array()) fail("must be an array");
+    std::vector<JsonValue> list;
+    for (size_t i = 0; i < value_.size(); ++i) list.push_back(element(i));
+    return list;
+}
+
+JsonValue JsonValue::element(size_t index) const { return {file_, text(key_, "[", index, "]"), value_[index]}; }
 
 std::string JsonValue::where() const { return key_.empty() ? file_ : file_ + ": " + key_; }
 

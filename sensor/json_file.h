@@ -30,13 +30,18 @@ class JsonValue {
     uint32_t positive_integer() const;
     /// An array of exactly `count` numbers.
     std::vector<double> numbers(size_t count) const;
+    /// The elements of an array.
+    std::vector<JsonValue> elements() const;
+    bool is_string() const { return value_.is_string(); }
 
     /// "file: key.path", for messages.
     std::string where() const;
+    /// Throws Error: "file: key.path is VALUE, `requirement`".
+    [[noreturn]] void fail(const std::string& requirement) const;
 
   private:
     JsonValue(std::string file, std::string key, nlohmann::json value);
-    [[noreturn]] void fail(const std::string& requirement) const;
+    JsonValue element(size_t index) const;
 
     std::string file_;
     std::string key_;

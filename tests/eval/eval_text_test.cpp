@@ -10,9 +10,11 @@
 namespace patina::eval {
 namespace {
 
-TEST(EvalText, Prints) { std::fputs(eval_text(test::full_evaluation()).c_str(), stdout);
- std::fputs(eval_text(test::geometry_only()).c_str(), stdout); 
- std::fputs(eval_text(test::full_evaluation(9)).c_str(), stdout); }
+TEST(EvalText, Prints) {
+    std::fputs(eval_text(test::full_evaluation()).c_str(), stdout);
+    std::fputs(eval_text(test::geometry_only()).c_str(), stdout);
+    std::fputs(eval_text(test::full_evaluation(9)).c_str(), stdout);
+}
 
 }  // namespace
 }  // namespace patina::eval

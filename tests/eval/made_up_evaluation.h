@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tools/eval/result.h"
 
@@ -39,17 +38,23 @@ inline ObjectQuantity quantity_of(const std::vector<uint32_t>& frames, double tr
 
 /// A result with something in every field, of so many objects in so many frames.
 inline Evaluation full_evaluation(size_t objects = 4, uint32_t frames = 40) {
-    Evaluation evaluation{.sequence = "recordings/bunnies", .run = "out/<b>run</b>", .extent = {512, 424}};
+    Evaluation evaluation;
+    evaluation.sequence = "recordings/bunnies";
+    evaluation.run = "out/<b>run</b>";
+    evaluation.extent = {512, 424};
     for (uint32_t i = 0; i < frames; ++i) evaluation.frames.push_back(10 * i);
     evaluation.truth_frames = frames;
     evaluation.run_frames = frames + 5;
     const std::vector<std::string> names = {"floor", "yellow <script> figure", "Küche & \"more\"", "orange figure"};
     for (size_t k = 0; k < objects; ++k) {
-        ObjectResult object{.id = static_cast<uint32_t>(k + 1), .name = k < 4 ? names[k] : "chair " + std::to_string(k)};
+        ObjectResult object;
+        object.id = static_cast<uint32_t>(k + 1);
+        object.name = k < names.size() ? names[k] : "chair " + std::to_string(k);
         object.pixels = 123456 + k;
         for (const Quantity quantity : kQuantities) {
             const double error = static_cast<double>(k) + 2 * static_cast<double>(quantity) + 1;
-            object.quantities[quantity] = quantity_of(evaluation.frames, 0.1 + 0.2 * static_cast<double>(k % 4), error, 0.975);
+            object.quantities[quantity] =
+                quantity_of(evaluation.frames, 0.1 + 0.2 * static_cast<double>(k % 4), error, 0.975);
         }
         object.segmentation = ObjectSegmentation{7, 0.875, 0.9375, 2, 0.03125};
         evaluation.objects.push_back(std::move(object));
@@ -60,16 +65,20 @@ inline Evaluation full_evaluation(size_t objects = 4, uint32_t frames = 40) {
     evaluation.depth_mm = PixelErrors{5000, 0.984375, 1.5, 2.25, 4.75, 3.125};
     evaluation.normal_deg = PixelErrors{5000, 0.984375, 0.5, 1.25, 2.75, 1.625};
     evaluation.segmentation = SegmentationResult{0.875, 0.9375, 2.5, 0.03125};
-    evaluation.trajectory = TrajectoryErrors{40, 39, 0.0125, 0.03, 0.5, RelativePoseError{38, 0.033, 0.001, 0.002, 0.01, 0.02},
+    evaluation.trajectory = TrajectoryErrors{40,
+                                             39,
+                                             0.0125,
+                                             0.03,
+                                             0.5,
+                                             RelativePoseError{38, 0.033, 0.001, 0.002, 0.01, 0.02},
                                              RelativePoseError{9, 1.0, 0.004, 0.005, 0.06, 0.07}};
-    evaluation.lights = LightErrors{
-        0.5,
-        {{{1, -2, 3}, {4, 5, 6}}, {{-1, -2, 3}, {1, 1, 1}}},
-        {{{9, 9, 9}, {1, 1, 1}}, {{1.02, -2, 3}, {8, 10, 12}}},
-        {{0, 1, 0.02, {1, 1, 1}, {0.125, 0, 0}}},
-        {1},
-        {0},
-        2};
+    evaluation.lights = LightErrors{0.5,
+                                    {{{1, -2, 3}, {4, 5, 6}}, {{-1, -2, 3}, {1, 1, 1}}},
+                                    {{{9, 9, 9}, {1, 1, 1}}, {{1.02, -2, 3}, {8, 10, 12}}},
+                                    {{0, 1, 0.02, {1, 1, 1}, {0.125, 0, 0}}},
+                                    {1},
+                                    {0},
+                                    2};
     return evaluation;
 }
 

@@ -5,12 +5,10 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "sensor/open.h"
 #include "sensor/picture_file.h"
-#include "sensor/truth.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor {
@@ -160,20 +158,6 @@ TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
     write_text(folder / "a/mine", "x");
     EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("cannot be renamed to"));
     EXPECT_EQ(read_text(folder / "a/mine"), "x");
-}
-
-TEST(Truth, LightsAndMaterialsFollowTheFormat) {
-    const TemporaryFolder folder;
-    write_lights(folder / "lights.json", std::vector<PointLight>{{{1, 2, 3}, {4, 5, 6.5}}});
-    write_materials(folder / "materials.json",
-                    std::vector<Material>{{1, "floor", glm::dvec3(0.25), glm::dvec3(0.5), 0.125},
-                                          {2, "wood", std::nullopt, glm::dvec3(0), 1}});
-    using Json = nlohmann::json;
-    EXPECT_EQ(Json::parse(read_text(folder / "lights.json")),
-              Json::parse(R"({"lights": [{"position": [1.0, 2.0, 3.0], "intensity": [4.0, 5.0, 6.5]}]})"));
-    EXPECT_EQ(Json::parse(read_text(folder / "materials.json")), Json::parse(R"({"materials": [
-        {"id": 1, "name": "floor", "kd": [0.25, 0.25, 0.25], "ks": [0.5, 0.5, 0.5], "alpha": 0.125},
-        {"id": 2, "name": "wood", "kd": "texture", "ks": [0.0, 0.0, 0.0], "alpha": 1.0}]})"));
 }
 
 }  // namespace
