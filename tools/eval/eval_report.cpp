@@ -86,7 +86,7 @@ std::string metric_tables(const Evaluation& evaluation, Pixels pixels) {
 }
 
 std::string scores(const Evaluation& evaluation) {
-    if (evaluation.objects.empty()) return paragraph("No object of the truth is seen.");
+    if (evaluation.objects.empty()) return {};
     return object_names(evaluation) + metric_tables(evaluation, Pixels::kFilled) +
            (has_unfilled(evaluation)
                 ? std::string()
@@ -115,7 +115,8 @@ std::string light_table(const std::optional<LightErrors>& lights) {
     std::string rows;
     for (const LightRow& row : light_rows(*lights)) {
         rows += "<tr><td>" + html_escaped(row.light) + "</td>" +
-                cells("td", {row.position, row.match, row.position_error, row.intensity_error, row.after_factor}) +
+                cells("td", {row.position, row.match, row.position_error.value_or("-"),
+                             row.intensity_error.value_or("-"), row.after_factor.value_or("-")}) +
                 "</tr>\n";
     }
     return report_table("<th>Light</th>" + cells("th", {"Position, m", "Match", "Position error",

@@ -1,6 +1,7 @@
 #include "tools/eval/eval_text.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,7 @@ namespace patina::eval {
 namespace {
 
 constexpr size_t kTerminalColumns = 120;
-constexpr size_t kLongestName = 24;
+constexpr size_t kLongestName = 22;  // with it, two metrics of six quantities fit beside each other
 constexpr size_t kShortestCell = 7;
 
 bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
@@ -54,7 +55,13 @@ class MetricPrinter {
             rows_.push_back(printable(row));
             label_width_ = std::max(label_width_, length_of(rows_.back()));
         }
-        for (const std::string& column : table.columns) cell_width_ = std::max(cell_width_, length_of(column) + 1);
+        // "kd refined" stands on two lines: what is before the space, then what is after it.
+        for (const std::string& column : table.columns) {
+            const size_t space = std::min(column.find(' '), column.size());
+            heads_[0].push_back(column.substr(0, space));
+            heads_[1].push_back(column.substr(std::min(space + 1, column.size())));
+            for (const auto& line : heads_) cell_width_ = std::max(cell_width_, length_of(line.back()) + 1);
+        }
         // One more column keeps neighbouring metrics apart.
         metric_width_ = 1 + table.columns.size() * cell_width_;
     }
@@ -70,26 +77,39 @@ class MetricPrinter {
 
   private:
     std::string block(size_t first, size_t last) const {
-        std::string heads(label_width_, ' '), columns(label_width_, ' ');
+        std::string titles(label_width_, ' ');
         for (size_t metric = first; metric < last; ++metric) {
-            heads += ' ' + centred(table_.metrics[metric].metric, metric_width_ - 1);
-            columns += ' ';
-            for (const std::string& column : table_.columns) columns += right(column, cell_width_);
+            titles += ' ' + centred(table_.metrics[metric].metric, metric_width_ - 1);
         }
-        std::string text = trimmed(heads) + trimmed(columns);
+        std::string text = trimmed(titles);
+        for (const auto& head : heads_) {
+            const bool is_empty = std::ranges::all_of(head, &std::string::empty);
+            if (!is_empty)
+                text += line(
+                    "", last - first, [&](size_t) -> const auto& { return head; });
+        }
         for (size_t row = 0; row < rows_.size(); ++row) {
-            std::string line = padded(rows_[row], label_width_);
-            for (size_t metric = first; metric < last; ++metric) {
-                line += ' ';
-                for (const std::string& cell : table_.metrics[metric].cells[row]) line += right(cell, cell_width_);
-            }
-            text += trimmed(line);
+            text += line(
+                rows_[row],
+                last - first, [&](size_t i) -> const auto& { return table_.metrics[first + i].cells[row]; });
         }
         return text;
     }
 
+    /// The cells of so many metrics behind a label.
+    template <class CellsOf>
+    std::string line(const std::string& label, size_t metrics, CellsOf&& cells_of) const {
+        std::string line = padded(label, label_width_);
+        for (size_t metric = 0; metric < metrics; ++metric) {
+            line += ' ';
+            for (const std::string& cell : cells_of(metric)) line += right(cell, cell_width_);
+        }
+        return trimmed(line);
+    }
+
     const ScoreTable& table_;
     std::vector<std::string> rows_;
+    std::array<std::vector<std::string>, 2> heads_;
     size_t label_width_ = 0, cell_width_ = kShortestCell, metric_width_ = 0;
 };
 
@@ -103,7 +123,7 @@ std::string object_names(const Evaluation& evaluation) {
 }
 
 std::string score_text(const Evaluation& evaluation) {
-    if (evaluation.objects.empty()) return "No object of the truth is seen.\n\n";
+    if (evaluation.objects.empty()) return {};
     std::string text = object_names(evaluation) + MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
     if (has_unfilled(evaluation)) {
         text += "With unfilled pixels counted as zero:\n\n" +
@@ -116,9 +136,9 @@ std::string light_text(const LightErrors& lights) {
     std::string text;
     for (const LightRow& row : light_rows(lights)) {
         text += fmt::format("  {} at ({}) m: {}", row.light, row.position, row.match);
-        if (row.position_error != "-") {
-            text += fmt::format(", off by {}, intensity {}, after the common factor {}", row.position_error,
-                                row.intensity_error, row.after_factor);
+        if (row.position_error) {
+            text += fmt::format(", {} off\n    intensity off by {}; after division by the common factor by {}",
+                                *row.position_error, *row.intensity_error, *row.after_factor);
         }
         text += '\n';
     }

@@ -1,6 +1,7 @@
 #include "tools/eval/exr_planes.h"
 
 #include <charconv>
+#include <optional>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/error.h"
+
 namespace patina::eval {
 namespace {
 
@@ -109,7 +111,7 @@ const char* title_of(Quantity quantity) {
         case Quantity::kRgbBefore: return "RGB";
         case Quantity::kRgb: return "RGB refined";
     }
-    return "";
+    PATINA_ASSERT(false, "quantity ", static_cast<int>(quantity));
 }
 
 ScoreTable score_table(const Evaluation& evaluation, Pixels pixels) {
@@ -142,6 +144,7 @@ bool has_unfilled(const Evaluation& evaluation) {
 }
 
 std::vector<std::string> absences(const Evaluation& evaluation) {
+    if (evaluation.objects.empty()) return {"No object of the truth is seen in the evaluated frames."};
     std::vector<std::string> missing, list;
     for (const Quantity quantity : kQuantities) {
         if (!evaluation.object_means[quantity]) missing.push_back(title_of(quantity));
@@ -173,11 +176,10 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
     }
     if (const auto& segmentation = evaluation.segmentation) {
         list.push_back(
-            {"Segmentation",
-             fmt::format("best-overlap IoU {:.3f}; {} of an object in its best label; {:.1f} labels an object; "
-                         "{} of a label on other objects",
-                         segmentation->iou, percent(segmentation->best_label_share), segmentation->labels,
-                         percent(segmentation->foreign_share))});
+            {"Segmentation", fmt::format("IoU {:.3f} at best overlap; the best label on {} of an object, {} of it "
+                                         "elsewhere; {:.1f} labels an object",
+                                         segmentation->iou, percent(segmentation->best_label_share),
+                                         percent(segmentation->foreign_share), segmentation->labels)});
     }
     if (const auto& lights = evaluation.lights) {
         list.push_back({"Lights", fmt::format("{} of {} matched within {:.2f} m; {} missed, {} invented; the run's "
@@ -207,8 +209,8 @@ std::vector<LightRow> light_rows(const LightErrors& lights) {
         rows.push_back(std::move(row));
     }
     for (const size_t i : lights.invented) {
-        rows.push_back({fmt::format("light {} of the run", i + 1), three(lights.run[i].position_m, 2), "invented",
-                        kNothing, kNothing, kNothing});
+        rows.push_back(
+            {fmt::format("light {} of the run", i + 1), three(lights.run[i].position_m, 2), "invented", {}, {}, {}});
     }
     return rows;
 }

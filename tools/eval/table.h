@@ -40,22 +40,26 @@ const char* title_of(Quantity quantity);
 /// Notes about what could not be measured, because the run or the sequence does not have it; a sentence each.
 std::vector<std::string> absences(const Evaluation& evaluation);
 
-/// A sentence each, for people: depth, normals, segmentation and trajectory, each after its name.
+/// A result in words.
 struct Finding {
     std::string name;   ///< "Depth error"
     std::string value;  ///< "2.10 mm median, ..."
 };
+
+/// What was measured of depth, normals, trajectory, segmentation and lights.
 std::vector<Finding> findings(const Evaluation& evaluation);
 
-/// One line per true light, and one per light that the run invented.
+/// A true light and what stands for it, or a light that the run invented.
 struct LightRow {
-    std::string light;            ///< "true light 1", "light 3 of the run"
-    std::string position;         ///< "0.10, -2.30, 1.00"
-    std::string match;            ///< "light 2 of the run", "missed", "invented"
-    std::string position_error;   ///< "0.021 m", "-" without a match
-    std::string intensity_error;  ///< "3.2% 3.1% 4.0%", "-" without a match
-    std::string after_factor;     ///< likewise, after division by the common factor
+    std::string light;                           ///< "true light 1", "light 3 of the run"
+    std::string position;                        ///< in metres: "0.10, -2.30, 1.00"
+    std::string match;                           ///< "light 2 of the run", "missed", "invented"
+    std::optional<std::string> position_error;   ///< "21.0 mm"; this and the following with a match only
+    std::optional<std::string> intensity_error;  ///< per channel: "3.2% 3.1% 4.0%"
+    std::optional<std::string> after_factor;     ///< likewise, after division by the common factor
 };
+
+/// One row per true light, then one per invented light.
 std::vector<LightRow> light_rows(const LightErrors& lights);
 
 }  // namespace patina::eval
