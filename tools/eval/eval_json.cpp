@@ -147,14 +147,22 @@ struct Convert {
     }
 };
 
-bool holds_object(const Json& json) {
-    return json.is_object() || (json.is_array() && std::ranges::any_of(json, holds_object));
+bool is_list_of_lists(const Json& json) {
+    return json.is_array() &&
+           std::ranges::all_of(json, [](const Json& item) { return item.is_primitive() || is_list_of_lists(item); });
 }
 
-/// As dump(2), but a list without objects in it stays on one line.
+/// What reads best on one line: lists of numbers, and objects that hold nothing but single values.
+bool is_line(const Json& json) {
+    return json.is_primitive() || is_list_of_lists(json) ||
+           (json.is_object() && std::ranges::all_of(json, [](const Json& item) { return item.is_primitive(); }));
+}
+
+std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 void append(std::string& text, const Json& json, const std::string& indent) {
-    if (json.empty() || !holds_object(json)) {
-        text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (is_line(json)) {
+        text += line_of(json);
         return;
     }
     const std::string inner = indent + "  ";
@@ -162,7 +170,7 @@ void append(std::string& text, const Json& json, const std::string& indent) {
     const char* separator = "\n";
     for (const auto& [key, value] : json.items()) {
         text += separator + inner;
-        if (json.is_object()) text += Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+        if (json.is_object()) text += line_of(Json(key)) + ": ";
         append(text, value, inner);
         separator = ",\n";
     }

@@ -13,22 +13,21 @@ namespace {
 constexpr std::string_view kStyle = R"css(
 h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; break-after: avoid; }
 p { margin: .3rem 0 .8rem; max-width: 60rem; }
-.scores { display: grid; grid-template-columns: repeat(auto-fill, minmax(20rem, 1fr)); gap: 0 2.5rem; }
+.scores { display: grid; grid-template-columns: repeat(auto-fill, minmax(calc(7rem + var(--columns) * 3.8rem), 1fr)); gap: 0 2.5rem; }
 .scores > div { break-inside: avoid; min-width: 0; }
-.scores.wide { grid-template-columns: repeat(auto-fill, minmax(31rem, 1fr)); }
-.scores th, .scores td { padding-right: 0; padding-left: .5rem; font-size: .85rem; white-space: nowrap; }
-.scores th:first-child { padding-left: 0; }
-.scores.wide th:first-child { max-width: 11rem; overflow: hidden; text-overflow: ellipsis; }
+.scores th, .scores td { padding-right: 0; padding-left: .5rem; font-size: .85rem; }
+.scores th:first-child { padding-left: 0; max-width: 12rem; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+th.number { white-space: normal; vertical-align: bottom; }
+td.name { white-space: nowrap; }
 .average { font-weight: 600; }
 .errors { display: grid; grid-template-columns: repeat(3, 1fr); gap: .5rem; }
-.errors p { margin: 0; color: var(--quiet); font-size: .85rem; }
 .errors figure { margin: 0; }
 .errors figure img { image-rendering: auto; border-radius: 0; }
 .errors figcaption { display: flex; gap: .4rem; align-items: center; white-space: nowrap; }
 .errors figcaption img, .sample { display: inline-block; width: 5rem; height: .7rem; }
 .sample { width: 2rem; height: 1rem; vertical-align: -.15rem; }
 @media print { .errors { gap: .3rem; } .errors figure { break-inside: avoid; } .scroll { overflow: visible; } }
-@media (max-width: 40rem) { .scores, .scores.wide { grid-template-columns: 1fr; } .errors figcaption { flex-wrap: wrap; } }
+@media (max-width: 40rem) { .scores { grid-template-columns: 1fr; } .errors figcaption { flex-wrap: wrap; } }
 )css";
 
 std::string paragraph(std::string_view text) { return fmt::format("<p>{}</p>\n", html_escaped(text)); }
@@ -48,9 +47,7 @@ std::string cells(const char* tag, const std::vector<std::string>& texts) {
 }
 
 std::string facts(const Evaluation& evaluation) {
-    std::string html = report_fact("Run", html_escaped(evaluation.run));
-    html += report_fact("Sequence", html_escaped(evaluation.sequence));
-    html += report_fact("Frames compared", grouped(evaluation.frames.size()));
+    std::string html = report_fact("Frames compared", grouped(evaluation.frames.size()));
     html += report_fact("Frames of truth / of the run",
                         grouped(evaluation.truth_frames) + " / " + grouped(evaluation.run_frames));
     html += report_fact("Objects", grouped(evaluation.objects.size()));
@@ -81,8 +78,7 @@ std::string metric_tables(const Evaluation& evaluation, Pixels pixels) {
     const ScoreTable table = score_table(evaluation, pixels);
     std::string html;
     for (const MetricCells& metric : table.metrics) html += metric_table(table, metric);
-    const bool by_object = evaluation.objects.size() > kMostObjectColumns;
-    return fmt::format("<div class='scores{}'>\n{}</div>\n", by_object ? " wide" : "", html);
+    return fmt::format("<div class='scores' style='--columns: {}'>\n{}</div>\n", table.columns.size(), html);
 }
 
 std::string scores(const Evaluation& evaluation) {
@@ -114,7 +110,7 @@ std::string light_table(const std::optional<LightErrors>& lights) {
     if (!lights) return {};
     std::string rows;
     for (const LightRow& row : light_rows(*lights)) {
-        rows += "<tr><td>" + html_escaped(row.light) + "</td>" +
+        rows += "<tr><td class='name'>" + html_escaped(row.light) + "</td>" +
                 cells("td", {row.position, row.match, row.position_error.value_or("-"),
                              row.intensity_error.value_or("-"), row.after_factor.value_or("-")}) +
                 "</tr>\n";
@@ -159,12 +155,12 @@ std::string figure(const std::string& png, const std::string& alt, const std::st
 }
 
 std::string error_row(const ErrorRow& row, uint32_t frame) {
-    const auto alt = [&](const char* what) { return fmt::format("{} of {} in frame {}", what, row.title, frame); };
-    const std::string title = html_escaped(row.title);
+    const auto alt = [&](const char* what) { return fmt::format("{}, {}, frame {}", row.title, what, frame); };
+    const auto caption = [&](const char* what) { return fmt::format("<b>{}</b> {}", html_escaped(row.title), what); };
     const std::string values = row.values ? scale(*row.values, "") : std::string();
-    return figure(row.truth, alt("true value"), fmt::format("<b>{}</b> {}", title, values)) +
-           figure(row.run, alt("reconstruction"), fmt::format("<b>{}</b> {}", title, values)) +
-           figure(row.error, alt("absolute error"), fmt::format("<b>{}</b> {}", title, scale(row.errors, " or more")));
+    return figure(row.truth, alt("truth"), caption("truth") + values) +
+           figure(row.run, alt("reconstruction"), caption("reconstruction") + values) +
+           figure(row.error, alt("absolute error"), caption("error") + scale(row.errors, " or more"));
 }
 
 std::string error_pictures(std::span<const ErrorFigure> figures) {
@@ -175,8 +171,7 @@ std::string error_pictures(std::span<const ErrorFigure> figures) {
         embedded(unfilled_sample(), "hatched:", "class='sample'"),
         embedded(no_truth_sample(), "grey:", "class='sample'"));
     for (const ErrorFigure& figure : figures) {
-        html += sub_heading(fmt::format("Frame {}", figure.frame)) +
-                "<div class='errors'>\n<p>Truth</p><p>Reconstruction</p><p>Absolute error</p>\n";
+        html += sub_heading(fmt::format("Frame {}", figure.frame)) + "<div class='errors'>\n";
         for (const ErrorRow& row : figure.rows) html += error_row(row, figure.frame);
         html += "</div>\n";
     }

@@ -18,7 +18,7 @@ constexpr double kLeft = 42, kRight = 8, kTop = 24, kBottom = 32;
 constexpr double kColumn = 2;  ///< width below which points are not told apart
 
 constexpr size_t kHues = 6;
-constexpr int kMostStepsX = 5, kMostStepsY = 4;
+constexpr int kMostStepsX = 5, kMostStepsY = 5;
 
 constexpr std::array<std::string_view, 3> kClasses{"truth", "estimate", "refined"};
 
@@ -43,7 +43,7 @@ svg.plot .y { text-anchor: end; }
 svg.plot .x, svg.plot .none { text-anchor: middle; }
 svg.plot path, svg.key path { fill: none; stroke: currentColor; stroke-linecap: round; stroke-linejoin: round; }
 svg.plot path.grid { stroke: var(--line); stroke-width: 1; stroke-linecap: butt; }
-path.truth { stroke-width: 4; stroke-opacity: .4; }
+path.truth { stroke-width: 4; stroke-opacity: .5; }
 path.estimate { stroke-width: 1.3; }
 svg.plot path.refined, svg.key path.refined { stroke: var(--quiet); stroke-width: 1.3; stroke-dasharray: 4 2.5; }
 .legend { display: flex; flex-wrap: wrap; gap: .2rem 1.4rem; margin: 0 0 .4rem; color: var(--quiet); font-size: .85rem; }
