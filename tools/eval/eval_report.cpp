@@ -13,19 +13,21 @@ namespace {
 constexpr std::string_view kStyle = R"css(
 h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; break-after: avoid; }
 p { margin: .3rem 0 .8rem; max-width: 60rem; }
-.scores { display: grid; grid-template-columns: repeat(auto-fill, minmax(calc(7rem + var(--columns) * 3.8rem), 1fr)); gap: 0 2.5rem; }
+.scores { --label: 6.5rem; display: grid; grid-template-columns: repeat(auto-fill, minmax(calc(var(--label) + var(--columns) * 3.6rem), 1fr)); gap: 0 2.5rem; }
+.scores.turned { --label: 11rem; }
 .scores > div { break-inside: avoid; min-width: 0; }
 .scores th, .scores td { padding-right: 0; padding-left: .5rem; font-size: .85rem; }
-.scores th:first-child { padding-left: 0; max-width: 12rem; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.scores th:first-child { padding-left: 0; max-width: var(--label); overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.scores:not(.turned) td:last-child, .scores.turned tr:last-child td { font-weight: 600; }
 th.number { white-space: normal; vertical-align: bottom; }
 td.name { white-space: nowrap; }
-.average { font-weight: 600; }
-.errors { display: grid; grid-template-columns: repeat(3, 1fr); gap: .5rem; }
+.errors { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: .5rem; }
 .errors figure { margin: 0; }
 .errors figure img { image-rendering: auto; border-radius: 0; }
 .errors figcaption { display: flex; gap: .4rem; align-items: center; white-space: nowrap; }
 .errors figcaption img, .sample { display: inline-block; width: 5rem; height: .7rem; }
 .sample { width: 2rem; height: 1rem; vertical-align: -.15rem; }
+.key { white-space: nowrap; margin-left: .6rem; }
 @media print { .errors { gap: .3rem; } .errors figure { break-inside: avoid; } .scroll { overflow: visible; } }
 @media (max-width: 40rem) { .scores { grid-template-columns: 1fr; } .errors figcaption { flex-wrap: wrap; } }
 )css";
@@ -55,20 +57,10 @@ std::string facts(const Evaluation& evaluation) {
     return report_facts(html);
 }
 
-std::string object_names(const Evaluation& evaluation) {
-    if (evaluation.objects.size() > kMostObjectColumns) return {};  // the rows name them
-    std::string text;
-    for (size_t i = 0; i < evaluation.objects.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + short_name(i) + ' ' + evaluation.objects[i].name;
-    }
-    return paragraph("Objects: " + text);
-}
-
 std::string metric_table(const ScoreTable& table, const MetricCells& metric) {
     std::string rows;
     for (size_t row = 0; row < table.rows.size(); ++row) {
-        rows += fmt::format("<tr{}><th>{}</th>{}</tr>\n", table.rows[row] == "avg" ? " class='average'" : "",
-                            html_escaped(table.rows[row]), cells("td", metric.cells[row]));
+        rows += fmt::format("<tr><th>{}</th>{}</tr>\n", html_escaped(table.rows[row]), cells("td", metric.cells[row]));
     }
     return fmt::format("<div>{}{}</div>\n", sub_heading(metric.metric),
                        report_table("<th></th>" + cells("th", table.columns), rows));
@@ -78,12 +70,14 @@ std::string metric_tables(const Evaluation& evaluation, Pixels pixels) {
     const ScoreTable table = score_table(evaluation, pixels);
     std::string html;
     for (const MetricCells& metric : table.metrics) html += metric_table(table, metric);
-    return fmt::format("<div class='scores' style='--columns: {}'>\n{}</div>\n", table.columns.size(), html);
+    return fmt::format("<div class='scores{}' style='--columns: {}'>\n{}</div>\n", table.is_turned ? " turned" : "",
+                       table.columns.size(), html);
 }
 
 std::string scores(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
-    return object_names(evaluation) + metric_tables(evaluation, Pixels::kFilled) +
+    const std::string key = column_key(evaluation);
+    return (key.empty() ? key : paragraph(key)) + metric_tables(evaluation, Pixels::kFilled) +
            (has_unfilled(evaluation)
                 ? std::string()
                 : paragraph("Every pixel is filled: counting unfilled ones as zero changes nothing."));
@@ -165,11 +159,12 @@ std::string error_row(const ErrorRow& row, uint32_t frame) {
 
 std::string error_pictures(std::span<const ErrorFigure> figures) {
     if (figures.empty()) return {};
+    const auto key = [](const std::string& png, const char* look, const char* meaning) {
+        return fmt::format("<span class='key'>{} {}</span>", embedded(png, look, "class='sample'"), meaning);
+    };
     std::string html = fmt::format(
-        "<p>Absolute differences, averaged over the channels; colours are shown with the sRGB curve. {} the run has no "
-        "value &nbsp; {} there is no truth</p>\n",
-        embedded(unfilled_sample(), "hatched:", "class='sample'"),
-        embedded(no_truth_sample(), "grey:", "class='sample'"));
+        "<p>Absolute differences, averaged over the channels. Colours are encoded for sRGB.{}{}</p>\n",
+        key(unfilled_sample(), "hatched:", "the run has no value"), key(no_truth_sample(), "grey:", "no truth"));
     for (const ErrorFigure& figure : figures) {
         html += sub_heading(fmt::format("Frame {}", figure.frame)) + "<div class='errors'>\n";
         for (const ErrorRow& row : figure.rows) html += error_row(row, figure.frame);

@@ -21,13 +21,17 @@ size_t length_of(const std::string& text) {
     return static_cast<size_t>(std::ranges::count_if(text, [](char byte) { return !continues_character(byte); }));
 }
 
-/// Without what would move the terminal's cursor, and not longer than a name may be.
+/// Without what would move the terminal's cursor.
 std::string printable(std::string text) {
     std::ranges::replace_if(
         text, [](char byte) { return static_cast<unsigned char>(byte) < ' ' || byte == 0x7f; }, '?');
-    if (length_of(text) <= kLongestName) return text;
-    while (length_of(text) >= kLongestName) text.pop_back();
-    return text + "~";
+    return text;
+}
+
+std::string shortened(std::string name) {
+    if (length_of(name) <= kLongestName) return name;
+    while (length_of(name) >= kLongestName) name.pop_back();
+    return name + "~";
 }
 
 std::string padded(const std::string& text, size_t width) {
@@ -52,7 +56,7 @@ class MetricPrinter {
   public:
     explicit MetricPrinter(const ScoreTable& table) : table_(table) {
         for (const std::string& row : table.rows) {
-            rows_.push_back(printable(row));
+            rows_.push_back(shortened(printable(row)));
             label_width_ = std::max(label_width_, length_of(rows_.back()));
         }
         // "kd refined" stands on two lines: what is before the space, then what is after it.
@@ -113,18 +117,11 @@ class MetricPrinter {
     size_t label_width_ = 0, cell_width_ = kShortestCell, metric_width_ = 0;
 };
 
-std::string object_names(const Evaluation& evaluation) {
-    if (evaluation.objects.size() > kMostObjectColumns) return {};  // the rows name them
-    std::string line;
-    for (size_t i = 0; i < evaluation.objects.size(); ++i) {
-        line += (i == 0 ? "" : ", ") + short_name(i) + ' ' + printable(evaluation.objects[i].name);
-    }
-    return line.empty() ? line : line + "\n\n";
-}
-
 std::string score_text(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
-    std::string text = object_names(evaluation) + MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
+    std::string text = printable(column_key(evaluation));
+    if (!text.empty()) text += "\n\n";
+    text += MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
     if (has_unfilled(evaluation)) {
         text += "With unfilled pixels counted as zero:\n\n" +
                 MetricPrinter(score_table(evaluation, Pixels::kUnfilledAsZero)).text();

@@ -102,6 +102,15 @@ std::string three_percent(glm::dvec3 v) { return fmt::format("{} {} {}", percent
 
 std::string short_name(size_t object) { return fmt::format("S{}", object + 1); }
 
+std::string column_key(const Evaluation& evaluation) {
+    std::string text;
+    if (evaluation.objects.size() > kMostObjectColumns) return text;
+    for (size_t i = 0; i < evaluation.objects.size(); ++i) {
+        text += (i == 0 ? "" : ", ") + short_name(i) + ' ' + evaluation.objects[i].name;
+    }
+    return text;
+}
+
 const char* title_of(Quantity quantity) {
     switch (quantity) {
         case Quantity::kKdBefore: return "kd";
@@ -115,17 +124,17 @@ const char* title_of(Quantity quantity) {
 }
 
 ScoreTable score_table(const Evaluation& evaluation, Pixels pixels) {
-    const bool by_object = evaluation.objects.size() > kMostObjectColumns;
     ScoreTable table;
+    table.is_turned = evaluation.objects.size() > kMostObjectColumns;
     for (size_t i = 0; i < evaluation.objects.size(); ++i) {
-        table.columns.push_back(by_object ? short_name(i) + " " + evaluation.objects[i].name : short_name(i));
+        table.columns.push_back(table.is_turned ? short_name(i) + " " + evaluation.objects[i].name : short_name(i));
     }
     table.columns.push_back("avg");
     for (const Quantity quantity : kQuantities) table.rows.push_back(title_of(quantity));
-    if (by_object) table.rows.swap(table.columns);
+    if (table.is_turned) table.rows.swap(table.columns);
     const auto add = [&](const char* metric, const CellText& text) {
         const auto cells = cells_by_object(evaluation, text);
-        table.metrics.push_back({metric, by_object ? cells : turned(cells)});
+        table.metrics.push_back({metric, table.is_turned ? cells : turned(cells)});
     };
     for (const Metric& metric : metrics()) add(metric.title, score_text(metric, pixels));
     if (pixels == Pixels::kFilled)
@@ -176,10 +185,11 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
     }
     if (const auto& segmentation = evaluation.segmentation) {
         list.push_back(
-            {"Segmentation", fmt::format("IoU {:.3f} at best overlap; the best label on {} of an object, {} of it "
-                                         "elsewhere; {:.1f} labels an object",
-                                         segmentation->iou, percent(segmentation->best_label_share),
-                                         percent(segmentation->foreign_share), segmentation->labels)});
+            {"Segmentation",
+             fmt::format(
+                 "best-overlap IoU {:.3f}; best label on {} of an object, {} of it elsewhere; {:.1f} labels an object",
+                 segmentation->iou, percent(segmentation->best_label_share), percent(segmentation->foreign_share),
+                 segmentation->labels)});
     }
     if (const auto& lights = evaluation.lights) {
         list.push_back({"Lights", fmt::format("{} of {} matched within {:.2f} m; {} missed, {} invented; the run's "
@@ -193,12 +203,7 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
 std::vector<LightRow> light_rows(const LightErrors& lights) {
     std::vector<LightRow> rows;
     for (size_t i = 0; i < lights.truth.size(); ++i) {
-        LightRow row{fmt::format("true light {}", i + 1),
-                     three(lights.truth[i].position_m, 2),
-                     "missed",
-                     kNothing,
-                     kNothing,
-                     kNothing};
+        LightRow row{fmt::format("true light {}", i + 1), three(lights.truth[i].position_m, 2), "missed", {}, {}, {}};
         const auto match = std::ranges::find(lights.matches, i, &LightMatch::truth);
         if (match != lights.matches.end()) {
             row.match = fmt::format("light {} of the run", match->run + 1);

@@ -19,6 +19,7 @@ struct MetricCells {
 /// The paper's Table 1. Its rows are the quantities, and its columns the objects, S1 to Sn, and their average. With
 /// more than kMostObjectColumns objects it is turned: rows are the objects by name, and their average.
 struct ScoreTable {
+    bool is_turned = false;
     std::vector<std::string> rows, columns;
     std::vector<MetricCells> metrics;  ///< over the filled pixels, the coverage is the last
 };
@@ -33,6 +34,9 @@ bool has_unfilled(const Evaluation& evaluation);
 
 /// "S1" for the first object.
 std::string short_name(size_t object);
+
+/// "S1 floor, S2 box": what the columns of Table 1 stand for; empty where it is turned.
+std::string column_key(const Evaluation& evaluation);
 
 /// What a person calls a quantity: "kd", "kd refined", "RGB".
 const char* title_of(Quantity quantity);
