@@ -59,7 +59,7 @@ TEST(EvalReport, HasScoresPlotsAndPictures) {
     EXPECT_THAT(html, HasSubstr("<h3>Frame 120</h3>"));
     EXPECT_THAT(html,
                 HasSubstr("alt=\"kd refined, absolute error, frame 120\" src=\"data:image/png;base64,ZXJyb3I=\""));
-    EXPECT_THAT(html, HasSubstr("<span>0.2 &lt;mm&gt; or more</span>"));
+    EXPECT_THAT(html, HasSubstr("<span>&ge; 0.2 &lt;mm&gt;</span>"));
     EXPECT_THAT(html, HasSubstr("the run has no value"));
 }
 

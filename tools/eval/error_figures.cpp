@@ -1,11 +1,12 @@
 #include "tools/eval/error_figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <numeric>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -21,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostFrames = 3;
 constexpr std::array<uint32_t, 4> kPanelWidths = {384, 288, 192, 128};  ///< the first that is small enough is taken
 constexpr double kQuantile = 0.99;                                      ///< single outliers do not eat the scale
 constexpr uint32_t kStripes = 60;                                       ///< of hatching across a picture
@@ -166,8 +166,9 @@ sensor::SrgbPixel hatch_pixel(size_t i, uint32_t width) {
     return (i % width + i / width) / stripe % 2 == 0 ? kHatch : kNoValue;
 }
 
-std::string drawn(const Planes& planes, Extent2D extent, PixelState least, uint32_t panel_width,
-                  const std::function<sensor::SrgbPixel(size_t)>& pixel) {
+/// As large as the largest panel.
+Drawing drawn(const Planes& planes, Extent2D extent, PixelState least,
+              const std::function<sensor::SrgbPixel(size_t)>& pixel) {
     Drawing drawing(extent, kNoValue);
     for (size_t i = 0; i < planes.size(); ++i) {
         if (planes.state(i) >= least) {
@@ -176,7 +177,7 @@ std::string drawn(const Planes& planes, Extent2D extent, PixelState least, uint3
             drawing.pixels()[i] = hatch_pixel(i, extent.width);
         }
     }
-    return png_of(scaled_to(drawing, fitted_extent(extent, panel_width)));
+    return scaled_to(drawing, fitted_extent(extent, kPanelWidths.front()));
 }
 
 ColorScale scale_of(ColorMap map, double top, const char* unit) {
@@ -185,36 +186,62 @@ ColorScale scale_of(ColorMap map, double top, const char* unit) {
     return {png_of(row), "0", fmt::format("{:g}{}", top, unit)};
 }
 
-ErrorRow draw_row(const FramePair& frame, const RowKind& kind, const Tops& tops, uint32_t panel_width) {
+/// A row before its pictures are files.
+struct DrawnRow {
+    ErrorRow row;
+    Drawing truth, run, error;
+};
+
+DrawnRow draw_row(const FramePair& frame, const RowKind& kind, const Tops& tops) {
     const Planes planes(frame, kind);
     const Extent2D extent = frame.truth.extent();
     const double error_top = tops.error.at(kind.channels.truth);
-    ErrorRow row;
-    row.title = kind.title;
-    row.errors = scale_of(ColorMap::kInferno, error_top * kind.error_units, kind.error_unit);
+    DrawnRow drawn_row;
+    drawn_row.row.title = kind.title;
+    drawn_row.row.errors = scale_of(ColorMap::kInferno, error_top * kind.error_units, kind.error_unit);
     std::function<sensor::SrgbPixel(glm::vec3)> value_pixel = color_pixel;
     if (!kind.is_color) {
         const double top = tops.value.at(kind.channels.truth);
-        row.values = scale_of(ColorMap::kViridis, top, kind.value_unit);
+        drawn_row.row.values = scale_of(ColorMap::kViridis, top, kind.value_unit);
         value_pixel = [top](glm::vec3 v) { return map_pixel(ColorMap::kViridis, v.r / static_cast<float>(top)); };
     }
-    row.truth = drawn(planes, extent, PixelState::kUnfilled, panel_width,
-                      [&](size_t i) { return value_pixel(planes.truth(i)); });
-    row.run =
-        drawn(planes, extent, PixelState::kFilled, panel_width, [&](size_t i) { return value_pixel(planes.run(i)); });
-    row.error = drawn(planes, extent, PixelState::kFilled, panel_width, [&](size_t i) {
+    drawn_row.truth =
+        drawn(planes, extent, PixelState::kUnfilled, [&](size_t i) { return value_pixel(planes.truth(i)); });
+    drawn_row.run = drawn(planes, extent, PixelState::kFilled, [&](size_t i) { return value_pixel(planes.run(i)); });
+    drawn_row.error = drawn(planes, extent, PixelState::kFilled, [&](size_t i) {
         return map_pixel(ColorMap::kInferno, static_cast<float>(planes.error(i) / error_top));
     });
-    return row;
+    return drawn_row;
 }
 
-std::vector<ErrorFigure> draw_figures(const Frames& frames, const Tops& tops, uint32_t panel_width) {
-    std::vector<ErrorFigure> figures;
+struct DrawnFigure {
+    uint32_t frame;
+    std::vector<DrawnRow> rows;
+};
+
+std::vector<DrawnFigure> draw_figures(const Frames& frames) {
+    const Tops tops = tops_of(frames);
+    std::vector<DrawnFigure> figures;
     for (size_t i = 0; i < frames.size(); ++i) {
         const FramePair frame = frames.load(i);
-        ErrorFigure& figure = figures.emplace_back(ErrorFigure{frame.index, {}});
-        for (const RowKind& kind : row_kinds(groups_of(frame.run))) {
-            figure.rows.push_back(draw_row(frame, kind, tops, panel_width));
+        DrawnFigure& figure = figures.emplace_back(DrawnFigure{frame.index, {}});
+        for (const RowKind& kind : row_kinds(groups_of(frame.run))) figure.rows.push_back(draw_row(frame, kind, tops));
+    }
+    return figures;
+}
+
+std::vector<ErrorFigure> encoded(const std::vector<DrawnFigure>& drawn_figures, uint32_t panel_width) {
+    const auto png = [&](const Drawing& drawing) {
+        return png_of(scaled_to(drawing, fitted_extent(drawing.extent(), panel_width)));
+    };
+    std::vector<ErrorFigure> figures;
+    for (const DrawnFigure& drawn_figure : drawn_figures) {
+        ErrorFigure& figure = figures.emplace_back(ErrorFigure{drawn_figure.frame, {}});
+        for (const DrawnRow& drawn_row : drawn_figure.rows) {
+            ErrorRow& row = figure.rows.emplace_back(drawn_row.row);
+            row.truth = png(drawn_row.truth);
+            row.run = png(drawn_row.run);
+            row.error = png(drawn_row.error);
         }
     }
     return figures;
@@ -231,11 +258,10 @@ size_t bytes_of(const std::vector<ErrorFigure>& figures) {
 }  // namespace
 
 std::vector<ErrorFigure> error_figures(const Evaluation& evaluation) {
-    const Frames frames(evaluation);
-    const Tops tops = tops_of(frames);
+    const std::vector<DrawnFigure> drawn_figures = draw_figures(Frames(evaluation));
     std::vector<ErrorFigure> figures;
     for (const uint32_t width : kPanelWidths) {
-        figures = draw_figures(frames, tops, width);
+        figures = encoded(drawn_figures, width);
         if (bytes_of(figures) <= kMostFigureBytes) break;
     }
     return figures;

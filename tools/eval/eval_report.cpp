@@ -14,22 +14,23 @@ constexpr std::string_view kStyle = R"css(
 h3 { font-size: 1rem; margin: 1.4rem 0 .3rem; break-after: avoid; }
 p { margin: .3rem 0 .8rem; max-width: 60rem; }
 .scores { --label: 6.5rem; display: grid; grid-template-columns: repeat(auto-fill, minmax(calc(var(--label) + var(--columns) * 3.6rem), 1fr)); gap: 0 2.5rem; }
-.scores.turned { --label: 11rem; }
+.scores.turned { --label: 10.5rem; }
 .scores > div { break-inside: avoid; min-width: 0; }
 .scores th, .scores td { padding-right: 0; padding-left: .5rem; font-size: .85rem; }
-.scores th:first-child { padding-left: 0; max-width: var(--label); overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.scores.turned th, .scores.turned td { padding-left: .35rem; font-size: .8rem; }
+.scores th:first-child, .scores.turned th:first-child { padding-left: 0; max-width: var(--label); overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 .scores:not(.turned) td:last-child, .scores.turned tr:last-child td { font-weight: 600; }
 th.number { white-space: normal; vertical-align: bottom; }
 td.name { white-space: nowrap; }
 .errors { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: .5rem; }
 .errors figure { margin: 0; }
 .errors figure img { image-rendering: auto; border-radius: 0; }
-.errors figcaption { display: flex; gap: .4rem; align-items: center; white-space: nowrap; }
+.errors figcaption { display: flex; flex-wrap: wrap; gap: 0 .4rem; align-items: center; white-space: nowrap; }
 .errors figcaption img, .sample { display: inline-block; width: 5rem; height: .7rem; }
 .sample { width: 2rem; height: 1rem; vertical-align: -.15rem; }
-.key { white-space: nowrap; margin-left: .6rem; }
+.meaning { white-space: nowrap; margin-left: .6rem; }
 @media print { .errors { gap: .3rem; } .errors figure { break-inside: avoid; } .scroll { overflow: visible; } }
-@media (max-width: 40rem) { .scores { grid-template-columns: 1fr; } .errors figcaption { flex-wrap: wrap; } }
+@media (max-width: 40rem) { .scores { grid-template-columns: 1fr; } }
 )css";
 
 std::string paragraph(std::string_view text) { return fmt::format("<p>{}</p>\n", html_escaped(text)); }
@@ -37,11 +38,11 @@ std::string paragraph(std::string_view text) { return fmt::format("<p>{}</p>\n",
 std::string sub_heading(std::string_view text) { return fmt::format("<h3>{}</h3>\n", html_escaped(text)); }
 
 std::string embedded(std::string_view png, std::string_view alt, std::string_view attributes = {}) {
-    return fmt::format("<img {} alt=\"{}\" src=\"data:image/png;base64,{}\">", attributes, html_escaped(alt),
+    return fmt::format("<img{} alt=\"{}\" src=\"data:image/png;base64,{}\">", attributes, html_escaped(alt),
                        base64(png));
 }
 
-/// <th> or <td> of each text; the first is a row's name, others are numbers.
+/// A <th> or <td> per text, set as numbers are.
 std::string cells(const char* tag, const std::vector<std::string>& texts) {
     std::string html;
     for (const std::string& text : texts) html += fmt::format("<{0} class='number'>{1}</{0}>", tag, html_escaped(text));
@@ -139,9 +140,10 @@ std::string plot_rows(const std::vector<PlotRow>& rows, std::string_view explana
     return html;
 }
 
-std::string scale(const ColorScale& scale, const char* beyond) {
-    return fmt::format("<span>{}</span>{}<span>{}{}</span>", html_escaped(scale.low), embedded(scale.png, ""),
-                       html_escaped(scale.high), beyond);
+/// `beyond` says what else has the last colour.
+std::string scale(const ColorScale& scale, const char* beyond = "") {
+    return fmt::format("<span>{}</span>{}<span>{}{}</span>", html_escaped(scale.low), embedded(scale.png, ""), beyond,
+                       html_escaped(scale.high));
 }
 
 std::string figure(const std::string& png, const std::string& alt, const std::string& caption_html) {
@@ -151,16 +153,16 @@ std::string figure(const std::string& png, const std::string& alt, const std::st
 std::string error_row(const ErrorRow& row, uint32_t frame) {
     const auto alt = [&](const char* what) { return fmt::format("{}, {}, frame {}", row.title, what, frame); };
     const auto caption = [&](const char* what) { return fmt::format("<b>{}</b> {}", html_escaped(row.title), what); };
-    const std::string values = row.values ? scale(*row.values, "") : std::string();
+    const std::string values = row.values ? scale(*row.values) : std::string();
     return figure(row.truth, alt("truth"), caption("truth") + values) +
            figure(row.run, alt("reconstruction"), caption("reconstruction") + values) +
-           figure(row.error, alt("absolute error"), caption("error") + scale(row.errors, " or more"));
+           figure(row.error, alt("absolute error"), caption("error") + scale(row.errors, "&ge; "));
 }
 
 std::string error_pictures(std::span<const ErrorFigure> figures) {
     if (figures.empty()) return {};
     const auto key = [](const std::string& png, const char* look, const char* meaning) {
-        return fmt::format("<span class='key'>{} {}</span>", embedded(png, look, "class='sample'"), meaning);
+        return fmt::format("<span class='meaning'>{} {}</span>", embedded(png, look, " class='sample'"), meaning);
     };
     std::string html = fmt::format(
         "<p>Absolute differences, averaged over the channels. Colours are encoded for sRGB.{}{}</p>\n",

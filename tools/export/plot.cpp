@@ -42,7 +42,7 @@ svg.plot text.title { fill: var(--text); font-weight: 600; font-size: 12px; }
 svg.plot .y { text-anchor: end; }
 svg.plot .x, svg.plot .none { text-anchor: middle; }
 svg.plot path, svg.key path { fill: none; stroke: currentColor; stroke-linecap: round; stroke-linejoin: round; }
-svg.plot path.grid { stroke: var(--line); stroke-width: 1; stroke-linecap: butt; }
+svg.plot path.grid { stroke: var(--line); stroke-width: .7; stroke-linecap: butt; }
 path.truth { stroke-width: 4; stroke-opacity: .5; }
 path.estimate { stroke-width: 1.3; }
 svg.plot path.refined, svg.key path.refined { stroke: var(--quiet); stroke-width: 1.3; stroke-dasharray: 4 2.5; }
