@@ -296,6 +296,9 @@ TEST(Evaluate, NamesTheFrameThatDisagrees) {
     rig.change_frames([](EvalFrame&) {});
     std::ofstream(rig.run_frame(30), std::ios::binary) << "damaged";
     EXPECT_THAT(evaluated, throws_error_with("000030.exr cannot be decoded: "));
+    rig.change_frames([](EvalFrame&) {});
+    test::write_frame(rig.sequence() / "truth" / "frames" / "000010.exr", EvalRig::frame(10), {"kd"});
+    EXPECT_THAT(evaluated, throws_error_with("truth/frames/000010.exr has no channel kd.R"));
 }
 
 TEST(Evaluate, NamesBothSizes) {

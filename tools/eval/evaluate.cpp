@@ -98,6 +98,7 @@ Reference reference_of(const FramePair& first, std::span<const PosePair> poses) 
     const ExrPlanes frame = ExrPlanes::read(first.run);
     Reference reference{frame.extent(), groups_of(frame), frame.file(), {}};
     if (!reference.groups.contains("valid")) throw Error(frame.file(), " has no channel valid");
+    // truth/trajectory.txt has one line per frame of the sequence, so that a pose's index is its frame's.
     for (const PosePair& pair : poses) {
         reference.truth_from_run[static_cast<uint32_t>(pair.index)] =
             glm::dmat3(pair.truth) * glm::transpose(glm::dmat3(pair.run));

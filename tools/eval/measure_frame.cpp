@@ -163,17 +163,24 @@ double angle_deg(glm::dvec3 a, glm::dvec3 b) {
     return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
 }
 
+/// The three planes of a frame's normals.
+struct Normals {
+    explicit Normals(const ExrPlanes& frame)
+        : x(frame.plane("normal.X")), y(frame.plane("normal.Y")), z(frame.plane("normal.Z")) {}
+    glm::dvec3 at(size_t pixel) const { return {x[pixel], y[pixel], z[pixel]}; }
+
+    const std::vector<float>&x, &y, &z;
+};
+
 std::vector<float> normal_errors_deg(const Frames& frames, const glm::dmat3& truth_from_run) {
-    const auto normal = [](const ExrPlanes& frame, size_t i) {
-        return glm::dvec3(frame.plane("normal.X")[i], frame.plane("normal.Y")[i], frame.plane("normal.Z")[i]);
-    };
+    const Normals truth(frames.truth), run(frames.run);
     std::vector<float> errors;
     for (size_t i = 0; i < frames.truth.extent().area(); ++i) {
         if (!frames.truth_valid.pixels()[i] || !frames.run_valid.pixels()[i]) continue;
-        const glm::dvec3 of_run = normal(frames.run, i);
+        const glm::dvec3 of_run = run.at(i);
         const double length = glm::length(of_run);
         if (!(length > 0 && std::isfinite(length))) continue;
-        errors.push_back(static_cast<float>(angle_deg(normal(frames.truth, i), truth_from_run * of_run)));
+        errors.push_back(static_cast<float>(angle_deg(truth.at(i), truth_from_run * of_run)));
     }
     return errors;
 }
