@@ -105,6 +105,29 @@ TEST(SequenceWriter, LinearPixelsAreEncodedAndMetresRounded) {
               (std::vector<uint16_t>{1234, 65535, 0, 0, 0, 0}));
 }
 
+TEST(SequenceWriter, LinearPixelsAreKeptInExr) {
+    const TemporaryFolder folder;
+    Frame frame = test_frame(0, {32, 24}, {16, 12});
+    Image<glm::vec3> color({32, 24});
+    for (size_t i = 0; i < color.pixels().size(); ++i) color.pixels()[i] = glm::vec3(0.1f, 1.0f, 100.0f) * float(i);
+    frame.color = color;
+    SequenceWriter writer(folder / "a", test_info(), LinearColor::kExr);
+    writer.write(frame);
+    writer.finish();
+    EXPECT_TRUE(fs::exists(folder / "a/color/000000.exr"));
+    const auto readings = read_all(*open_sequence(folder / "a"));
+    EXPECT_EQ(std::get<Image<glm::vec3>>(std::get<Frame>(readings.at(0)).color).pixels(), color.pixels());
+}
+
+TEST(SequenceWriter, AFileThatCannotBeWrittenStopsItAtTheLatestInFinish) {
+    const TemporaryFolder folder;
+    SequenceWriter writer(folder / "a", test_info());
+    fs::remove(writer.partial_folder() / "depth");
+    writer.write(test_frame(0, {32, 24}, {16, 12}));
+    EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("depth/000000.png"));
+    EXPECT_FALSE(fs::exists(folder / "a"));
+}
+
 TEST(SequenceWriter, SameFramesGiveSameBytes) {
     const TemporaryFolder folder;
     write_native(folder / "a", 2);
@@ -121,6 +144,7 @@ TEST(SequenceWriter, WithoutFinishNothingIsLeft) {
         SequenceWriter writer(folder / "parent/a", test_info());
         writer.write(test_frame(0, {32, 24}, {16, 12}));
         EXPECT_EQ(writer.partial_folder(), folder / text("parent/a.partial-", getpid()));
+        writer.background().finish();
         EXPECT_TRUE(fs::exists(writer.partial_folder() / "color/000000.png"));
         EXPECT_FALSE(fs::exists(folder / "parent/a"));
     }
@@ -147,7 +171,7 @@ TEST(SequenceWriter, RefusesWhatItCannotWrite) {
     EXPECT_THAT(error_of([&] {
                     writer.write(test_frame(0, {8, 6}, {16, 12}));
                 }),
-                EndsWith("000000.png: the frame is 8 x 6 pixels, but the sequence 32 x 24"));
+                EndsWith("000000: the frame is 8 x 6 pixels, but the sequence 32 x 24"));
 }
 
 TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
