@@ -116,5 +116,26 @@ TEST_F(Eval, OutputFolderThatCannotBeWrittenTo) {
     EXPECT_EQ(read_text(run() / "eval"), "a file");
 }
 
+class FromSceneToScores : public RunFolderTest {};
+
+TEST_F(FromSceneToScores, GeometryIsReconstructed) {
+    const fs::path recording = beside("cubes");
+    const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "2", "--extent", "96x80",
+                                  "--no-lighting", "--quiet", "--out", recording});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    // At this size, pixels are farther apart than the voxels would be by default.
+    run_quietly(recording, {"--dump-every", "1", "--set", "map.voxel_m=0.03"});
+    const Outcome outcome = patina({"eval", recording, out()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("2 frames of 96 x 80"), HasSubstr("\nDepth error"),
+                                   HasSubstr("hold no kd, kd refined, ks, alpha and RGB.")));
+    const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
+    EXPECT_EQ(json["frames"], (nlohmann::json{0, 2}));
+    EXPECT_LT(json["depth_mm"]["median"], 10);
+    EXPECT_GT(json["depth_mm"]["coverage"], 0.8);
+    EXPECT_LT(json["trajectory"]["ate_rmse_m"], 1e-6);
+    EXPECT_LT(json["object_means"]["rgb"]["filled"]["mad"], 0.1);
+}
+
 }  // namespace
 }  // namespace patina::testing
