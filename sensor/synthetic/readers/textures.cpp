@@ -1,6 +1,7 @@
 #include "sensor/synthetic/readers/textures.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,6 +31,11 @@ Image<glm::vec3> read_pattern(const std::string& name, const JsonValue& value) {
     return located(value, [&] { return draw_pattern(pattern_named(name), settings); });
 }
 
+Image<glm::vec3> read_file(const JsonValue& name) {
+    const std::filesystem::path file = beside_file(name);
+    return located(name, [&] { return read_texture(file); });
+}
+
 }  // namespace
 
 Texture read_texture(const JsonValue& value) {
@@ -37,9 +43,8 @@ Texture read_texture(const JsonValue& value) {
     kinds.emplace_back("file");
     const auto [kind, source] = read_kind(value, kinds, {"repeat"});
     Texture texture;
-    texture.kd = std::make_shared<const Image<glm::vec3>>(
-        kind == "file" ? located(source, [&] { return read_texture(beside_file(source)); })
-                       : read_pattern(kind, source));
+    texture.kd =
+        std::make_shared<const Image<glm::vec3>>(kind == "file" ? read_file(source) : read_pattern(kind, source));
     if (const auto repeat = value.find("repeat")) {
         const std::vector<JsonValue> elements = repeat->elements_of(2);
         texture.repeat = {read_positive(elements[0]), read_positive(elements[1])};
