@@ -38,7 +38,7 @@ glm::dvec3 spline(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d, double
     return 0.5 * (2.0 * b + t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a))));
 }
 
-RigidTransform pose(const WaypointPath& path, double time_s) {
+Waypoint waypoint_at(const WaypointPath& path, double time_s) {
     const auto count = static_cast<int64_t>(path.waypoints.size());
     PATINA_ASSERT(count >= 2, "waypoints ", count);
     const double phase = time_s / path.period_s * static_cast<double>(count);
@@ -48,15 +48,44 @@ RigidTransform pose(const WaypointPath& path, double time_s) {
     };
     const Waypoint a = at(-1), b = at(0), c = at(1), d = at(2);
     const double t = phase - std::floor(phase);
-    const glm::dvec3 position_m = spline(a.position_m, b.position_m, c.position_m, d.position_m, t);
-    const glm::dvec3 target_m = spline(a.target_m, b.target_m, c.target_m, d.target_m, t);
-    return looking(position_m, glm::normalize(target_m - position_m));
+    return {spline(a.position_m, b.position_m, c.position_m, d.position_m, t),
+            spline(a.target_m, b.target_m, c.target_m, d.target_m, t)};
+}
+
+RigidTransform pose(const WaypointPath& path, double time_s) {
+    const Waypoint now = waypoint_at(path, time_s);
+    return looking(now.position_m, glm::normalize(now.target_m - now.position_m));
+}
+
+SteepestView steepest(const OrbitPath& path) {
+    const bool same_sign = path.elevation_rad * path.elevation_amplitude_rad >= 0;
+    return {std::abs(path.elevation_rad) + std::abs(path.elevation_amplitude_rad),
+            path.elevation_period_s * (same_sign ? 0.25 : 0.75)};
+}
+
+SteepestView steepest(const WaypointPath& path) {
+    const size_t samples = 256 * path.waypoints.size();
+    SteepestView steepest;
+    for (size_t i = 0; i < samples; ++i) {
+        const double time_s = path.period_s * static_cast<double>(i) / static_cast<double>(samples);
+        const Waypoint now = waypoint_at(path, time_s);
+        const glm::dvec3 axis = now.target_m - now.position_m;
+        const double angle_rad = axis == glm::dvec3(0)
+                                     ? std::numbers::pi / 2
+                                     : std::atan2(std::abs(axis.y), glm::length(glm::dvec2(axis.x, axis.z)));
+        if (angle_rad > steepest.angle_rad) steepest = {angle_rad, time_s};
+    }
+    return steepest;
 }
 
 }  // namespace
 
 RigidTransform world_from_camera(const CameraPath& path, double time_s) {
     return std::visit([&](const auto& kind) { return pose(kind, time_s); }, path);
+}
+
+SteepestView steepest_view(const CameraPath& path) {
+    return std::visit([](const auto& kind) { return steepest(kind); }, path);
 }
 
 RigidTransform placed(glm::dvec3 position_m, glm::dvec3 axis, double angle_rad) {

@@ -36,8 +36,17 @@ struct WaypointPath {
 
 using CameraPath = std::variant<OrbitPath, WaypointPath>;
 
-/// The camera's pose after `time_s`, the image upright. The optical axis must stay off the vertical.
+/// The camera's pose after `time_s`, the image upright. The optical axis must stay off the vertical: see steepest_view.
 RigidTransform world_from_camera(const CameraPath& path, double time_s);
+
+/// How steeply a camera looks up or down.
+struct SteepestView {
+    double angle_rad = 0;  ///< between the optical axis and the horizontal; pi/2 also where the target is the camera
+    double time_s = 0;     ///< when
+};
+
+/// The steepest view of a path's whole period: exact for an orbit, of 256 samples between two waypoints for a tour.
+SteepestView steepest_view(const CameraPath& path);
 
 /// The pose of an object turned by `angle_rad` about `axis` (of any length), then moved to `position_m`.
 RigidTransform placed(glm::dvec3 position_m, glm::dvec3 axis, double angle_rad);

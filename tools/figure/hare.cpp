@@ -16,7 +16,7 @@ double torso(glm::dvec3 p) {
     const double rump = ellipsoid(p, {0, 0.30, -0.12}, {0.32, 0.30, 0.36});
     const double chest = ellipsoid(p, {0, 0.60, 0.05}, {0.215, 0.31, 0.20});
     const double tail = sphere(p, {0, 0.22, -0.52}, 0.115);
-    return join(join(rump, chest, 0.18), tail, 0.03);
+    return join(join(rump, chest, 0.18), tail, 0.04);
 }
 
 double hind_leg(glm::dvec3 q) {
@@ -34,11 +34,11 @@ double front_leg(glm::dvec3 q) {
 double head(glm::dvec3 p) {
     const glm::dvec3 q = mirrored(p);
     double solid = ellipsoid(p, {0, 1.005, 0.13}, {0.165, 0.16, 0.185});
-    solid = join(solid, sphere(q, {0.075, 0.945, 0.21}, 0.085), 0.06);                 // cheeks
-    solid = join(solid, ellipsoid(p, {0, 0.955, 0.285}, {0.075, 0.06, 0.075}), 0.05);  // muzzle
-    solid = join(solid, ellipsoid(p, {0, 0.985, 0.357}, {0.03, 0.022, 0.02}), 0.008);  // nose
-    solid = carve(solid, sphere(q, {0.118, 1.045, 0.262}, 0.046), 0.02);               // eye sockets
-    return join(solid, sphere(q, {0.106, 1.043, 0.243}, 0.040), 0.006);
+    solid = join(solid, sphere(q, {0.075, 0.945, 0.21}, 0.085), 0.06);                  // cheeks
+    solid = join(solid, ellipsoid(p, {0, 0.955, 0.285}, {0.075, 0.06, 0.075}), 0.05);   // muzzle
+    solid = join(solid, ellipsoid(p, {0, 0.985, 0.343}, {0.034, 0.026, 0.026}), 0.02);  // nose
+    solid = join(solid, sphere(q, {0.108, 1.045, 0.232}, 0.046), 0.025);                // eyes
+    return solid;
 }
 
 /// A leaf between two points, hollowed towards +z.
@@ -50,13 +50,13 @@ double leaf(glm::dvec3 p, glm::dvec3 low, glm::dvec3 high, double width, double 
     const glm::dvec3 local(glm::dot(from_middle, side), glm::dot(from_middle, up), glm::dot(from_middle, front));
     const double length = glm::distance(low, high) / 2;
     const double solid = ellipsoid(local, glm::dvec3(0), {width, length, thickness});
-    const double hollow = ellipsoid(local, {0, -0.01, thickness}, {0.62 * width, 0.78 * length, 0.8 * thickness});
-    return carve(solid, hollow, 0.02);
+    const double hollow = ellipsoid(local, {0, -0.01, thickness}, {0.6 * width, 0.75 * length, 0.75 * thickness});
+    return carve(solid, hollow, 0.035);
 }
 
 double ears(glm::dvec3 p) {
-    const double straight = leaf(p, {0.065, 1.06, 0.08}, {0.17, 1.56, -0.02}, 0.075, 0.042);
-    const double lower = leaf(p, {-0.065, 1.06, 0.08}, {-0.17, 1.42, 0.02}, 0.075, 0.042);
+    const double straight = leaf(p, {0.065, 1.06, 0.08}, {0.17, 1.56, -0.02}, 0.08, 0.045);
+    const double lower = leaf(p, {-0.065, 1.06, 0.08}, {-0.17, 1.42, 0.02}, 0.08, 0.045);
     const double tip = ellipsoid(p, {-0.235, 1.33, 0.045}, {0.062, 0.115, 0.036});
     return std::min(straight, join(lower, tip, 0.05));
 }
@@ -65,7 +65,7 @@ double scarf(glm::dvec3 p) {
     const glm::dvec3 axis = glm::normalize(glm::dvec3(0.05, 1, 0.22));
     const double ring = torus(p, {0, 0.835, 0.085}, axis, 0.15, 0.052);
     const double end = rod(p, {0.09, 0.80, 0.22}, {0.13, 0.56, 0.255}, 0.042, 0.05);
-    return join(ring, end, 0.02);
+    return join(ring, end, 0.035);
 }
 
 }  // namespace
@@ -74,8 +74,8 @@ double hare(glm::dvec3 p) {
     const glm::dvec3 q = mirrored(p);
     double solid = join(torso(p), hind_leg(q), 0.035);
     solid = join(solid, front_leg(q), 0.04);
-    solid = join(solid, join(head(p), ears(p), 0.035), 0.05);
-    return join(solid, scarf(p), 0.012);
+    solid = join(solid, join(head(p), ears(p), 0.04), 0.06);
+    return join(solid, scarf(p), 0.04);
 }
 
 sensor::TriangleMesh make_hare() {
