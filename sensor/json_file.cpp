@@ -117,7 +117,7 @@ std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
     return members;
 }
 
-void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const {
+void JsonValue::expect_keys(const std::vector<std::string_view>& known) const {
     for (const auto& [key, value] : members()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string list;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,7 +31,7 @@ class JsonValue {
     std::vector<std::pair<std::string, JsonValue>> members() const;
 
     /// Throws Error, naming the first member with another key, and the known ones; also when this is no object.
-    void expect_keys(std::initializer_list<std::string_view> known) const;
+    void expect_keys(const std::vector<std::string_view>& known) const;
 
     /// The elements of an array; the key path of one is "lights[2]".
     std::vector<JsonValue> elements() const;

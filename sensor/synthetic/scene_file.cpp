@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "sensor/json_file.h"
 #include "sensor/synthetic/readers/camera.h"
+#include "sensor/synthetic/readers/environment.h"
 #include "sensor/synthetic/readers/lights.h"
 #include "sensor/synthetic/readers/materials.h"
 #include "sensor/synthetic/readers/objects.h"
@@ -42,6 +43,7 @@ Scene read_scene(const fs::path& file, const fs::path& mesh) {
     scene.name = root.find("name") ? root.at("name").string() : file.stem().string();
     scene.objects = read_objects(root.at("objects"), MaterialReader(root), mesh);
     if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights);
+    if (const auto environment = root.find("environment")) scene.environment = read_environment(*environment);
     read_cameras(root, scene);
     if (const auto recording = root.find("recording")) scene.recording = read_recording(*recording);
     return scene;

@@ -120,8 +120,8 @@ glm::vec3 marble(const Canvas& canvas, glm::vec2 uv) {
     const glm::vec2 veins(canvas.count());
     // Two octaves only: more would fray the veins into specks.
     const float warp = periodic_octaves(uv, {4, 4}, 8, canvas.seed()) - 0.5f;
-    const float wave = std::sin(std::numbers::pi_v<float> * (glm::dot(veins, uv) + 3 * warp));
-    constexpr float kVein = 0.1f;  // half of the vein's colour where the squared wave is as much
+    const float wave = std::sin(std::numbers::pi_v<float> * (glm::dot(veins, uv) + 2 * warp));
+    constexpr float kVein = 0.2f;  // half of the vein's colour where the squared wave is as much
     return glm::mix(canvas.color(1), canvas.color(0), wave * wave / (wave * wave + kVein));
 }
 

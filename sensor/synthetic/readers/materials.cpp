@@ -1,7 +1,9 @@
 #include "sensor/synthetic/readers/materials.h"
 
 #include <array>
+#include <utility>
 
+#include "sensor/synthetic/readers/textures.h"
 #include "sensor/synthetic/readers/values.h"
 
 namespace patina::sensor {
@@ -39,9 +41,22 @@ double read_alpha(const JsonValue& value) {
     return alpha;
 }
 
+glm::dvec3 largest(const Image<glm::vec3>& picture) {
+    glm::vec3 most(0);
+    for (const glm::vec3& kd : picture.pixels()) most = glm::max(most, kd);
+    return glm::dvec3(most);
+}
+
 }  // namespace
 
 MaterialReader::MaterialReader(const JsonValue& root) {
+    if (const auto textures = root.find("textures")) {
+        for (const auto& [name, value] : textures->members()) {
+            Texture texture = read_texture(value);
+            const glm::dvec3 largest_kd = largest(*texture.kd);
+            textures_.emplace(name, NamedTexture{std::move(texture), largest_kd});
+        }
+    }
     if (const auto materials = root.find("materials")) {
         for (const auto& [name, value] : materials->members()) materials_.emplace(name, read_inline(value));
     }

@@ -59,7 +59,7 @@ std::filesystem::path beside_file(const JsonValue& name) {
     return std::filesystem::path(name.file()).parent_path() / name.string();
 }
 
-std::pair<std::string, JsonValue> read_kind(const JsonValue& value, std::initializer_list<std::string_view> kinds) {
+std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string_view>& kinds) {
     std::vector<std::pair<std::string, JsonValue>> found;
     std::string list;
     for (const std::string_view kind : kinds) {

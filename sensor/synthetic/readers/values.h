@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -47,6 +47,6 @@ auto located(const JsonValue& value, Read read) {
 std::filesystem::path beside_file(const JsonValue& name);
 
 /// The one member among `kinds` that the object has, as {"box", ...}. Throws Error when it has none or several.
-std::pair<std::string, JsonValue> read_kind(const JsonValue& value, std::initializer_list<std::string_view> kinds);
+std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string_view>& kinds);
 
 }  // namespace patina::sensor
