@@ -97,10 +97,15 @@ BufferId Frame::upload_bytes(BufferId id, uint64_t offset, std::span<const std::
 }
 
 ImageId Frame::upload(const std::string& name, ImageShape shape, std::span<const std::byte> pixels) {
-    const uint64_t expected = shape.extent.area() * vulkan::bytes_per_pixel(shape.format);
+    return upload(create_image(name, shape), pixels);
+}
+
+ImageId Frame::upload(ImageId id, std::span<const std::byte> pixels) {
+    const std::string& name = description_.resources[id.resource].name;
+    const ImageShape image = shape(id);
+    const uint64_t expected = image.extent.area() * vulkan::bytes_per_pixel(image.format);
     if (pixels.size() != expected)
         throw Error("the upload to '", name, "' has ", pixels.size(), " bytes, the image ", expected);
-    const ImageId id = create_image(name, shape);
     const Staging staging = runner_->stage(pixels.size());
     std::memcpy(staging.mapped, pixels.data(), pixels.size());
     add_transfer("upload." + name, id.resource, Use::kTransferWrite,

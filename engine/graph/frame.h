@@ -223,6 +223,8 @@ class Frame {
         return upload_bytes(id, 0, std::as_bytes(values), true);
     }
     ImageId upload(const std::string& name, ImageShape shape, std::span<const std::byte> pixels);
+    /// Copies host data over the whole of an image.
+    ImageId upload(ImageId id, std::span<const std::byte> pixels);
     BufferId upload_bytes(BufferId id, uint64_t offset, std::span<const std::byte> bytes, bool whole);
 
     /// Sets every u32 of a buffer (all its chunks), or of its first `bytes`; the rest is then undefined.

@@ -11,29 +11,17 @@ namespace patina::sensor {
 /// A scene on the device: uploaded once, then rendered in any number of frames.
 class SceneModel {
   public:
-    /// Uploads the scene in a frame of its own. Throws Error naming the object that has neither kd nor texture, an
-    /// alpha outside (0, 1], or an id that is 0, above 65535 or another's.
+    /// Uploads the scene in a frame of its own. Throws Error for a scene that pack_scene() refuses.
     SceneModel(graph::Runner& runner, const Scene& scene);
 
-    /// Its buffers in one frame.
-    struct Ids {
-        graph::BufferId objects;  ///< gpu::TraceObject: rectangles, then boxes, then spheres
-        graph::BufferId lights;   ///< gpu::TraceLight
-    };
-    Ids import(graph::Frame& frame) const;
-
-    uint32_t rectangle_count() const { return rectangle_count_; }
-    uint32_t box_count() const { return box_count_; }
-    uint32_t sphere_count() const { return sphere_count_; }
-    uint32_t light_count() const { return light_count_; }
+    /// Binds what shaders/synthetic/scene.glsl declares: geometry and lights.
+    void bind_geometry(graph::Frame& frame, graph::PassBuilder& pass) const;
+    /// Binds what shaders/synthetic/surface.glsl declares beyond that.
+    void bind_surfaces(graph::Frame& frame, graph::PassBuilder& pass) const;
 
   private:
-    vulkan::BufferRef objects_;
-    vulkan::BufferRef lights_;
-    uint32_t rectangle_count_ = 0;
-    uint32_t box_count_ = 0;
-    uint32_t sphere_count_ = 0;
-    uint32_t light_count_ = 0;
+    vulkan::BufferRef info_, lights_, objects_, triangle_surfaces_;
+    vulkan::ImageRef nodes_, triangles_, parts_, texels_;
 };
 
 /// What a camera sees at each pixel, through the pixel's centre. Where it sees nothing, all images are 0.
@@ -44,6 +32,7 @@ struct RenderedImages {
     graph::ImageId normal;     ///< W x H rgba32f, world, unit length, towards the camera; a unused
     graph::ImageId kd;         ///< W x H rgba32f, rgb; 0 on lamps; a unused
     graph::ImageId ks_alpha;   ///< W x H rgba32f, ks and roughness; 0 on lamps
+    graph::ImageId lifted_m;  ///< W x H rgba32f, world: a little above the surface, where rays may leave it; 0 on lamps
 };
 
 /// Ray-traces a scene with Ward materials (paper, Eq. 2-4, 6). The same settings give the same pixels; frames of one

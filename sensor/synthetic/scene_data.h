@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "sensor/synthetic/scene.h"
+#include "shared/scene.h"
+
+namespace patina::sensor {
+
+/// A scene as shaders/synthetic takes it, in host memory; see shared/scene.h.
+struct SceneData {
+    gpu::SceneInfo info{};
+    std::vector<gpu::SceneNode> nodes;  ///< those of the parts' tree, then of the triangles'; in every order
+    std::vector<gpu::ScenePart> parts;  ///< in the order of the leaves, as triangles
+    std::vector<glm::vec4> corners;     ///< kTriangleTexels per triangle
+    std::vector<gpu::SceneTriangle> triangles;
+    std::vector<gpu::SceneObject> objects;
+    std::vector<glm::vec4> texels;  ///< the pictures of kd, object by object
+    std::vector<gpu::SceneLight> lights;
+};
+
+/// Packs a scene and builds its trees. Throws Error naming the object that has neither kd nor texture, an alpha outside
+/// (0, 1], an id that is 0, above 65535 or another's, a texture without texels, or a mesh whose lists do not fit
+/// together; and for more triangles, nodes or texels than the largest portable image holds.
+SceneData pack_scene(const Scene& scene);
+
+}  // namespace patina::sensor

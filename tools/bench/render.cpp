@@ -1,0 +1,167 @@
+// patina_render_bench: how fast synthetic scenes are rendered. See docs/benchmarks.md.
+#include "sensor/synthetic/render.h"
+
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <numbers>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "engine/graph/runner.h"
+#include "sensor/synthetic/scene_file.h"
+#include "tools/bench/distribution.h"
+#include "tools/commands/commands.h"
+
+namespace patina::bench {
+
+namespace {
+
+struct Options {
+    tools::DeviceArguments device;
+    std::string scene;
+    uint32_t frames = 30;
+    uint32_t warmup = 3;
+    bool no_shadows = false;
+    std::filesystem::path json;
+};
+
+struct PassTimes {
+    std::string name;
+    Distribution ms;
+};
+
+/// A sphere of radius 1 m with bumps, as a grid of longitudes and latitudes: about as fine and as uneven as a scanned
+/// figure. Two triangles to each of rings x segments cells, one at the poles.
+std::shared_ptr<const sensor::TriangleMesh> bumpy_sphere(uint32_t rings, uint32_t segments) {
+    auto mesh = std::make_shared<sensor::TriangleMesh>();
+    for (uint32_t ring = 0; ring <= rings; ++ring) {
+        for (uint32_t segment = 0; segment < segments; ++segment) {
+            const double latitude = std::numbers::pi * ring / rings,
+                         longitude = 2 * std::numbers::pi * segment / segments;
+            const glm::dvec3 direction(std::sin(latitude) * std::sin(longitude), -std::cos(latitude),
+                                       std::sin(latitude) * std::cos(longitude));
+            const double radius_m = 1 + 0.1 * std::sin(7 * longitude) * std::sin(9 * latitude);
+            mesh->positions_m.emplace_back(radius_m * direction);
+            mesh->normals.emplace_back(direction);
+        }
+    }
+    const auto vertex = [&](uint32_t ring, uint32_t segment) { return ring * segments + segment % segments; };
+    for (uint32_t ring = 0; ring < rings; ++ring) {
+        for (uint32_t s = 0; s < segments; ++s) {
+            if (ring > 0) mesh->triangles.emplace_back(vertex(ring, s), vertex(ring, s + 1), vertex(ring + 1, s));
+            if (ring + 1 < rings)
+                mesh->triangles.emplace_back(vertex(ring, s + 1), vertex(ring + 1, s + 1), vertex(ring + 1, s));
+        }
+    }
+    return mesh;
+}
+
+/// Three figures of 23 400 triangles each on a floor under three lights, 4 m away.
+sensor::Scene generated_scene() {
+    sensor::Scene scene;
+    scene.name = "three bumpy spheres";
+    const auto mesh = bumpy_sphere(118, 100);
+    const auto object = [](uint32_t id, sensor::Part part) {
+        return sensor::SceneObject{{std::move(part)}, {id, "", glm::dvec3(0.4), glm::dvec3(0.1), 0.2}};
+    };
+    scene.objects.push_back(
+        object(1, {sensor::RectangleShape{{4, 4}}, sensor::placed({0, 0, 4}, {1, 0, 0}, std::numbers::pi / 2)}));
+    for (uint32_t i = 0; i < 3; ++i) {
+        const glm::dvec3 position_m(-1.6 + 1.6 * i, -0.75, 4 + 0.4 * (i % 2));
+        RigidTransform pose = sensor::placed(position_m, {0, 1, 0}, i);
+        scene.objects.push_back(object(2 + i, {sensor::MeshShape{mesh}, pose}));
+    }
+    scene.lights = {{{-3, -3, 1}, {8, 8, 8}}, {{3, -3.5, 2}, {8, 7, 6}}, {{0, -4, 6}, {5, 6, 8}}};
+    scene.path = sensor::OrbitPath{.target_m = {0, -0.6, 4},
+                                   .distance_m = 4,
+                                   .azimuth_amplitude_rad = 0.9,
+                                   .azimuth_period_s = 20,
+                                   .elevation_rad = 0.35};
+    return scene;
+}
+
+size_t triangles_of(const sensor::Scene& scene) {
+    size_t count = 0;
+    for (const auto& object : scene.objects)
+        for (const auto& part : object.parts)
+            if (const auto* shape = std::get_if<sensor::MeshShape>(&part.shape)) count += shape->mesh->triangles.size();
+    return count;
+}
+
+/// Renders frames along the scene's path, each alone on the device.
+std::vector<PassTimes> measure(vulkan::Device& device, const sensor::Scene& scene, const Options& options) {
+    graph::Runner runner(device);
+    const sensor::SceneModel model(runner, scene);
+    sensor::RenderSettings settings = scene.recording.render;
+    settings.shadows = settings.shadows && !options.no_shadows;
+    for (uint32_t i = 0; i < options.warmup + options.frames; ++i) {
+        runner.wait();
+        if (i == options.warmup) runner.clear_timings();
+        graph::Frame frame = runner.begin();
+        const auto pose = world_from_camera(scene.path, i * 10 / scene.fps);
+        const auto images = sensor::add_render(frame, model, scene.camera, pose, settings, i);
+        for (const auto& id : {images.radiance, images.depth_m, images.object_id, images.normal, images.kd})
+            frame.keep(id);
+        runner.submit(std::move(frame));
+    }
+    runner.wait();
+    std::vector<PassTimes> passes;
+    std::vector<float> total_ms(options.frames, 0);
+    for (const graph::Timing& timing : runner.pass_timings()) {
+        passes.push_back({timing.name, distribution(timing.samples_ms)});
+        for (uint32_t i = 0; i < options.frames; ++i) total_ms[i] += timing.samples_ms[i];
+    }
+    passes.push_back({"all", distribution(total_ms)});
+    return passes;
+}
+
+void run(const Options& options) {
+    const sensor::Scene scene = options.scene.empty() ? generated_scene() : sensor::load_scene(options.scene);
+    vulkan::Device device(options.device.options());
+    const auto passes = measure(device, scene, options);
+    const Extent2D extent = scene.camera.extent;
+    fmt::print("{}, {}\n{} at {}x{}, {} triangles, {} lights, {} frames\n\n", device.caps().name, device.caps().driver,
+               scene.name, extent.width, extent.height, triangles_of(scene), scene.lights.size(), options.frames);
+    fmt::print("{:<28} {:>9} {:>9} {:>9}\n", "pass (GPU ms)", "min", "median", "90 %");
+    nlohmann::ordered_json json{
+        {"device", device.caps().name}, {"driver", device.caps().driver}, {"scene", scene.name}};
+    for (const auto& [name, ms] : passes) {
+        fmt::print("{:<28} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, ms.min, ms.median, ms.p90);
+        json["ms"][name] = {{"count", ms.count}, {"min", ms.min}, {"median", ms.median}, {"p90", ms.p90}};
+    }
+    if (options.json.empty()) return;
+    std::ofstream out(options.json);
+    out << json.dump(2) << '\n';
+    if (!out.flush()) throw Error("the file '", options.json.string(), "' cannot be written");
+}
+
+}  // namespace
+
+}  // namespace patina::bench
+
+int main(int argc, char** argv) {
+    using namespace patina;
+    CLI::App app("Measures how fast synthetic scenes are rendered", "patina_render_bench");
+    bench::Options options;
+    app.add_option("scene", options.scene, "Scene file or built-in scene; without, 70 000 triangles are generated");
+    app.add_option("--frames", options.frames, "How many frames to measure")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    app.add_option("--warmup", options.warmup, "How many frames to render before")->capture_default_str();
+    app.add_flag("--no-shadows", options.no_shadows, "Light passes through objects, whatever the scene says");
+    app.add_option("--json", options.json, "Write the figures to this file");
+    options.device.add_to(app);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        bench::run(options);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "patina_render_bench: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
