@@ -117,11 +117,11 @@ std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
     return members;
 }
 
-void JsonValue::expect_keys(const std::vector<std::string_view>& known) const {
+void JsonValue::expect_keys(const std::vector<std::string>& known) const {
     for (const auto& [key, value] : members()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string list;
-        for (const std::string_view name : known) list.append(list.empty() ? "" : ", ").append(name);
+        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
         value.fail("an unknown key; known are: " + list);
     }
 }
@@ -131,6 +131,11 @@ std::vector<JsonValue> JsonValue::elements() const {
     std::vector<JsonValue> elements;
     for (size_t i = 0; i < value_->size(); ++i) elements.push_back(part(text(key_, "[", i, "]"), (*value_)[i]));
     return elements;
+}
+
+std::vector<JsonValue> JsonValue::elements_of(size_t count) const {
+    if (!value_->is_array() || value_->size() != count) fail(text("must be an array of ", count));
+    return elements();
 }
 
 std::string JsonValue::string() const {
@@ -182,9 +187,8 @@ uint64_t JsonValue::whole_number(uint64_t most) const {
 }
 
 std::vector<double> JsonValue::numbers(size_t count) const {
-    if (!value_->is_array() || value_->size() != count) fail(text("must be an array of ", count, " numbers"));
     std::vector<double> values;
-    for (const JsonValue& element : elements()) values.push_back(element.number());
+    for (const JsonValue& element : elements_of(count)) values.push_back(element.number());
     return values;
 }
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,10 +30,12 @@ class JsonValue {
     std::vector<std::pair<std::string, JsonValue>> members() const;
 
     /// Throws Error, naming the first member with another key, and the known ones; also when this is no object.
-    void expect_keys(const std::vector<std::string_view>& known) const;
+    void expect_keys(const std::vector<std::string>& known) const;
 
     /// The elements of an array; the key path of one is "lights[2]".
     std::vector<JsonValue> elements() const;
+    /// The elements of an array of exactly `count`.
+    std::vector<JsonValue> elements_of(size_t count) const;
 
     bool is_object() const { return value_->is_object(); }
     bool is_array() const { return value_->is_array(); }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr glm::dvec3 kDown(0, 1, 0);
 
-double oscillation(double amplitude, double period_s, double time_s) {
-    return amplitude * std::sin(2 * std::numbers::pi * time_s / period_s);
+double oscillation(double amplitude, double period_s, double phase_rad, double time_s) {
+    return amplitude * std::sin(2 * std::numbers::pi * time_s / period_s + phase_rad);
 }
 
 RigidTransform looking(glm::dvec3 center_m, glm::dvec3 forward) {
@@ -25,9 +25,10 @@ RigidTransform looking(glm::dvec3 center_m, glm::dvec3 forward) {
 }
 
 RigidTransform pose(const OrbitPath& path, double time_s) {
-    const double azimuth = path.azimuth_rad + oscillation(path.azimuth_amplitude_rad, path.azimuth_period_s, time_s);
-    const double elevation =
-        path.elevation_rad + oscillation(path.elevation_amplitude_rad, path.elevation_period_s, time_s);
+    const double azimuth = path.azimuth_rad + oscillation(path.azimuth_amplitude_rad, path.azimuth_period_s,
+                                                          path.azimuth_phase_rad, time_s);
+    const double elevation = path.elevation_rad + oscillation(path.elevation_amplitude_rad, path.elevation_period_s,
+                                                              path.elevation_phase_rad, time_s);
     const glm::dvec3 forward(-std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                              std::cos(elevation) * std::cos(azimuth));
     return looking(path.target_m - path.distance_m * forward, forward);
@@ -59,8 +60,9 @@ RigidTransform pose(const WaypointPath& path, double time_s) {
 
 SteepestView steepest(const OrbitPath& path) {
     const bool same_sign = path.elevation_rad * path.elevation_amplitude_rad >= 0;
+    const double turns = (same_sign ? 0.25 : 0.75) - path.elevation_phase_rad / (2 * std::numbers::pi);
     return {std::abs(path.elevation_rad) + std::abs(path.elevation_amplitude_rad),
-            path.elevation_period_s * (same_sign ? 0.25 : 0.75)};
+            path.elevation_period_s * (turns - std::floor(turns))};
 }
 
 SteepestView steepest(const WaypointPath& path) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -12,6 +13,7 @@
 #include "sensor/synthetic/readers/materials.h"
 #include "sensor/synthetic/readers/objects.h"
 #include "sensor/synthetic/readers/recording.h"
+#include "sensor/synthetic/vary.h"
 
 namespace patina::sensor {
 namespace {
@@ -52,7 +54,8 @@ Scene read_scene(const fs::path& file, const fs::path& mesh) {
 }  // namespace
 
 Scene load_scene(const std::string& name_or_file, const SceneChanges& changes) {
-    return read_scene(file_of(name_or_file), changes.mesh);
+    Scene scene = read_scene(file_of(name_or_file), changes.mesh);
+    return changes.vary ? varied(std::move(scene), *changes.vary) : scene;
 }
 
 std::string scene_names() {

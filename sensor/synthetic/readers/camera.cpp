@@ -13,7 +13,6 @@ namespace patina::sensor {
 namespace {
 
 constexpr uint32_t kLargestExtent_px = 16384;
-constexpr double kSteepest_rad = glm::radians(89.0);  // beyond, images turn fast about their centre
 
 uint32_t read_pixels(const JsonValue& value) {
     if (value.positive_integer() > kLargestExtent_px) value.fail(text("must be at most ", kLargestExtent_px));
@@ -53,38 +52,37 @@ struct Oscillation {
     double mean_rad = 0;
     double amplitude_rad = 0;
     double period_s = 1;
+    double phase_rad = 0;
 };
 
 Oscillation read_oscillation(const JsonValue& value) {
     if (!value.is_object()) return {.mean_rad = read_degrees(value)};
-    value.expect_keys({"mean", "amplitude", "period_s"});
+    value.expect_keys({"mean", "amplitude", "period_s", "phase"});
     Oscillation oscillation;
     if (const auto mean = value.find("mean")) oscillation.mean_rad = read_degrees(*mean);
     if (const auto amplitude = value.find("amplitude")) {
         oscillation.amplitude_rad = read_degrees(*amplitude);
         oscillation.period_s = read_positive(value.at("period_s"));
     }
+    if (const auto phase = value.find("phase")) oscillation.phase_rad = read_degrees(*phase);
     return oscillation;
 }
 
 OrbitPath read_orbit(const JsonValue& value) {
     value.expect_keys({"target", "distance", "azimuth_degrees", "elevation_degrees"});
-    OrbitPath orbit;
-    orbit.target_m = read_vector(value.at("target"));
-    orbit.distance_m = read_positive(value.at("distance"));
-    if (const auto azimuth = value.find("azimuth_degrees")) {
-        const Oscillation o = read_oscillation(*azimuth);
-        orbit.azimuth_rad = o.mean_rad;
-        orbit.azimuth_amplitude_rad = o.amplitude_rad;
-        orbit.azimuth_period_s = o.period_s;
-    }
-    if (const auto elevation = value.find("elevation_degrees")) {
-        const Oscillation o = read_oscillation(*elevation);
-        orbit.elevation_rad = o.mean_rad;
-        orbit.elevation_amplitude_rad = o.amplitude_rad;
-        orbit.elevation_period_s = o.period_s;
-    }
-    return orbit;
+    Oscillation azimuth, elevation;
+    if (const auto angle = value.find("azimuth_degrees")) azimuth = read_oscillation(*angle);
+    if (const auto angle = value.find("elevation_degrees")) elevation = read_oscillation(*angle);
+    return {.target_m = read_vector(value.at("target")),
+            .distance_m = read_positive(value.at("distance")),
+            .azimuth_rad = azimuth.mean_rad,
+            .azimuth_amplitude_rad = azimuth.amplitude_rad,
+            .azimuth_period_s = azimuth.period_s,
+            .azimuth_phase_rad = azimuth.phase_rad,
+            .elevation_rad = elevation.mean_rad,
+            .elevation_amplitude_rad = elevation.amplitude_rad,
+            .elevation_period_s = elevation.period_s,
+            .elevation_phase_rad = elevation.phase_rad};
 }
 
 WaypointPath read_tour(const JsonValue& value) {
@@ -101,13 +99,12 @@ WaypointPath read_tour(const JsonValue& value) {
 }
 
 CameraPath read_path(const JsonValue& value) {
-    value.expect_keys({"orbit", "tour"});
     const auto [kind, settings] = read_kind(value, {"orbit", "tour"});
     const CameraPath path = kind == "orbit" ? CameraPath(read_orbit(settings)) : CameraPath(read_tour(settings));
     const SteepestView view = steepest_view(path);
-    if (!(view.angle_rad <= kSteepest_rad)) {
+    if (!(view.angle_rad <= kSteepestView_rad)) {
         throw Error(settings.where(), " looks ", glm::degrees(view.angle_rad), " degrees up or down after ",
-                    view.time_s, " s, must stay within ", glm::degrees(kSteepest_rad));
+                    view.time_s, " s, must stay within ", glm::degrees(kSteepestView_rad));
     }
     return path;
 }

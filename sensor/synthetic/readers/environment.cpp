@@ -1,9 +1,9 @@
 #include "sensor/synthetic/readers/environment.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "sensor/synthetic/environment.h"
 #include "sensor/synthetic/readers/values.h"
@@ -11,81 +11,89 @@
 namespace patina::sensor {
 namespace {
 
-constexpr Extent2D kDrawn{256, 128};  // pixels of 1.4 degrees
+constexpr uint64_t kLargestHeight_px = 4096;
 
-void read_rgb_member(const JsonValue& value, const char* key, glm::vec3& rgb) {
-    if (const auto member = value.find(key)) rgb = glm::vec3(read_rgb(*member, kLargestValue));
+/// Members that a drawn environment may leave out keep their defaults.
+void read_into(const JsonValue& value, const char* key, glm::vec3& radiance) {
+    if (const auto member = value.find(key)) radiance = glm::vec3(read_rgb(*member, kLargestValue));
 }
 
-void read_degrees_member(const JsonValue& value, const char* key, float& angle_rad) {
+void read_into(const JsonValue& value, const char* key, float& angle_rad) {
     if (const auto member = value.find(key)) angle_rad = static_cast<float>(read_degrees(*member));
 }
 
 UniformEnvironment read_uniform(const JsonValue& value) {
     value.expect_keys({"radiance"});
-    UniformEnvironment uniform;
-    read_rgb_member(value, "radiance", uniform.radiance);
-    return uniform;
+    return {glm::vec3(read_rgb(value.at("radiance"), kLargestValue))};
 }
 
 SkyEnvironment read_sky(const JsonValue& value) {
     value.expect_keys({"zenith", "horizon", "ground", "sun_irradiance", "sun_azimuth_degrees", "sun_elevation_degrees",
                        "sun_radius_degrees"});
     SkyEnvironment sky;
-    read_rgb_member(value, "zenith", sky.zenith);
-    read_rgb_member(value, "horizon", sky.horizon);
-    read_rgb_member(value, "ground", sky.ground);
-    read_rgb_member(value, "sun_irradiance", sky.sun_irradiance);
-    read_degrees_member(value, "sun_azimuth_degrees", sky.sun_azimuth_rad);
-    read_degrees_member(value, "sun_elevation_degrees", sky.sun_elevation_rad);
-    read_degrees_member(value, "sun_radius_degrees", sky.sun_radius_rad);
+    read_into(value, "zenith", sky.zenith);
+    read_into(value, "horizon", sky.horizon);
+    read_into(value, "ground", sky.ground);
+    read_into(value, "sun_irradiance", sky.sun_irradiance);
+    read_into(value, "sun_azimuth_degrees", sky.sun_azimuth_rad);
+    read_into(value, "sun_elevation_degrees", sky.sun_elevation_rad);
+    if (const auto radius = value.find("sun_radius_degrees")) radius->number_within(0.01, 90);
+    read_into(value, "sun_radius_degrees", sky.sun_radius_rad);
     return sky;
 }
 
-SoftBox read_box(const JsonValue& value) {
+SoftBox read_soft_box(const JsonValue& value) {
     value.expect_keys({"azimuth_degrees", "elevation_degrees", "size_degrees", "radiance"});
     SoftBox box;
-    read_degrees_member(value, "azimuth_degrees", box.azimuth_rad);
-    read_degrees_member(value, "elevation_degrees", box.elevation_rad);
-    read_rgb_member(value, "radiance", box.radiance);
+    read_into(value, "azimuth_degrees", box.azimuth_rad);
+    read_into(value, "elevation_degrees", box.elevation_rad);
     if (const auto size = value.find("size_degrees")) {
-        const std::vector<JsonValue> sides = size->elements();
-        if (sides.size() != 2) size->fail("must be two angles, across and up");
         for (int i = 0; i < 2; ++i) {
-            const JsonValue& side = sides[static_cast<size_t>(i)];
-            if (!(side.number_within(0, 360) > 0)) side.fail("must be above 0");
+            const JsonValue side = size->elements_of(2)[size_t(i)];
+            side.number_within(0.01, 360);
             box.half_size_rad[i] = static_cast<float>(read_degrees(side) / 2);
         }
     }
+    read_into(value, "radiance", box.radiance);
     return box;
 }
 
 StudioEnvironment read_studio(const JsonValue& value) {
     value.expect_keys({"walls", "boxes"});
     StudioEnvironment studio;
-    read_rgb_member(value, "walls", studio.walls);
-    for (const JsonValue& box : value.at("boxes").elements()) studio.boxes.push_back(read_box(box));
+    read_into(value, "walls", studio.walls);
+    for (const JsonValue& box : value.at("boxes").elements()) studio.boxes.push_back(read_soft_box(box));
     return studio;
 }
 
-Image<glm::vec3> read_picture(const std::string& kind, const JsonValue& value) {
-    if (kind == "uniform") return draw_environment(read_uniform(value), kDrawn);
-    if (kind == "sky") return draw_environment(read_sky(value), kDrawn);
-    if (kind == "studio") return draw_environment(read_studio(value), kDrawn);
-    return located(value, [&] { return read_environment(beside_file(value)); });
+Extent2D read_extent(const JsonValue& value) {
+    uint32_t height = 256;
+    if (const auto member = value.find("height")) {
+        member->positive_integer();
+        height = static_cast<uint32_t>(member->whole_number(kLargestHeight_px));
+    }
+    return {2 * height, height};
+}
+
+Image<glm::vec3> read_picture(const std::string& kind, const JsonValue& source, Extent2D extent) {
+    return located(source, [&] {
+        if (kind == "uniform") return draw_environment(read_uniform(source), extent);
+        if (kind == "sky") return draw_environment(read_sky(source), extent);
+        if (kind == "studio") return draw_environment(read_studio(source), extent);
+        return read_environment(beside_file(source));
+    });
 }
 
 }  // namespace
 
 Environment read_environment(const JsonValue& value) {
-    value.expect_keys({"uniform", "sky", "studio", "file", "scale"});
-    const auto [kind, settings] = read_kind(value, {"uniform", "sky", "studio", "file"});
-    Image<glm::vec3> picture = read_picture(kind, settings);
+    const auto [kind, source] = read_kind(value, {"file", "sky", "studio", "uniform"}, {"height", "scale"});
+    Image<glm::vec3> radiance = read_picture(kind, source, read_extent(value));
     if (const auto scale = value.find("scale")) {
         const auto factor = static_cast<float>(scale->number_within(0, kLargestValue));
-        for (glm::vec3& radiance : picture.pixels()) radiance *= factor;
+        for (glm::vec3& pixel : radiance.pixels()) pixel *= factor;
     }
-    return {std::make_shared<const Image<glm::vec3>>(std::move(picture))};
+    return {std::make_shared<const Image<glm::vec3>>(std::move(radiance))};
 }
 
 }  // namespace patina::sensor

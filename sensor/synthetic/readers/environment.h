@@ -5,7 +5,7 @@
 
 namespace patina::sensor {
 
-/// Reads the member "environment" of a scene file: one of "uniform", "sky", "studio" or "file", and a "scale".
+/// Reads the member "environment" of a scene file: an HDR file, or one that is drawn.
 Environment read_environment(const JsonValue& value);
 
 }  // namespace patina::sensor

@@ -1,7 +1,6 @@
 #include "sensor/synthetic/readers/materials.h"
 
 #include <array>
-#include <utility>
 
 #include "sensor/synthetic/readers/textures.h"
 #include "sensor/synthetic/readers/values.h"
@@ -35,16 +34,17 @@ void check_albedo(const JsonValue& value, glm::dvec3 kd, glm::dvec3 ks) {
     }
 }
 
+/// By channel.
+glm::dvec3 largest_kd(const Image<glm::vec3>& picture) {
+    glm::vec3 largest(0);
+    for (const glm::vec3 kd : picture.pixels()) largest = glm::max(largest, kd);
+    return glm::dvec3(largest);
+}
+
 double read_alpha(const JsonValue& value) {
     const double alpha = value.number();
     if (!(alpha > 0 && alpha <= 1)) value.fail("must be above 0 and at most 1");
     return alpha;
-}
-
-glm::dvec3 largest(const Image<glm::vec3>& picture) {
-    glm::vec3 most(0);
-    for (const glm::vec3& kd : picture.pixels()) most = glm::max(most, kd);
-    return glm::dvec3(most);
 }
 
 }  // namespace
@@ -52,9 +52,8 @@ glm::dvec3 largest(const Image<glm::vec3>& picture) {
 MaterialReader::MaterialReader(const JsonValue& root) {
     if (const auto textures = root.find("textures")) {
         for (const auto& [name, value] : textures->members()) {
-            Texture texture = read_texture(value);
-            const glm::dvec3 largest_kd = largest(*texture.kd);
-            textures_.emplace(name, NamedTexture{std::move(texture), largest_kd});
+            const Texture texture = read_texture(value);
+            textures_.emplace(name, NamedTexture{texture, largest_kd(*texture.kd)});
         }
     }
     if (const auto materials = root.find("materials")) {
@@ -69,17 +68,17 @@ ObjectMaterial MaterialReader::read(const JsonValue& value) const {
 ObjectMaterial MaterialReader::read_inline(const JsonValue& value) const {
     value.expect_keys({"kd", "ks", "alpha"});
     ObjectMaterial result;
-    glm::dvec3 largest_kd(0);
+    glm::dvec3 most_kd(0);
     if (const JsonValue kd = value.at("kd"); kd.is_string()) {
         const NamedTexture& texture = named(kd, "textures", textures_);
         result.texture = texture.texture;
-        largest_kd = texture.largest_kd;
+        most_kd = texture.largest_kd;
     } else {
-        result.material.kd = largest_kd = read_rgb(kd, 1);
+        result.material.kd = most_kd = read_rgb(kd, 1);
     }
     result.material.ks = read_rgb(value.at("ks"), 1);
     result.material.alpha = read_alpha(value.at("alpha"));
-    check_albedo(value, largest_kd, result.material.ks);
+    check_albedo(value, most_kd, result.material.ks);
     return result;
 }
 

@@ -26,23 +26,16 @@ Value read_choice(const JsonValue& name, const std::map<std::string, Value>& cho
     name.fail("must be one of " + list);
 }
 
-glm::dvec3 read_lengths3(const JsonValue& value) {
-    const std::vector<JsonValue> elements = value.elements();
-    if (elements.size() != 3) value.fail("must be an array of 3 lengths");
-    return {read_positive(elements[0]), read_positive(elements[1]), read_positive(elements[2])};
-}
-
 RectangleShape read_rectangle(const JsonValue& value) {
     value.expect_keys({"size"});
-    const JsonValue size = value.at("size");
-    const std::vector<JsonValue> elements = size.elements();
-    if (elements.size() != 2) size.fail("must be an array of 2 lengths");
-    return {glm::dvec2(read_positive(elements[0]), read_positive(elements[1])) / 2.0};
+    const std::vector<JsonValue> size = value.at("size").elements_of(2);
+    return {glm::dvec2(read_positive(size[0]), read_positive(size[1])) / 2.0};
 }
 
 BoxShape read_box(const JsonValue& value) {
     value.expect_keys({"size"});
-    return {read_lengths3(value.at("size")) / 2.0};
+    const std::vector<JsonValue> size = value.at("size").elements_of(3);
+    return {glm::dvec3(read_positive(size[0]), read_positive(size[1]), read_positive(size[2])) / 2.0};
 }
 
 SphereShape read_sphere(const JsonValue& value) {
@@ -83,7 +76,7 @@ class ObjectReader {
         ObjectMaterial material = materials_.read(value.at("material"));
         SceneObject object{{}, std::move(material.material), std::move(material.texture)};
         object.material.name = read_name(value.at("name"));
-        object.material.id = static_cast<uint32_t>(key_of_name_.size());
+        object.material.id = static_cast<uint32_t>(place_of_name_.size());
         const RigidTransform world_from_object = read_placement(value);
         const JsonValue parts = value.at("parts");
         for (const JsonValue& part : parts.elements())
@@ -96,14 +89,14 @@ class ObjectReader {
     std::string read_name(const JsonValue& value) {
         const std::string name = value.string();
         if (name.empty()) value.fail("must not be empty");
-        const auto [entry, is_new] = key_of_name_.try_emplace(name, value.where());
+        const auto [entry, is_new] = place_of_name_.try_emplace(name, value.where());
         if (!is_new) value.fail("which is the name of another object, at " + entry->second);
         return name;
     }
 
     Shape read_shape(const JsonValue& part) {
-        part.expect_keys({"rectangle", "box", "sphere", "cylinder", "mesh", "position", "rotations"});
-        const auto [kind, shape] = read_kind(part, {"rectangle", "box", "sphere", "cylinder", "mesh"});
+        const auto [kind, shape] =
+            read_kind(part, {"rectangle", "box", "sphere", "cylinder", "mesh"}, {"position", "rotations"});
         if (kind == "rectangle") return read_rectangle(shape);
         if (kind == "box") return read_box(shape);
         if (kind == "sphere") return read_sphere(shape);
@@ -125,7 +118,7 @@ class ObjectReader {
 
     const MaterialReader& materials_;
     fs::path replacement_;
-    std::map<std::string, std::string> key_of_name_;
+    std::map<std::string, std::string> place_of_name_;
     std::map<std::pair<fs::path, MeshSettings>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 

@@ -1,9 +1,8 @@
 #include "sensor/synthetic/readers/textures.h"
 
-#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,39 +12,25 @@
 namespace patina::sensor {
 namespace {
 
-uint32_t read_count(const JsonValue& value) { return static_cast<uint32_t>(value.whole_number(UINT32_MAX)); }
+constexpr uint64_t kLargestPicture_px = 4096;
 
-glm::dvec2 read_pair(const JsonValue& value) {
-    const std::vector<double> numbers = value.numbers(2);
-    return {numbers[0], numbers[1]};
-}
-
-glm::uvec2 read_counts(const JsonValue& value) {
-    if (!value.is_array()) return glm::uvec2(read_count(value));
-    const std::vector<JsonValue> elements = value.elements();
-    if (elements.size() != 2) value.fail("must be one count or two, across and down");
-    return {read_count(elements[0]), read_count(elements[1])};
-}
-
-PatternSettings read_settings(const JsonValue& value) {
+Image<glm::vec3> read_pattern(const std::string& name, const JsonValue& value) {
     value.expect_keys({"colors", "count", "seed", "size"});
     PatternSettings settings;
     for (const JsonValue& color : value.at("colors").elements()) settings.colors.emplace_back(read_rgb(color, 1));
-    if (const auto count = value.find("count")) settings.count = read_counts(*count);
-    if (const auto seed = value.find("seed")) settings.seed = read_count(*seed);
-    if (const auto size = value.find("size")) settings.size_px = read_count(*size);
-    return settings;
+    if (const auto count = value.find("count")) {
+        const std::vector<JsonValue> elements = count->elements_of(2);
+        settings.count = {elements[0].positive_integer(), elements[1].positive_integer()};
+    }
+    if (const auto seed = value.find("seed")) settings.seed = static_cast<uint32_t>(seed->whole_number(UINT32_MAX));
+    if (const auto size = value.find("size")) {
+        size->positive_integer();
+        settings.size_px = static_cast<uint32_t>(size->whole_number(kLargestPicture_px));
+    }
+    return located(value, [&] { return draw_pattern(pattern_named(name), settings); });
 }
 
-/// The picture that the member `kind` describes.
-Image<glm::vec3> read_picture(const std::string& kind, const JsonValue& value) {
-    return located(value, [&] {
-        if (kind == "file") return read_texture(beside_file(value));
-        return draw_pattern(pattern_named(kind), read_settings(value));
-    });
-}
-
-/// The picture moved right and down by whole texels, what leaves it on one side entering on the other.
+/// The picture moved right and down by whole texels; what leaves it on one side enters on the other.
 Image<glm::vec3> rolled(const Image<glm::vec3>& picture, glm::ivec2 by) {
     const glm::ivec2 size(picture.extent().width, picture.extent().height);
     Image<glm::vec3> moved(picture.extent());
@@ -58,24 +43,29 @@ Image<glm::vec3> rolled(const Image<glm::vec3>& picture, glm::ivec2 by) {
     return moved;
 }
 
+/// The picture with its top left corner at `offset` in (u, v), to the nearest texel.
+Image<glm::vec3> with_offset(const Image<glm::vec3>& picture, glm::dvec2 offset, glm::dvec2 repeat) {
+    const glm::dvec2 texels = glm::fract(offset / repeat) * glm::dvec2(picture.extent().width, picture.extent().height);
+    return rolled(picture, glm::ivec2(glm::round(texels)));
+}
+
 }  // namespace
 
 Texture read_texture(const JsonValue& value) {
-    std::vector<std::string_view> kinds(pattern_names().begin(), pattern_names().end());
-    kinds.push_back("file");
-    std::vector<std::string_view> keys = kinds;
-    keys.insert(keys.end(), {"repeat", "offset"});
-    value.expect_keys(keys);
-    const auto [kind, settings] = read_kind(value, kinds);
-    Image<glm::vec3> picture = read_picture(kind, settings);
+    std::vector<std::string> kinds = pattern_names();
+    kinds.emplace_back("file");
+    const auto [kind, source] = read_kind(value, kinds, {"repeat", "offset"});
     Texture texture;
-    const JsonValue repeat = value.at("repeat");
-    texture.repeat = read_pair(repeat);
-    if (!(std::min(texture.repeat.x, texture.repeat.y) > 0)) repeat.fail("must be two lengths above 0");
+    Image<glm::vec3> picture = kind == "file" ? located(source, [&] { return read_texture(beside_file(source)); })
+                                              : read_pattern(kind, source);
+    if (const auto repeat = value.find("repeat")) {
+        const std::vector<JsonValue> elements = repeat->elements_of(2);
+        texture.repeat = {read_positive(elements[0]), read_positive(elements[1])};
+    }
     if (const auto offset = value.find("offset")) {
-        const glm::dvec2 parts = glm::fract(read_pair(*offset) / texture.repeat);
-        picture = rolled(picture,
-                         glm::ivec2(glm::round(parts * glm::dvec2(picture.extent().width, picture.extent().height))));
+        const std::vector<JsonValue> elements = offset->elements_of(2);
+        const auto at = [&](size_t i) { return elements[i].number_within(-kLargestValue, kLargestValue); };
+        picture = with_offset(picture, {at(0), at(1)}, texture.repeat);
     }
     texture.kd = std::make_shared<const Image<glm::vec3>>(std::move(picture));
     return texture;

@@ -5,8 +5,7 @@
 
 namespace patina::sensor {
 
-/// Reads one of the textures of a scene file: a procedural pattern by its name or a picture file, how far one repeat
-/// reaches, and where the picture's top left corner lies: "offset" in (u, v), rounded to whole texels.
+/// Reads one of a scene file's textures: a picture file or a pattern, and what a repeat of it spans.
 Texture read_texture(const JsonValue& value);
 
 }  // namespace patina::sensor

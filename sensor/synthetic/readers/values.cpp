@@ -22,9 +22,8 @@ RigidTransform read_rotation(const JsonValue& value) {
 }  // namespace
 
 glm::dvec3 read_vector(const JsonValue& value) {
+    const std::vector<JsonValue> elements = value.elements_of(3);
     glm::dvec3 vector(0);
-    if (!value.is_array() || value.elements().size() != 3) value.fail("must be an array of 3 numbers");
-    const std::vector<JsonValue> elements = value.elements();
     for (int i = 0; i < 3; ++i) vector[i] = elements[size_t(i)].number_within(-kLargestValue, kLargestValue);
     return vector;
 }
@@ -36,8 +35,7 @@ double read_positive(const JsonValue& value) {
 
 glm::dvec3 read_rgb(const JsonValue& value, double most) {
     if (!value.is_array()) return glm::dvec3(value.number_within(0, most));
-    const std::vector<JsonValue> elements = value.elements();
-    if (elements.size() != 3) value.fail("must be one number or three for red, green and blue");
+    const std::vector<JsonValue> elements = value.elements_of(3);
     glm::dvec3 rgb(0);
     for (int i = 0; i < 3; ++i) rgb[i] = elements[size_t(i)].number_within(0, most);
     return rgb;
@@ -59,13 +57,16 @@ std::filesystem::path beside_file(const JsonValue& name) {
     return std::filesystem::path(name.file()).parent_path() / name.string();
 }
 
-std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string_view>& kinds) {
+std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string>& kinds,
+                                            const std::vector<std::string>& others) {
+    std::vector<std::string> known = kinds;
+    known.insert(known.end(), others.begin(), others.end());
+    value.expect_keys(known);
     std::vector<std::pair<std::string, JsonValue>> found;
     std::string list;
-    for (const std::string_view kind : kinds) {
-        const std::string name(kind);
-        list += (list.empty() ? "" : ", ") + name;
-        if (const auto member = value.find(name)) found.emplace_back(name, *member);
+    for (const std::string& kind : kinds) {
+        list += (list.empty() ? "" : ", ") + kind;
+        if (const auto member = value.find(kind)) found.emplace_back(kind, *member);
     }
     if (found.size() != 1) value.fail(text("must have exactly one of ", list, ", not ", found.size()));
     return found.front();

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,7 +45,9 @@ auto located(const JsonValue& value, Read read) {
 /// A file named inside a JSON file, relative to the latter's folder.
 std::filesystem::path beside_file(const JsonValue& name);
 
-/// The one member among `kinds` that the object has, as {"box", ...}. Throws Error when it has none or several.
-std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string_view>& kinds);
+/// The one member among `kinds` that an object has, as {"box", ...}, beside those in `others`. Throws Error when it has
+/// none, several, or any other.
+std::pair<std::string, JsonValue> read_kind(const JsonValue& value, const std::vector<std::string>& kinds,
+                                            const std::vector<std::string>& others = {});
 
 }  // namespace patina::sensor
