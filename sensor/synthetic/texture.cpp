@@ -126,7 +126,8 @@ glm::vec3 marble(const Canvas& canvas, glm::vec2 uv) {
 }
 
 glm::vec3 noise(const Canvas& canvas, glm::vec2 uv) {
-    const float mixed = canvas.octaves(uv, canvas.count()) * static_cast<float>(canvas.colors() - 1);
+    // Sums of octaves seldom leave the middle half.
+    const float mixed = glm::smoothstep(0.2f, 0.8f, canvas.octaves(uv, canvas.count())) * float(canvas.colors() - 1);
     const size_t below = std::min(static_cast<size_t>(mixed), canvas.colors() - 2);
     return glm::mix(canvas.color(below), canvas.color(below + 1), mixed - static_cast<float>(below));
 }
