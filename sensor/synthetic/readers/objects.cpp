@@ -104,16 +104,18 @@ class ObjectReader {
         return read_mesh_shape(shape);
     }
 
-    /// Meshes of the same file and settings are read once and shared.
     MeshShape read_mesh_shape(const JsonValue& value) {
         const MeshSettings settings = read_mesh_settings(value);
         const JsonValue name = value.at("file");
-        const bool replaced = settings.height_m && !replacement_.empty();
-        const fs::path file = replaced ? replacement_ : beside_file(name);
+        if (settings.height_m && !replacement_.empty()) return {shared_mesh(replacement_, settings)};
+        return located(name, [&] { return MeshShape{shared_mesh(beside_file(name), settings)}; });
+    }
+
+    /// Meshes of the same file and settings are read once.
+    std::shared_ptr<const TriangleMesh> shared_mesh(const fs::path& file, const MeshSettings& settings) {
         std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, settings}];
-        if (!mesh)
-            mesh = located(name, [&] { return std::make_shared<const TriangleMesh>(read_mesh(file, settings)); });
-        return {mesh};
+        if (!mesh) mesh = std::make_shared<const TriangleMesh>(read_mesh(file, settings));
+        return mesh;
     }
 
     const MaterialReader& materials_;

@@ -29,8 +29,8 @@ glm::dvec3 read_vector(const JsonValue& value) {
 }
 
 double read_positive(const JsonValue& value) {
-    value.number_within(0, kLargestValue);
-    return value.positive();
+    value.positive();
+    return value.number_within(0, kLargestValue);
 }
 
 glm::dvec3 read_rgb(const JsonValue& value, double most) {
