@@ -218,6 +218,7 @@ SceneData pack_scene(const Scene& scene) {
     }
     data.info.node_count = static_cast<uint32_t>(parts.nodes.size() + triangles.nodes.size());
     data.info.light_count = static_cast<uint32_t>(data.lights.size());
+    data.info.has_lamps = std::ranges::any_of(scene.lights, [](const PointLight& l) { return l.radius_m > 0; });
     check_size(scene, "nodes", data.nodes.size() * gpu::kNodeTexels);
     check_size(scene, "triangles", data.corners.size());
     check_size(scene, "textures", data.texels.size());

@@ -21,8 +21,8 @@ INTEROP_CONST float kUnbounded = 1e10f;  // stands for infinity where products w
 struct SceneInfo {
     uint node_count;  // in each order
     uint light_count;
+    uint has_lamps;  // whether any light is a lamp, a sphere that is seen
     uint pad0;
-    uint pad1;
 };
 
 // A node of the trees, in depth-first order; boxes are axis-aligned in the world, metres.

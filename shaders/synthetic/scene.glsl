@@ -188,23 +188,25 @@ void find_occluded(Ray rays[kBundleRays], inout bool blocked[kBundleRays]) {
     EACH_RAY blocked[k] = hits[k].t == 0.0;
 }
 
-// The index of the lamp that a ray meets before it has gone `t`, which becomes the distance to it; kNothingHit where
-// there is none. A lamp is not seen from inside.
-uint hit_lamps(Ray ray, inout float t) {
-    uint lamp = kNothingHit;
-    const float length2 = dot(ray.direction, ray.direction);
-    for (uint i = 0u; i < scene.light_count; ++i) {
+// What lamps the rays of a bundle meet nearer than `hits`: gives their distances to it, and the lamps' indices, or
+// kNothingHit. A lamp is not seen from inside.
+void hit_lamps(Ray rays[kBundleRays], inout Hit hits[kBundleRays], out uint lamps[kBundleRays]) {
+    EACH_RAY lamps[k] = kNothingHit;
+    const uint end = scene.has_lamps != 0u ? scene.light_count : 0u;
+    for (uint i = 0u; i < end; ++i) {
         const vec4 sphere = lights[i].position_m;
-        const vec3 to_center = sphere.xyz - ray.origin_m;
-        const float nearest = dot(to_center, ray.direction) / length2;
-        const vec3 p = nearest * ray.direction - to_center;
-        const float inside = sphere.w * sphere.w - dot(p, p);
-        const float enter = nearest - sqrt(max(inside, 0.0) / length2);
-        const bool hit = sphere.w > 0.0 && inside >= 0.0 && enter > 0.0 && enter < t;
-        t = hit ? enter : t;
-        lamp = hit ? i : lamp;
+        EACH_RAY {
+            const float length2 = dot(rays[k].direction, rays[k].direction);
+            const vec3 to_center = sphere.xyz - rays[k].origin_m;
+            const float nearest = dot(to_center, rays[k].direction) / length2;
+            const vec3 p = nearest * rays[k].direction - to_center;
+            const float inside = sphere.w * sphere.w - dot(p, p);
+            const float enter = nearest - sqrt(max(inside, 0.0) / length2);
+            const bool hit = sphere.w > 0.0 && inside >= 0.0 && enter > 0.0 && enter < hits[k].t;
+            hits[k].t = hit ? enter : hits[k].t;
+            lamps[k] = hit ? i : lamps[k];
+        }
     }
-    return lamp;
 }
 
 #endif

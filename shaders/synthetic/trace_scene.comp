@@ -15,24 +15,23 @@ layout(rgba32f, binding = 13) uniform writeonly image2D ks_alpha;
 layout(rgba32f, binding = 14) uniform writeonly image2D lifted_m;  // where rays that leave the surface start
 layout(push_constant) uniform Push { TraceSceneParams params; };
 
-void store(ivec2 pixel, Ray ray, Hit hit) {
+// Lamps hide what is behind them: `lamp` is the one that the ray meets at hit.t instead of the surface that it hit.
+void store(ivec2 pixel, Ray ray, Hit hit, uint lamp, Surface surface) {
     if (any(greaterThanEqual(uvec2(pixel), params.camera.extent))) return;
-    const Surface surface = surface_at(ray, hit);
-    float depth = hit.t;
-    const uint lamp = hit_lamps(ray, depth);
-    const bool on_lamp = lamp != kNothingHit;
-    const bool seen = depth < kMiss;
-    const bool reflects = seen && !on_lamp;
-    const SceneLight light = lights[on_lamp ? lamp : 0u];
-    const vec3 point_m = ray.origin_m + depth * ray.direction;
-    const vec3 facing = on_lamp ? normalize(point_m - light.position_m.xyz) : surface.normal;
-    imageStore(radiance, pixel, on_lamp ? vec4(light.emitted.rgb, 1.0) : vec4(0.0, 0.0, 0.0, seen ? 1.0 : 0.0));
-    imageStore(depth_m, pixel, vec4(seen ? depth : 0.0));
+    const bool seen = hit.t < kMiss;
+    const bool reflects = seen && lamp == kNothingHit;
+    imageStore(depth_m, pixel, vec4(seen ? hit.t : 0.0));
     imageStore(object_id, pixel, uvec4(reflects ? surface.object_id : 0u));
-    imageStore(normal, pixel, seen ? vec4(facing, 0.0) : vec4(0.0));
     imageStore(kd, pixel, reflects ? vec4(surface.kd, 0.0) : vec4(0.0));
     imageStore(ks_alpha, pixel, reflects ? surface.ks_alpha : vec4(0.0));
     imageStore(lifted_m, pixel, reflects ? vec4(surface.lifted_m, 0.0) : vec4(0.0));
+    vec3 facing = surface.normal, emitted = vec3(0.0);
+    if (lamp != kNothingHit) {
+        facing = normalize(ray.origin_m + hit.t * ray.direction - lights[lamp].position_m.xyz);
+        emitted = lights[lamp].emitted.rgb;
+    }
+    imageStore(normal, pixel, seen ? vec4(facing, 0.0) : vec4(0.0));
+    imageStore(radiance, pixel, vec4(emitted, seen ? 1.0 : 0.0));
 }
 
 void main() {
@@ -41,8 +40,12 @@ void main() {
     const vec3 center_m = camera_center_m(params.camera);
     Ray rays[kBundleRays];
     Hit hits[kBundleRays];
+    Surface surfaces[kBundleRays];
+    uint lamps[kBundleRays];
     // Scaled to z = 1 in the camera, so that the distance along a ray is the depth.
     EACH_RAY rays[k] = Ray(center_m, to_world_direction(params.camera, unproject(params.camera, first + uvec2(0u, k))));
     trace(rays, hits);
-    EACH_RAY store(ivec2(first + uvec2(0u, k)), rays[k], hits[k]);
+    EACH_RAY surfaces[k] = surface_at(rays[k], hits[k]);
+    hit_lamps(rays, hits, lamps);
+    EACH_RAY store(ivec2(first + uvec2(0u, k)), rays[k], hits[k], lamps[k], surfaces[k]);
 }
