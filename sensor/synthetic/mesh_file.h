@@ -15,8 +15,8 @@ enum class MeshNormals { kFile, kSmooth, kFlat };  ///< the file's, or flat if i
 struct MeshSettings {
     MeshUp up = MeshUp::kY;
     MeshNormals normals = MeshNormals::kFile;
-    std::optional<double> height_m;  ///< scaled to it, standing on its origin
-    double scale = 1;                ///< metres per unit of the file; unused with a height
+    std::optional<double> height_m{};  ///< scaled to it, standing on its origin
+    double scale = 1;                  ///< metres per unit of the file; unused with a height
 
     auto operator<=>(const MeshSettings&) const = default;
 };

@@ -83,7 +83,7 @@ struct Sample {
 
 template <class Path>
 std::vector<Sample> samples_of(const Path& path, const Clearance& clearance) {
-    constexpr int kSamples = 1024;
+    constexpr int kSamples = 512;
     std::vector<Sample> samples;
     for (int i = 0; i < kSamples; ++i) {
         const glm::dvec3 position_m(world_from_camera(path, duration_s(path) * i / kSamples)[3]);

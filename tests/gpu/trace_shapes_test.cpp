@@ -124,6 +124,24 @@ TEST_F(TraceShapesTest, ConvexShapesDoNotShadowThemselves) {
     }
 }
 
+/// Normals tilted so far that from the right side of the quad they face away from the camera.
+TEST_F(TraceShapesTest, NormalsBelowTheViewersHorizonGiveWayToTheTriangles) {
+    const double tilt_rad = 1.2;
+    const glm::vec3 tilted(std::sin(tilt_rad), 0, -std::cos(tilt_rad));
+    sensor::TriangleMesh mesh;
+    mesh.positions_m = {{-3, -2, 1}, {3, -2, 1}, {3, 2, 1}, {-3, 2, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (const float side : {1.0f, -1.0f}) {  // normals that point away from the viewer's side are turned round
+        mesh.normals.assign(4, side * tilted);
+        const Scene scene = scene_of("tilted", glossy(1, {part_at(shape_of(mesh), {0, 0, 0})}));
+        const Intrinsics camera{{101, 33}, 50, 50, 50, 16, {}};
+        const Traced got = trace(scene, camera, RigidTransform(1.0));
+        EXPECT_LT(glm::distance(got.normal(20, 16), tilted), 1e-6f);
+        EXPECT_EQ(got.normal(90, 16), glm::vec3(0, 0, -1));
+        expect_reference(scene, camera, RigidTransform(1.0), 1e-3);
+    }
+}
+
 TEST_F(TraceShapesTest, LampsAreSeenButReflectNothingAndCastNoShadow) {
     Scene scene = scene_of("lamps", glossy(1, {part_at(sensor::RectangleShape{{3, 3}}, {0, 0, 2})}));
     scene.lights = {{{0.3, -0.2, 1.2}, {0.5, 0.4, 0.3}, 0.15},
@@ -153,6 +171,20 @@ TEST_F(TraceShapesTest, TexelsAreWhereTheTextureSaysAndRepeat) {
         for (uint32_t x = 0; x < 16; ++x) {
             const glm::vec3 expected = texture.kd->at(x % 4, y % 3);
             EXPECT_LT(glm::distance(glm::vec3(got.kd.at(x, y)), expected), 1e-5f) << x << ", " << y;
+        }
+    }
+}
+
+/// GLSL's own arc tangent may be off by 2e-4; texels of 2 cm show it. Seen frontally, where fp32 places points best.
+TEST_F(TraceShapesTest, TexturesAroundSpheresAndCylindersLieWhereTheAnglesSay) {
+    const Intrinsics narrow{{41, 33}, 150, 150, 20, 16, {}};
+    for (const sensor::Shape& shape : {sensor::Shape(sensor::SphereShape{0.8}), {sensor::CylinderShape{0.8, 2}}}) {
+        for (int step = 0; step < 16; ++step) {
+            SCOPED_TRACE(step);
+            Scene scene = scene_of("round", glossy(3, {part_at(shape, {0, 0, 0}, {0, 1, 0}, 0.4 * step)}));
+            scene.objects[0].texture = smooth_texture({40, 30}, {0.8, 0.6});
+            const Traced got = trace(scene, narrow, sensor::placed({0, 0, -2.4}, {0, 1, 0}, 0));
+            compare(got, reference::trace_scene(scene, narrow, sensor::placed({0, 0, -2.4}, {0, 1, 0}, 0)), scene);
         }
     }
 }

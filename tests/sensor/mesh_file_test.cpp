@@ -235,8 +235,8 @@ class WildMeshes : public ::testing::TestWithParam<WildMesh> {};
 
 TEST_P(WildMeshes, AreReadWhole) {
     const fs::path folder = fs::path(GetParam().file).parent_path();
-    const auto data = testing::data_folder(folder.begin()->string());
-    if (!data) GTEST_SKIP() << testing::kNoData;
+    const auto data = patina::testing::data_folder(folder.begin()->string());
+    if (!data) GTEST_SKIP() << patina::testing::kNoData;
     const TriangleMesh mesh = read_mesh(data->parent_path() / GetParam().file, {.height_m = 1.5});
     EXPECT_EQ(mesh.triangles.size(), GetParam().triangles);
     if (GetParam().vertices > 0) {
@@ -252,18 +252,19 @@ TEST_P(WildMeshes, AreReadWhole) {
     for (const glm::vec3 n : mesh.normals) ASSERT_NEAR(glm::length(n), 1, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, WildMeshes,
-                         ::testing::Values(WildMesh{"meshes/cow.obj", 2903, 5804},
-                                           WildMesh{"meshes/fandisk.obj", 6475, 12946},
-                                           WildMesh{"meshes/suzanne.obj", 0, 968}, WildMesh{"meshes/spot.obj", 0, 5856},
-                                           WildMesh{"meshes/nefertiti.obj", 49971, 99938},
-                                           WildMesh{"meshes/dragon_vrip_res3.ply", 22998, 47794},
-                                           WildMesh{"gltf/ClearCoatCarPaint/ClearCoatCarPaint.glb", 0, 3072},
-                                           WildMesh{"gltf/SheenChair/SheenChair.gltf", 0, 39936}));
+INSTANTIATE_TEST_SUITE_P(
+    Each, WildMeshes,
+    ::testing::Values(WildMesh{"meshes/cow.obj", 2903, 5804}, WildMesh{"meshes/fandisk.obj", 6475, 12946},
+                      WildMesh{"meshes/suzanne.obj", 0, 968}, WildMesh{"meshes/spot.obj", 0, 5856},
+                      WildMesh{"meshes/nefertiti.obj", 49971, 99938},
+                      // 199 of 22998 normals are zero: such a vertex gets one for each of its triangles.
+                      WildMesh{"meshes/dragon_vrip_res3.ply", 23054, 47794},
+                      WildMesh{"gltf/ClearCoatCarPaint/ClearCoatCarPaint.glb", 0, 3072},
+                      WildMesh{"gltf/SheenChair/SheenChair.gltf", 0, 39936}));
 
 TEST(WildMesh, DegenerateTrianglesAreFound) {
-    const auto data = testing::data_folder("gltf");
-    if (!data) GTEST_SKIP() << testing::kNoData;
+    const auto data = patina::testing::data_folder("gltf");
+    if (!data) GTEST_SKIP() << patina::testing::kNoData;
     EXPECT_THAT(error_of(*data / "MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb"),
                 HasSubstr("is degenerate: its area is 0 m^2"));
 }

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A roof: two rectangles of two triangles each that meet along the z axis at right angles.
+/// A roof: two rectangles of two triangles each that meet along the z axis at right angles; up is -y.
 TriangleMesh roof() {
     TriangleMesh mesh;
     mesh.positions_m = {{-1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 1, 2}, {0, 0, 2}, {1, 1, 2}};
@@ -50,9 +50,9 @@ TEST(SmoothNormals, AreWeightedByAngleAndSharedByPosition) {
     const TriangleMesh smooth = with_smooth_normals(roof());
     const float half = std::sqrt(0.5f);
     // Each side of the ridge has a right angle there, whatever its number of triangles: the mean points straight up.
-    for (const size_t ridge : {1, 4}) EXPECT_LT(glm::distance(smooth.normals[ridge], glm::vec3(0, 1, 0)), 1e-6f);
-    for (const size_t left : {0, 3}) EXPECT_LT(glm::distance(smooth.normals[left], glm::vec3(half, half, 0)), 1e-6f);
-    for (const size_t right : {2, 5}) EXPECT_LT(glm::distance(smooth.normals[right], glm::vec3(-half, half, 0)), 1e-6f);
+    for (const size_t ridge : {1, 4}) EXPECT_LT(glm::distance(smooth.normals[ridge], glm::vec3(0, -1, 0)), 1e-6f);
+    for (const size_t left : {0, 3}) EXPECT_LT(glm::distance(smooth.normals[left], glm::vec3(-half, -half, 0)), 1e-6f);
+    for (const size_t right : {2, 5}) EXPECT_LT(glm::distance(smooth.normals[right], glm::vec3(half, -half, 0)), 1e-6f);
     EXPECT_EQ(smooth.positions_m, roof().positions_m);
 
     TriangleMesh seam = roof();  // the ridge's vertices twice
@@ -61,7 +61,7 @@ TEST(SmoothNormals, AreWeightedByAngleAndSharedByPosition) {
     seam.triangles[2].x = seam.triangles[3].x = 6;
     seam.triangles[3].z = 7;
     seam = with_smooth_normals(std::move(seam));
-    for (const size_t ridge : {1, 4, 6, 7}) EXPECT_LT(glm::distance(seam.normals[ridge], glm::vec3(0, 1, 0)), 1e-6f);
+    for (const size_t ridge : {1, 4, 6, 7}) EXPECT_LT(glm::distance(seam.normals[ridge], glm::vec3(0, -1, 0)), 1e-6f);
 }
 
 TEST(SmoothNormals, WhereTrianglesCancelOneOfThemDecides) {

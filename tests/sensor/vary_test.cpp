@@ -182,15 +182,15 @@ TEST(Varied, PathsStayNearAndNeverSpeedUp) {
     }
 }
 
-/// A room of 4 m x 2.5 m x 4 m whose lamp hangs 10 cm below the ceiling, and a tour 30 cm from the walls.
+/// A room of 4 m x 2.5 m x 4 m whose lamp hangs 10 cm below the ceiling, and a tour through its corners.
 Scene room() {
     Scene scene;
     scene.objects = {{{{BoxShape{{2, 1.25, 2}}, placed({0, -1.25, 0}, {0, 1, 0}, 0)}}, {1, "room", glm::dvec3(0.5)}}};
     scene.lights = {{{0, -2.4, 0}, glm::dvec3(5), 0.05}};
-    scene.path = WaypointPath{{{{-1.7, -1.5, -1.7}, {0, -1, 0}},
-                               {{1.7, -1.5, -1.7}, {0, -1, 0}},
-                               {{1.7, -1.5, 1.7}, {0, -1, 0}},
-                               {{-1.7, -1.5, 1.7}, {0, -1, 0}}},
+    scene.path = WaypointPath{{{{-1.4, -1.5, -1.4}, {0, -1, 0}},
+                               {{1.4, -1.5, -1.4}, {0, -1, 0}},
+                               {{1.4, -1.5, 1.4}, {0, -1, 0}},
+                               {{-1.4, -1.5, 1.4}, {0, -1, 0}}},
                               20};
     return scene;
 }
@@ -219,10 +219,10 @@ TEST(Clearance, IsTheDistanceToTheNearestSurface) {
     const Clearance clearance(scene.objects);
     EXPECT_NEAR(clearance.at({-1, -1, 0}), 0.6, 1e-12) << "above the ball";
     EXPECT_NEAR(clearance.at({-1, -0.2, 0}), 0.2, 1e-12) << "in the ball's centre";
-    EXPECT_NEAR(clearance.at({1, -0.7, 0.5}), 0.025, 1e-12) << "between the table's leg and its top, inside the top";
+    EXPECT_NEAR(clearance.at({1, -0.7, 0.5}), 0.05, 1e-12) << "inside the table's top";
     EXPECT_NEAR(clearance.at({1, -1.25, 0.5}), 0.5, 1e-12) << "above the table";
     EXPECT_NEAR(clearance.at({0, 3, 0}), 3, 1e-12) << "below the ground";
-    EXPECT_NEAR(clearance.at({5, -4, 0}), 5, 1e-12) << "beside the ground's edge";
+    EXPECT_NEAR(clearance.at({5, 4, 0}), 5, 1e-12) << "below and beside the ground's edge";
 }
 
 TEST(Clearance, AMeshCountsAsItsFilledBox) {

@@ -1,6 +1,7 @@
 #include "sensor/synthetic/readers/environment.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -75,13 +76,19 @@ Extent2D read_extent(const JsonValue& value) {
     return {2 * height, height};
 }
 
+Image<glm::vec3> read_file(const JsonValue& name) {
+    const std::filesystem::path file = beside_file(name);
+    return located(name, [&] { return read_environment(file); });
+}
+
 Image<glm::vec3> read_picture(const std::string& kind, const JsonValue& source, Extent2D extent) {
-    return located(source, [&] {
-        if (kind == "uniform") return draw_environment(read_uniform(source), extent);
-        if (kind == "sky") return draw_environment(read_sky(source), extent);
-        if (kind == "studio") return draw_environment(read_studio(source), extent);
-        return read_environment(beside_file(source));
-    });
+    const auto draw = [&](const auto& settings) {
+        return located(source, [&] { return draw_environment(settings, extent); });
+    };
+    if (kind == "uniform") return draw(read_uniform(source));
+    if (kind == "sky") return draw(read_sky(source));
+    if (kind == "studio") return draw(read_studio(source));
+    return read_file(source);
 }
 
 }  // namespace
