@@ -120,13 +120,14 @@ glm::vec3 marble(const Canvas& canvas, glm::vec2 uv) {
     const glm::vec2 veins(canvas.count());
     // Two octaves only: more would fray the veins into specks.
     const float warp = periodic_octaves(uv, {4, 4}, 8, canvas.seed()) - 0.5f;
-    const float wave = std::sin(std::numbers::pi_v<float> * (glm::dot(veins, uv) + 3 * warp));
-    constexpr float kVein = 0.1f;  // half of the vein's colour where the squared wave is as much
+    const float wave = std::sin(std::numbers::pi_v<float> * (glm::dot(veins, uv) + 2 * warp));
+    constexpr float kVein = 0.2f;  // half of the vein's colour where the squared wave is as much
     return glm::mix(canvas.color(1), canvas.color(0), wave * wave / (wave * wave + kVein));
 }
 
 glm::vec3 noise(const Canvas& canvas, glm::vec2 uv) {
-    const float mixed = canvas.octaves(uv, canvas.count()) * static_cast<float>(canvas.colors() - 1);
+    // Sums of octaves seldom leave the middle half.
+    const float mixed = glm::smoothstep(0.2f, 0.8f, canvas.octaves(uv, canvas.count())) * float(canvas.colors() - 1);
     const size_t below = std::min(static_cast<size_t>(mixed), canvas.colors() - 2);
     return glm::mix(canvas.color(below), canvas.color(below + 1), mixed - static_cast<float>(below));
 }

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
 #include "sensor/synthetic/scene_file.h"
+#include "tests/unit/part_box.h"
 
 namespace patina::sensor {
 namespace {
@@ -79,39 +79,6 @@ TEST(SteepestView, OfATourIsFoundBetweenItsWaypoints) {
     EXPECT_EQ(steepest_view(level).angle_rad, 0);
 }
 
-/// The corners of a box in the world.
-std::vector<glm::dvec3> corners(const SceneObject& object) {
-    const glm::dvec3 half_size_m = std::get<BoxShape>(object.parts.front().shape).half_size_m;
-    std::vector<glm::dvec3> points;
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 sign((i & 1) ? 1 : -1, (i & 2) ? 1 : -1, (i & 4) ? 1 : -1);
-        points.emplace_back(object.parts.front().world_from_part * glm::dvec4(sign * half_size_m, 1));
-    }
-    return points;
-}
-
-/// Whether two boxes have a separating plane (along face normals and cross products of edges).
-bool disjoint(const SceneObject& a, const SceneObject& b) {
-    std::vector<glm::dvec3> axes;
-    for (int i = 0; i < 3; ++i) {
-        axes.emplace_back(a.parts.front().world_from_part[i]);
-        axes.emplace_back(b.parts.front().world_from_part[i]);
-        for (int j = 0; j < 3; ++j)
-            axes.push_back(glm::cross(glm::dvec3(a.parts.front().world_from_part[i]),
-                                      glm::dvec3(b.parts.front().world_from_part[j])));
-    }
-    const auto interval = [](const SceneObject& object, glm::dvec3 axis) {
-        glm::dvec2 range(INFINITY, -INFINITY);
-        for (const glm::dvec3& p : corners(object))
-            range = {std::min(range.x, glm::dot(p, axis)), std::max(range.y, glm::dot(p, axis))};
-        return range;
-    };
-    return std::any_of(axes.begin(), axes.end(), [&](glm::dvec3 axis) {
-        const glm::dvec2 of_a = interval(a, axis), of_b = interval(b, axis);
-        return of_a.y <= of_b.x + 1e-9 || of_b.y <= of_a.x + 1e-9;
-    });
-}
-
 TEST(Cubes, HaveEdgesOf40CentimetresAndStandOnTheFloorOrOneAnother) {
     const Scene scene = load_scene("cubes");
     ASSERT_GT(scene.objects.size(), 5u);
@@ -120,11 +87,11 @@ TEST(Cubes, HaveEdgesOf40CentimetresAndStandOnTheFloorOrOneAnother) {
         const SceneObject& cube = scene.objects[i];
         EXPECT_EQ(std::get<BoxShape>(cube.parts.front().shape).half_size_m, glm::dvec3(0.2)) << cube.material.name;
         double lowest_m = INFINITY;
-        for (const glm::dvec3& p : corners(cube)) lowest_m = std::min(lowest_m, -p.y);
+        for (const glm::dvec3& p : box_around(cube.parts.front()).corners()) lowest_m = std::min(lowest_m, -p.y);
         const bool stacked = std::abs(lowest_m - 0.4) < 1e-12;
         EXPECT_TRUE(stacked || std::abs(lowest_m) < 1e-12) << cube.material.name << " at " << lowest_m << " m";
         for (size_t j = 1; j < i; ++j)
-            EXPECT_TRUE(disjoint(cube, scene.objects[j]))
+            EXPECT_LE(overlap_m(cube, scene.objects[j]), 1e-9)
                 << cube.material.name << ", " << scene.objects[j].material.name;
     }
 }

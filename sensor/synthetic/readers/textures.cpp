@@ -31,6 +31,25 @@ Image<glm::vec3> read_pattern(const std::string& name, const JsonValue& value) {
     return located(value, [&] { return draw_pattern(pattern_named(name), settings); });
 }
 
+/// The picture moved right and down by whole texels; what leaves it on one side enters on the other.
+Image<glm::vec3> rolled(const Image<glm::vec3>& picture, glm::ivec2 by) {
+    const glm::ivec2 size(picture.extent().width, picture.extent().height);
+    Image<glm::vec3> moved(picture.extent());
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const glm::uvec2 to((glm::ivec2(x, y) + by) % size);
+            moved.at(to.x, to.y) = picture.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+        }
+    }
+    return moved;
+}
+
+/// The picture with its top left corner at `offset` in (u, v), to the nearest texel.
+Image<glm::vec3> with_offset(const Image<glm::vec3>& picture, glm::dvec2 offset, glm::dvec2 repeat) {
+    const glm::dvec2 texels = glm::fract(offset / repeat) * glm::dvec2(picture.extent().width, picture.extent().height);
+    return rolled(picture, glm::ivec2(glm::round(texels)));
+}
+
 Image<glm::vec3> read_file(const JsonValue& name) {
     const std::filesystem::path file = beside_file(name);
     return located(name, [&] { return read_texture(file); });
@@ -41,14 +60,19 @@ Image<glm::vec3> read_file(const JsonValue& name) {
 Texture read_texture(const JsonValue& value) {
     std::vector<std::string> kinds = pattern_names();
     kinds.emplace_back("file");
-    const auto [kind, source] = read_kind(value, kinds, {"repeat"});
+    const auto [kind, source] = read_kind(value, kinds, {"repeat", "offset"});
     Texture texture;
-    texture.kd =
-        std::make_shared<const Image<glm::vec3>>(kind == "file" ? read_file(source) : read_pattern(kind, source));
+    Image<glm::vec3> picture = kind == "file" ? read_file(source) : read_pattern(kind, source);
     if (const auto repeat = value.find("repeat")) {
         const std::vector<JsonValue> elements = repeat->elements_of(2);
         texture.repeat = {read_positive(elements[0]), read_positive(elements[1])};
     }
+    if (const auto offset = value.find("offset")) {
+        const std::vector<JsonValue> elements = offset->elements_of(2);
+        const auto at = [&](size_t i) { return elements[i].number_within(-kLargestValue, kLargestValue); };
+        picture = with_offset(picture, {at(0), at(1)}, texture.repeat);
+    }
+    texture.kd = std::make_shared<const Image<glm::vec3>>(std::move(picture));
     return texture;
 }
 
