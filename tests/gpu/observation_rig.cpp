@@ -28,7 +28,7 @@ void ObservationRig::fuse(const RigFrame& frame, int times) {
     for (int i = 0; i < times; ++i) fusion_.fuse(frame.camera, frame.world_from_camera, frame.depth_m);
 }
 
-ObservationRig::Counts ObservationRig::collect(const RigFrame& rig_frame) {
+ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
     graph::Frame frame = runner_.begin();
     const Extent2D extent = rig_frame.camera.extent;
     ObservationInputs inputs;
@@ -55,10 +55,12 @@ ObservationRig::Counts ObservationRig::collect(const RigFrame& rig_frame) {
                                  make_camera(rig_frame.color.camera, rig_frame.color.world_from_camera), frame_++);
     ObservationMap::keep(frame, ids);
     const graph::Readback seen = frame.read_back(collected.visible.list, 0, 4),
-                          changed = frame.read_back(collected.changed.list, 0, 4);
+                          changed = frame.read_back(collected.changed.list, 0, 4),
+                          position = frame.read_back(model.position_m), normal = frame.read_back(model.normal);
     runner_.submit(std::move(frame));
     runner_.wait();
-    return {seen.as<uint32_t>().front(), changed.as<uint32_t>().front()};
+    return {seen.as<uint32_t>().front(), changed.as<uint32_t>().front(), position.image<glm::vec4>(),
+            widen(normal.image<uint64_t>())};
 }
 
 gpu::MapCounters ObservationRig::read(graph::BufferId ObservationMapIds::*counters) {
