@@ -105,8 +105,8 @@ TEST_F(CollectObservations, AWallIsSeenAsItIsFromEveryPose) {
         for (const auto& [at, record] : content) {
             const reference::ObservedVoxel voxel = unpack(record);
             if (voxel.surface_samples == 0) continue;
-            // Depth is exact; what is left is the fusion's rounding of slopes to 11 bits.
-            EXPECT_LT(degrees_between(voxel.normal, {0, 0, -1}), 0.5);
+            // Depth is exact; what is left is the fusion's rounding of slopes to 11 bits, most where it saw least.
+            EXPECT_LT(degrees_between(voxel.normal, {0, 0, -1}), 1);
             off_degrees += degrees_between(voxel.normal, {0, 0, -1}) / static_cast<double>(content.size());
             const glm::dvec3 point = point_of(at, voxel, voxel_m);
             EXPECT_NEAR(point.z, 1.003, 1e-4);
