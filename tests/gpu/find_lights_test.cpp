@@ -1,9 +1,15 @@
+#include "tests/reference/find_lights.h"
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <random>
 #include <vector>
 
+#include "engine/core/shader_camera.h"
+#include "passes/input/convert_color.h"
+#include "passes/input/convert_depth.h"
 #include "passes/light_estimation.h"
 #include "tests/gpu/gpu_test.h"
 
@@ -156,6 +162,68 @@ TEST_F(FindLights, WithoutDepthTheyAreTriangulated) {
     const auto found = find(room, kCamera, kCamera);
     expect_found(found, room.lamps, 0.02, 0.05);
     for (const FoundLight& light : found) EXPECT_FALSE(light.has_depth);
+}
+
+TEST_F(FindLights, OneFrameMatchesTheReference) {
+    for (const bool with_depth : {true, false}) {
+        Room room = three_lamps();
+        room.lamps_have_depth = with_depth;
+        std::mt19937 random(3);
+        const Pictures pictures = look(room, kCamera, pose(10), random);
+        const LightTracks tracks(device());
+        graph::Frame frame = runner().begin();
+        tracks.reset(frame);
+        run(std::move(frame));
+        frame = runner().begin();
+        LightTrackIds ids = tracks.import(frame);
+        const gpu::Camera camera = make_camera(kCamera, pose(10));
+        const auto scale = static_cast<float>(1 / room.exposure);
+        const graph::ImageId depth_m =
+            add_convert_depth(frame, {std::span<const float>(pictures.depth_m.pixels()), kCamera, 1.0, 20.0});
+        const graph::ImageId color =
+            add_convert_color(frame, {std::span<const glm::vec3>(pictures.color.pixels()), kCamera});
+        add_find_lights(frame, ids, {depth_m, camera, color, camera, scale}, {});
+        LightTracks::keep(frame, ids);
+        const graph::Readback history = frame.read_back(ids.history);
+        run(std::move(frame));
+
+        const auto got = history.as<gpu::LightSighting>();
+        const auto expected = reference::find_lights(pictures.color, pictures.depth_m, kCamera, pose(10),
+                                                     {.bandwidth_chord = 2 * std::sin(0.05), .radiance_scale = scale});
+        ASSERT_EQ(expected.size(), room.lamps.size());
+        for (size_t i = 0; i < expected.size(); ++i) {
+            const gpu::LightSighting& g = got[i * gpu::kMaxSightings];
+            const reference::Sighting& e = expected[i];
+            EXPECT_EQ(g.has_depth != 0, e.has_depth);
+            EXPECT_LT(glm::distance(glm::dvec3(g.center_radius), e.has_depth ? e.center_m : glm::dvec3(pose(10)[3])),
+                      1e-4);
+            EXPECT_LT(glm::distance(glm::dvec3(g.bearing), e.bearing), 1e-5);
+            EXPECT_NEAR(g.center_radius.w, e.radius_m, 1e-4);
+            EXPECT_NEAR(g.bearing.w, e.solid_angle_sr, 2e-3 * e.solid_angle_sr) << "colours are halves";
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(g.intensity[c], e.intensity[c], 5e-3 * e.intensity[c]);
+        }
+    }
+}
+
+TEST_F(FindLights, CutOffLampsAreLeftOut) {
+    Room room;
+    room.lamps = {{{0, 0, 1.0}, 0.05, {5, 5, 5}}};
+    Intrinsics narrow = kCamera;
+    narrow.cx = -12;  // the lamp is cut by the left border
+    LightEstimation estimation(device(), {.find = {}, .min_sightings = 1});
+    std::mt19937 random(3);
+    RigidTransform straight(1.0);
+    straight[3] = {-0.06, 0, 0, 1};
+    const Pictures pictures = look(room, narrow, straight, random);
+    float brightest = 0;
+    for (const glm::vec3& pixel : pictures.color.pixels()) brightest = std::max(brightest, pixel.g);
+    ASSERT_GT(brightest, 0.5f) << "the lamp must be in the picture";
+    RgbdFrame frame;
+    frame.depth = {std::span<const float>(pictures.depth_m.pixels()), narrow, 1.0, 20.0};
+    frame.color = {std::span<const glm::vec3>(pictures.color.pixels()), narrow};
+    frame.world_from_depth = straight;
+    estimation.add(frame, 1000);
+    EXPECT_TRUE(estimation.found().empty());
 }
 
 TEST_F(FindLights, ADarkRoomHasNone) { EXPECT_TRUE(find(Room{}, kCamera, kCamera).empty()); }
