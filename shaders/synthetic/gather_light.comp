@@ -43,8 +43,9 @@ float mean(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
 bool ended(Vertex v) { return v.throughput == vec3(0.0); }
 
-// The stretch of a path at a vertex: the first varies evenly within a pixel, which lowers the noise; what depends on
-// several vertices at once must not.
+// Random words for a way from the vertex of a path at a depth. Those at the camera's own surface cover the square
+// evenly over a pixel's samples, which lowers the noise; farther ones are independent, because what they find depends
+// on the ways before, too.
 uvec4 words_for(uvec2 stream, uint index, uint depth, uint way) {
     return depth == 0u ? stratified_words(stream, index, way) : random_words(stream, index, depth << 16u | way);
 }
