@@ -7,6 +7,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfOutputFile.h>
 
 namespace patina::sensor {
 namespace {
@@ -68,6 +69,26 @@ Image<float> read_exr_depth(const std::filesystem::path& path) {
         }
         throw Error(file.fileName(), " has no depth channel: none of Z, depth, Y and R");
     });
+}
+
+void write_exr_color(const std::filesystem::path& path, const Image<glm::vec3>& image) {
+    const auto [width, height] = image.extent();
+    Imf::Header header(static_cast<int>(width), static_cast<int>(height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer pixels;
+    for (int i = 0; i < 3; ++i) {
+        const std::string name(1, "RGB"[i]);
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        const float* first = &image.pixels().front().r + i;
+        pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, first, header.dataWindow(), sizeof(glm::vec3)));
+    }
+    try {
+        Imf::OutputFile file(path.c_str(), header);
+        file.setFrameBuffer(pixels);
+        file.writePixels(static_cast<int>(height));
+    } catch (const std::exception& error) {
+        throw Error(path.string(), " cannot be written: ", error.what());
+    }
 }
 
 }  // namespace patina::sensor

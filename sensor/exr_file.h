@@ -18,4 +18,8 @@ Image<glm::vec3> read_exr_color(const std::filesystem::path& file);
 /// The depth of an OpenEXR picture: the first of the channels Z, depth, Y and R. Errors as read_exr_color.
 Image<float> read_exr_depth(const std::filesystem::path& file);
 
+/// Writes the channels R G B as floats, ZIP compressed; the same pixels give the same bytes. Throws Error when writing
+/// fails.
+void write_exr_color(const std::filesystem::path& file, const Image<glm::vec3>& image);
+
 }  // namespace patina::sensor

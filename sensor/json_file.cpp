@@ -1,44 +1,156 @@
 #include "sensor/json_file.h"
 
+#include <algorithm>
 #include <limits>
+#include <set>
 
 #include "engine/core/error.h"
 #include "sensor/text_file.h"
 
 namespace patina::sensor {
+namespace {
 
-JsonValue::JsonValue(std::string file, std::string key, nlohmann::json value)
-    : file_(std::move(file)), key_(std::move(key)), value_(std::move(value)) {}
+using nlohmann::json;
 
-JsonValue JsonValue::read(const std::filesystem::path& file) {
+/// Follows the parser through the document, to know where it is: nlohmann::json keeps the last of two equal keys, and
+/// does not tell where a number is too large.
+class Progress {
+  public:
+    explicit Progress(const std::string& file) : file_(file) {}
+
+    bool operator()(int, json::parse_event_t event, const json& parsed) {
+        using enum json::parse_event_t;
+        switch (event) {
+            case object_start: levels_.push_back({.is_array = false}); break;
+            case array_start: levels_.push_back({.is_array = true}); break;
+            case key: enter(parsed.get<std::string>()); break;
+            case object_end:
+            case array_end: levels_.pop_back(); [[fallthrough]];
+            case value:
+                if (!levels_.empty()) ++levels_.back().elements;
+                break;
+        }
+        return true;
+    }
+
+    /// "lights[2].radius"
+    std::string key_path() const {
+        std::string path;
+        for (const Level& level : levels_) {
+            if (level.is_array) {
+                path += text("[", level.elements, "]");
+            } else {
+                path += (path.empty() ? "" : ".") + level.key;
+            }
+        }
+        return path;
+    }
+
+  private:
+    struct Level {
+        bool is_array;
+        size_t elements = 0;  ///< that are complete
+        std::string key{};    ///< the latest
+        std::set<std::string> keys{};
+    };
+
+    void enter(const std::string& key) {
+        levels_.back().key = key;
+        if (!levels_.back().keys.insert(key).second) throw Error(file_, ": ", key_path(), " is there twice");
+    }
+
+    const std::string& file_;
+    std::vector<Level> levels_;
+};
+
+/// nlohmann's messages begin with "[json.exception.NAME.NUMBER] ".
+std::string message_of(const json::exception& error) {
+    const std::string message = error.what();
+    const size_t end = message.find("] ");
+    return end == std::string::npos ? message : message.substr(end + 2);
+}
+
+json parse(const std::string& file, const std::vector<uint8_t>& bytes) {
+    Progress progress(file);
     try {
-        return {file.string(), "", nlohmann::json::parse(read_bytes(file))};
-    } catch (const nlohmann::json::exception& error) {
-        throw Error(file.string(), " is not valid JSON: ", error.what());
+        return json::parse(bytes, std::ref(progress));
+    } catch (const json::out_of_range& error) {
+        throw Error(file, " is not valid JSON: ", progress.key_path(), ": ", message_of(error));
+    } catch (const json::exception& error) {
+        throw Error(file, " is not valid JSON: ", message_of(error));
     }
 }
 
+}  // namespace
+
+JsonValue::JsonValue(std::shared_ptr<const std::string> file, std::string key, std::shared_ptr<const json> value)
+    : file_(std::move(file)), key_(std::move(key)), value_(std::move(value)) {}
+
+JsonValue JsonValue::part(std::string key, const json& value) const {
+    return {file_, std::move(key), std::shared_ptr<const json>(value_, &value)};
+}
+
+std::string JsonValue::key_of(const std::string& member) const { return key_.empty() ? member : key_ + "." + member; }
+
+JsonValue JsonValue::read(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    return {std::make_shared<std::string>(name), "", std::make_shared<json>(parse(name, read_bytes(file)))};
+}
+
 std::optional<JsonValue> JsonValue::find(const std::string& key) const {
-    if (!value_.is_object()) fail("must be an object");
-    const auto member = value_.find(key);
-    if (member == value_.end()) return std::nullopt;
-    return JsonValue(file_, key_.empty() ? key : key_ + "." + key, *member);
+    if (!value_->is_object()) fail("must be an object");
+    const auto member = value_->find(key);
+    if (member == value_->end()) return std::nullopt;
+    return part(key_of(key), *member);
 }
 
 JsonValue JsonValue::at(const std::string& key) const {
     std::optional<JsonValue> member = find(key);
-    if (!member) throw Error(JsonValue(file_, key_.empty() ? key : key_ + "." + key, {}).where(), " is missing");
+    if (!member) throw Error(part(key_of(key), *value_).where(), " is missing");
     return *member;
 }
 
+std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
+    if (!value_->is_object()) fail("must be an object");
+    std::vector<std::pair<std::string, JsonValue>> members;
+    for (const auto& [key, value] : value_->items()) members.emplace_back(key, part(key_of(key), value));
+    return members;
+}
+
+void JsonValue::expect_keys(const std::vector<std::string>& known) const {
+    for (const auto& [key, value] : members()) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        std::string list;
+        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+        value.fail("an unknown key; known are: " + list);
+    }
+}
+
+std::vector<JsonValue> JsonValue::elements() const {
+    if (!value_->is_array()) fail("must be an array");
+    std::vector<JsonValue> elements;
+    for (size_t i = 0; i < value_->size(); ++i) elements.push_back(part(text(key_, "[", i, "]"), (*value_)[i]));
+    return elements;
+}
+
+std::vector<JsonValue> JsonValue::elements_of(size_t count) const {
+    if (!value_->is_array() || value_->size() != count) fail(text("must be an array of ", count));
+    return elements();
+}
+
 std::string JsonValue::string() const {
-    if (!value_.is_string()) fail("must be a string");
-    return value_.get<std::string>();
+    if (!value_->is_string()) fail("must be a string");
+    return value_->get<std::string>();
+}
+
+bool JsonValue::boolean() const {
+    if (!value_->is_boolean()) fail("must be true or false");
+    return value_->get<bool>();
 }
 
 double JsonValue::number() const {
-    if (!value_.is_number()) fail("must be a number");
-    return value_.get<double>();
+    if (!value_->is_number()) fail("must be a number");
+    return value_->get<double>();
 }
 
 double JsonValue::positive() const {
@@ -47,27 +159,46 @@ double JsonValue::positive() const {
     return value;
 }
 
+double JsonValue::not_negative() const {
+    const double value = number();
+    if (!(value >= 0)) fail("must not be negative");
+    return value;
+}
+
+double JsonValue::number_within(double low, double high) const {
+    const double value = number();
+    if (!(value >= low && value <= high)) fail(text("must be from ", low, " to ", high));
+    return value;
+}
+
 uint32_t JsonValue::positive_integer() const {
     const auto most = std::numeric_limits<uint32_t>::max();
-    if (!value_.is_number_unsigned() || value_.get<uint64_t>() == 0 || value_.get<uint64_t>() > most) {
+    if (!value_->is_number_unsigned() || value_->get<uint64_t>() == 0 || value_->get<uint64_t>() > most) {
         fail("must be a positive whole number");
     }
-    return value_.get<uint32_t>();
+    return value_->get<uint32_t>();
+}
+
+uint64_t JsonValue::whole_number(uint64_t most) const {
+    if (!value_->is_number_unsigned() || value_->get<uint64_t>() > most) {
+        fail(text("must be a whole number from 0 to ", most));
+    }
+    return value_->get<uint64_t>();
 }
 
 std::vector<double> JsonValue::numbers(size_t count) const {
-    if (!value_.is_array() || value_.size() != count) fail(text("must be an array of ", count, " numbers"));
     std::vector<double> values;
-    for (size_t i = 0; i < count; ++i) {
-        values.push_back(JsonValue(file_, text(key_, "[", i, "]"), value_[i]).number());
-    }
+    for (const JsonValue& element : elements_of(count)) values.push_back(element.number());
     return values;
 }
 
-std::string JsonValue::where() const { return key_.empty() ? file_ : file_ + ": " + key_; }
+std::string JsonValue::where() const { return key_.empty() ? *file_ : *file_ + ": " + key_; }
 
 void JsonValue::fail(const std::string& requirement) const {
-    throw Error(where(), " is ", value_.dump(), ", ", requirement);
+    constexpr size_t kLongest = 100;
+    std::string value = value_->dump();
+    if (value.size() > kLongest) value = value.substr(0, kLongest) + " ...";
+    throw Error(where(), " is ", value, ", ", requirement);
 }
 
 }  // namespace patina::sensor

@@ -1,7 +1,10 @@
 #include "sensor/truth.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
+#include "sensor/json_file.h"
 #include "sensor/text_file.h"
 
 namespace patina::sensor {
@@ -10,6 +13,35 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
+
+glm::dvec3 read_vector(const JsonValue& value) {
+    const std::vector<double> v = value.numbers(3);
+    return {v[0], v[1], v[2]};
+}
+
+glm::dvec3 read_intensity(const JsonValue& value) {
+    const glm::dvec3 intensity = read_vector(value);
+    if (glm::any(glm::lessThan(intensity, glm::dvec3(0)))) value.fail("must not be negative");
+    return intensity;
+}
+
+glm::dvec3 read_albedo(const JsonValue& value) {
+    const glm::dvec3 albedo = read_vector(value);
+    if (glm::clamp(albedo, 0.0, 1.0) != albedo) value.fail("must lie in 0 to 1");
+    return albedo;
+}
+
+std::optional<glm::dvec3> read_kd(const JsonValue& value) {
+    if (!value.is_string()) return read_albedo(value);
+    if (value.string() != "texture") value.fail("must be three numbers or \"texture\"");
+    return std::nullopt;
+}
+
+double read_alpha(const JsonValue& value) {
+    const double alpha = value.number();
+    if (!(alpha > 0 && alpha <= 1)) value.fail("must lie above 0 and up to 1");
+    return alpha;
+}
 
 }  // namespace
 
@@ -31,6 +63,26 @@ void write_materials(const std::filesystem::path& file, std::span<const Material
                         {"alpha", material.alpha}});
     }
     write_bytes(file, Json{{"materials", list}}.dump(2) + "\n");
+}
+
+std::vector<PointLight> read_lights(const std::filesystem::path& file) {
+    std::vector<PointLight> lights;
+    for (const JsonValue& light : JsonValue::read(file).at("lights").elements())
+        lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity"))});
+    return lights;
+}
+
+std::vector<Material> read_materials(const std::filesystem::path& file) {
+    std::vector<Material> materials;
+    for (const JsonValue& value : JsonValue::read(file).at("materials").elements()) {
+        const JsonValue id = value.at("id");
+        const Material material{id.positive_integer(), value.at("name").string(), read_kd(value.at("kd")),
+                                read_albedo(value.at("ks")), read_alpha(value.at("alpha"))};
+        const auto has_id = [&](const Material& other) { return other.id == material.id; };
+        if (std::any_of(materials.begin(), materials.end(), has_id)) id.fail("which is another material's");
+        materials.push_back(material);
+    }
+    return materials;
 }
 
 }  // namespace patina::sensor

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -28,5 +29,11 @@ struct Material {
 /// Write lights.json and materials.json of the sequence format. Throw Error when the file cannot be written.
 void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights);
 void write_materials(const std::filesystem::path& file, std::span<const Material> materials);
+
+/// Read what write_lights and write_materials write; radius_m is 0. Throw Error when the file is missing or no JSON, a
+/// member is missing, no finite number, or outside what it may be: an intensity below 0, an id of 0 or another
+/// material's, kd or ks outside 0 .. 1, alpha outside (0, 1].
+std::vector<PointLight> read_lights(const std::filesystem::path& file);
+std::vector<Material> read_materials(const std::filesystem::path& file);
 
 }  // namespace patina::sensor

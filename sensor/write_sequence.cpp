@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "sensor/exr_file.h"
 #include "sensor/picture_file.h"
 #include "sensor/text_file.h"
 
@@ -29,7 +30,13 @@ Image<SrgbPixel> encoded(const Image<glm::vec3>& linear) {
                    [](glm::vec3 v) { return SrgbPixel(srgb_code(v.r), srgb_code(v.g), srgb_code(v.b)); });
     return codes;
 }
-const Image<SrgbPixel>& encoded(const Image<SrgbPixel>& codes) { return codes; }
+
+/// Writes a colour picture to `stem` with the extension that fits.
+void write_color(fs::path stem, const ColorImage& color, LinearColor linear_color) {
+    const auto* linear = std::get_if<Image<glm::vec3>>(&color);
+    if (linear && linear_color == LinearColor::kExr) return write_exr_color(stem += ".exr", *linear);
+    write_png(stem += ".png", linear ? encoded(*linear) : std::get<Image<SrgbPixel>>(color));
+}
 
 Image<uint16_t> in_units(const Image<float>& depth_m, double metres_per_unit) {
     Image<uint16_t> units(depth_m.extent());
@@ -39,11 +46,17 @@ Image<uint16_t> in_units(const Image<float>& depth_m, double metres_per_unit) {
     });
     return units;
 }
-const Image<uint16_t>& in_units(const Image<uint16_t>& units, double) { return units; }
 
-void expect_extent(const fs::path& file, Extent2D extent, Extent2D expected) {
+void write_depth(fs::path stem, const DepthImage& depth, double metres_per_unit) {
+    const auto* depth_m = std::get_if<Image<float>>(&depth);
+    write_png(stem += ".png", depth_m ? in_units(*depth_m, metres_per_unit) : std::get<Image<uint16_t>>(depth));
+}
+
+template <class Picture>
+void expect_extent(const fs::path& stem, const Picture& picture, Extent2D expected) {
+    const Extent2D extent = std::visit([](const auto& image) { return image.extent(); }, picture);
     if (extent != expected)
-        throw Error(file.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
+        throw Error(stem.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
 }
 
 fs::path without_trailing_slash(const fs::path& folder) {
@@ -76,10 +89,11 @@ Json to_json(const RigidTransform& transform) {
 
 }  // namespace
 
-SequenceWriter::SequenceWriter(fs::path folder, SequenceInfo info)
+SequenceWriter::SequenceWriter(fs::path folder, SequenceInfo info, LinearColor linear_color)
     : folder_(without_trailing_slash(folder)),
       partial_(text(folder_.string(), ".partial-", getpid())),
-      info_(std::move(info)) {
+      info_(std::move(info)),
+      linear_color_(linear_color) {
     expect_free(folder_);
     if (fs::exists(partial_))
         throw Error(partial_.string(), " exists already: another writer's, or left over; remove it");
@@ -91,38 +105,34 @@ SequenceWriter::SequenceWriter(fs::path folder, SequenceInfo info)
 }
 
 SequenceWriter::~SequenceWriter() {
+    background_.abandon();
     std::error_code ignored;
     if (!finished_) fs::remove_all(partial_, ignored);
 }
 
-void SequenceWriter::write(const Frame& frame) {
+void SequenceWriter::write(Frame frame) {
     PATINA_ASSERT(!finished_, "frame ", frame.index, " of ", folder_.string());
     if (frame.index != timestamps_s_.size()) {
         throw Error(folder_.string(), ": frame ", frame.index, " was to be written, but ", timestamps_s_.size(),
                     " is next");
     }
-    const fs::path color = partial_ / "color" / (picture_stem(frame.index) + ".png");
-    const fs::path depth = partial_ / "depth" / (picture_stem(frame.index) + ".png");
-    std::visit(
-        [&](const auto& image) {
-            expect_extent(color, image.extent(), info_.color.extent);
-            write_png(color, encoded(image));
-        },
-        frame.color);
-    std::visit(
-        [&](const auto& image) {
-            expect_extent(depth, image.extent(), info_.depth.extent);
-            write_png(depth, in_units(image, info_.metres_per_unit));
-        },
-        frame.depth);
+    const fs::path color = partial_ / "color" / picture_stem(frame.index);
+    const fs::path depth = partial_ / "depth" / picture_stem(frame.index);
+    expect_extent(color, frame.color, info_.color.extent);
+    expect_extent(depth, frame.depth, info_.depth.extent);
     timestamps_s_.push_back(frame.timestamp_s);
     exposures_.push_back(frame.exposure);
     if (frame.world_from_camera) poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+    background_.start([color, depth, this, frame = std::move(frame)] {
+        write_color(color, frame.color, linear_color_);
+        write_depth(depth, frame.depth, info_.metres_per_unit);
+    });
 }
 
 void SequenceWriter::finish() {
     PATINA_ASSERT(!finished_, folder_.string());
     if (timestamps_s_.empty()) throw Error(folder_.string(), " would have 0 frames; at least 1 must be written");
+    background_.finish();
     write_lists();
     write_sequence_file();
     std::error_code failure;

@@ -5,34 +5,43 @@
 #include <utility>
 #include <vector>
 
+#include "sensor/background_work.h"
 #include "sensor/frame.h"
 #include "sensor/pose.h"
 
 namespace patina::sensor {
 
+/// How linear colour pictures are written: as 8-bit sRGB PNG (clipped at 1 and encoded), or as they are in OpenEXR.
+/// Pictures of 8-bit codes are PNG either way.
+enum class LinearColor { kPng, kExr };
+
 /// Writes a sequence folder in Patina's own format. Files go to NAME.partial-PID beside the folder, which finish()
-/// renames: the folder appears whole or not at all. The same frames give the same bytes.
+/// renames: the folder appears whole or not at all. Pictures are encoded and written on other threads. The same frames
+/// give the same bytes.
 class SequenceWriter {
   public:
     /// `info` gives name, fps, cameras, metres_per_unit, max_metres and color_from_depth; its frame count is not used.
     /// Throws Error when the folder exists and is not empty, or its place cannot be written.
-    SequenceWriter(std::filesystem::path folder, SequenceInfo info);
+    SequenceWriter(std::filesystem::path folder, SequenceInfo info, LinearColor linear_color = LinearColor::kPng);
     SequenceWriter(const SequenceWriter&) = delete;
     SequenceWriter& operator=(const SequenceWriter&) = delete;
 
     /// Removes what was written, unless finish() was called.
     ~SequenceWriter();
 
-    /// Appends a frame: colour as 8-bit sRGB PNG (linear pixels are clipped at 1 and encoded), depth as 16-bit PNG in
-    /// metres_per_unit (metres are rounded; what does not fit becomes 0, 'no reading'). Throws Error when its index is
-    /// not the count of frames before it, a picture's size is not info's, or a file cannot be written.
-    void write(const Frame& frame);
+    /// Appends a frame: colour as PNG or OpenEXR, depth as 16-bit PNG in metres_per_unit (metres are rounded; what does
+    /// not fit becomes 0, 'no reading'). Throws Error when its index is not the count of frames before it, a picture's
+    /// size is not info's, or a file of an earlier frame could not be written.
+    void write(Frame frame);
 
     /// Where further files, such as truth/, are written before finish(): the folder under its passing name.
     const std::filesystem::path& partial_folder() const { return partial_; }
 
-    /// Writes sequence.json and the lists, and renames the folder. Throws Error when no frame was written or the folder
-    /// cannot be put in place.
+    /// Where the writing of further files may be started; finish() waits for it.
+    BackgroundWork& background() { return background_; }
+
+    /// Writes sequence.json and the lists, and renames the folder. Throws Error when no frame was written, a file could
+    /// not be written, or the folder cannot be put in place.
     void finish();
 
   private:
@@ -42,10 +51,12 @@ class SequenceWriter {
     std::filesystem::path folder_;
     std::filesystem::path partial_;
     SequenceInfo info_;
+    LinearColor linear_color_;
     std::vector<double> timestamps_s_;
     std::vector<Exposure> exposures_;
     std::vector<StampedPose> poses_;
     bool finished_ = false;
+    BackgroundWork background_;
 };
 
 }  // namespace patina::sensor

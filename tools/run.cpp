@@ -50,8 +50,9 @@ std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
 
 std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
     const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
-    return std::make_unique<sensor::SyntheticSource>(
-        device, sensor::load_scene(options.sequence.substr(kSynthetic.size())), frames);
+    return std::make_unique<sensor::SyntheticSource>(device,
+                                                     sensor::load_scene(options.sequence.substr(kSynthetic.size())),
+                                                     sensor::SyntheticOptions{.frames = frames});
 }
 
 PassTime summarised(const graph::Timing& timing) {

@@ -37,6 +37,12 @@ struct SensorNoise {
     double pose_rotation_rad = 0;
 };
 
+/// Which random numbers a frame's errors are: the same pair gives the same ones.
+struct NoiseKey {
+    uint64_t seed = 0;
+    uint32_t frame = 0;
+};
+
 /// How a scene becomes a recording.
 struct Recording {
     RenderSettings render;

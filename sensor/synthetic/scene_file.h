@@ -11,8 +11,8 @@ namespace patina::sensor {
 
 /// What changes a scene as it is loaded.
 struct SceneChanges {
-    std::filesystem::path mesh;    ///< takes the place of every mesh whose height the scene file sets; empty: none
-    std::optional<uint64_t> vary;  ///< seed for other materials, lights and path of the same kind
+    std::filesystem::path mesh{};    ///< takes the place of every mesh whose height the scene file sets; empty: none
+    std::optional<uint64_t> vary{};  ///< seed for other materials, lights and path of the same kind
 };
 
 /// Loads a scene: a JSON file, or the name of a built-in one (see scene_names). Throws Error, one sentence with file,

@@ -28,7 +28,7 @@ void main() {
     const float density = ward_density(alpha, normal, sampled, to_viewer);
     SamplingAnswer a;
     a.words = uvec4(stream, 0u, 0u);
-    a.random = unit_interval(random_words(stream, q.index_dimension.x, q.index_dimension.y));
+    a.random = random_numbers(stream, q.index_dimension.x, q.index_dimension.y);
     a.stratified = unit_interval(stratified_words(stream, q.index_dimension.x, q.index_dimension.y));
     a.tangent = vec4(basis[0], 0.0);
     a.bitangent = vec4(basis[1], 0.0);

@@ -22,6 +22,26 @@ TEST_F(Arguments, WrongUsageIsOneLine) {
     EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(Arguments, WrongUsageOfSynthIsOneLine) {
+    const auto complaint = [&](const std::string& option, const std::string& value) {
+        return expect_failure(patina({"synth", "cubes", "--out", out(), option, value}), kUsage);
+    };
+    for (const char* extent : {"512", "512x", "0x424", "512x-3", "9000x10", "12x12x12"})
+        EXPECT_THAT(complaint("--extent", extent), AllOf(HasSubstr(extent), HasSubstr("WIDTHxHEIGHT")));
+    for (const char* noise : {"0.1", "-1,0", "0,-1", "nan,0", "0,inf", "0.1,0.1m"})
+        EXPECT_THAT(complaint("--pose-noise", noise), AllOf(HasSubstr(noise), HasSubstr("METRES,DEGREES")));
+    EXPECT_THAT(complaint("--bounces", "-1"), HasSubstr("--bounces"));
+    EXPECT_THAT(complaint("--seed", "green"), HasSubstr("--seed"));
+    EXPECT_THAT(complaint("--truth-every", "1.5"), HasSubstr("--truth-every"));
+    EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Arguments, HelpNamesTheScenesAndTheNoisePresets) {
+    const Outcome synth = patina({"synth", "--help"}), run = patina({"run", "--help"});
+    EXPECT_THAT(synth.out, AllOf(HasSubstr("cubes"), HasSubstr("kinect2"), HasSubstr("--vary")));
+    EXPECT_THAT(run.out, HasSubstr("cubes"));
+}
+
 TEST_F(Arguments, HelpIsNoFailure) {
     const Outcome outcome = patina({"run", "--help"});
     EXPECT_EQ(outcome.exit_code, 0);

@@ -112,6 +112,18 @@ TEST_F(BadInput, UnknownSceneOfSynth) {
     EXPECT_FALSE(fs::exists(beside("teapots")));
 }
 
+TEST_F(BadInput, SynthOfWhatIsNotThere) {
+    const auto complaint = [&](const std::string& option, const std::string& value) {
+        return expect_failure(
+            patina({"synth", "cubes", "--frames", "1", "--extent", "16x12", "--out", out(), option, value}));
+    };
+    EXPECT_THAT(complaint("--noise", "xtion"), AllOf(HasSubstr("'xtion'"), HasSubstr("kinect2")));
+    EXPECT_THAT(complaint("--frames", "0"), HasSubstr("0 frames"));
+    EXPECT_THAT(complaint("--environment", "nowhere.hdr"), HasSubstr("nowhere.hdr"));
+    EXPECT_FALSE(fs::exists(out()));
+    EXPECT_THAT(expect_failure(patina({"synth", "cubes", "--out", sequence()})), HasSubstr("exists and is not empty"));
+}
+
 TEST_F(BadInput, InfoOfNothing) {
     EXPECT_THAT(expect_failure(patina({"info", beside("nowhere")})), HasSubstr("nowhere"));
 }

@@ -52,5 +52,15 @@ TEST_F(Interrupt, BeforeTheFirstFrameLeavesNothing) {
     EXPECT_TRUE(files_in(out()).empty());
 }
 
+TEST_F(Interrupt, OfSynthLeavesNothing) {
+    const fs::path out = beside("parent") / "recording";
+    Program program({"synth", "cubes", "--frames", "100000", "--extent", "64x53", "--out", out, "--quiet"});
+    await(program, beside("parent"));
+    program.send(SIGINT);
+    EXPECT_THAT(expect_failure(program.wait(), 130),
+                AllOf(HasSubstr("interrupted after"), HasSubstr("of 100000 frames")));
+    EXPECT_TRUE(files_in(beside("parent")).empty());
+}
+
 }  // namespace
 }  // namespace patina::testing

@@ -72,16 +72,25 @@ TEST(WriteExr, AFrameReadsBackExactly) {
 
 TEST(WriteExr, FurtherGroupsJoinTheFrame) {
     const TemporaryFolder folder;
-    const FrameDump frame = distinct_frame({3, 2});
-    const Image<float> label({3, 2}, 7.0f);
-    std::vector<ExrChannel> channels = channels_of(frame);
-    for (const ExrChannel& channel : rgb_channels("kd", frame.normal)) channels.push_back(channel);
-    channels.push_back(scalar_channel("label", label));
-    write_exr(folder / "a.exr", channels);
-    const auto planes = read_exr(folder / "a.exr");
-    EXPECT_EQ(planes.size(), 12u);
-    EXPECT_EQ(planes.at("label"), label.pixels());
-    EXPECT_EQ(planes.at("kd.B"), component(frame.normal, 2));
+    const Extent2D extent{3, 2};
+    FrameDump frame = distinct_frame(extent);
+    const auto colors = [&](float first) {
+        Image<glm::vec3> image(extent);
+        for (glm::vec3& pixel : image.pixels()) pixel = glm::vec3(first, first + 1, first + 2), first += 10;
+        return image;
+    };
+    frame.kd = colors(0.1f), frame.ks = colors(0.2f), frame.kd_segment = colors(0.3f);
+    frame.alpha = Image<float>(extent, 0.4f), frame.label = Image<float>(extent, 7.0f);
+    write_exr(folder / "a.exr", channels_of(frame));
+    auto planes = read_exr(folder / "a.exr");
+    EXPECT_EQ(planes.size(), 8u + 11u) << "rgb_segment is empty, and left out";
+    for (const auto& [name, image] : {std::pair{"kd", &frame.kd}, {"ks", &frame.ks}, {"kd_segment", &frame.kd_segment}})
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(planes[std::string(name) + "." + "RGB"[i]], component(*image, i)) << name;
+    EXPECT_EQ(planes["alpha"], frame.alpha.pixels());
+    EXPECT_EQ(planes["label"], frame.label.pixels());
+    frame.rgb_segment = frame.kd;
+    write_exr(folder / "b.exr", channels_of(frame));
+    EXPECT_EQ(read_exr(folder / "b.exr")["rgb_segment.B"], component(frame.kd, 2));
 }
 
 TEST(WriteExr, TheSamePixelsGiveTheSameBytes) {

@@ -24,7 +24,7 @@ ReconstructionSettings small_settings() {
 /// A few frames of the built-in scene.
 struct Cubes {
     Cubes(vulkan::Device& device, uint32_t count) {
-        sensor::SyntheticSource source(device, sensor::load_scene("cubes"), count);
+        sensor::SyntheticSource source(device, sensor::load_scene("cubes"), {.frames = count});
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<sensor::Frame>(std::move(*reading)));
     }

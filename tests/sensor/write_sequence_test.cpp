@@ -5,12 +5,10 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "sensor/open.h"
 #include "sensor/picture_file.h"
-#include "sensor/truth.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor {
@@ -107,6 +105,29 @@ TEST(SequenceWriter, LinearPixelsAreEncodedAndMetresRounded) {
               (std::vector<uint16_t>{1234, 65535, 0, 0, 0, 0}));
 }
 
+TEST(SequenceWriter, LinearPixelsAreKeptInExr) {
+    const TemporaryFolder folder;
+    Frame frame = test_frame(0, {32, 24}, {16, 12});
+    Image<glm::vec3> color({32, 24});
+    for (size_t i = 0; i < color.pixels().size(); ++i) color.pixels()[i] = glm::vec3(0.1f, 1.0f, 100.0f) * float(i);
+    frame.color = color;
+    SequenceWriter writer(folder / "a", test_info(), LinearColor::kExr);
+    writer.write(frame);
+    writer.finish();
+    EXPECT_TRUE(fs::exists(folder / "a/color/000000.exr"));
+    const auto readings = read_all(*open_sequence(folder / "a"));
+    EXPECT_EQ(std::get<Image<glm::vec3>>(std::get<Frame>(readings.at(0)).color).pixels(), color.pixels());
+}
+
+TEST(SequenceWriter, AFileThatCannotBeWrittenStopsItAtTheLatestInFinish) {
+    const TemporaryFolder folder;
+    SequenceWriter writer(folder / "a", test_info());
+    fs::remove(writer.partial_folder() / "depth");
+    writer.write(test_frame(0, {32, 24}, {16, 12}));
+    EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("depth/000000.png"));
+    EXPECT_FALSE(fs::exists(folder / "a"));
+}
+
 TEST(SequenceWriter, SameFramesGiveSameBytes) {
     const TemporaryFolder folder;
     write_native(folder / "a", 2);
@@ -123,6 +144,7 @@ TEST(SequenceWriter, WithoutFinishNothingIsLeft) {
         SequenceWriter writer(folder / "parent/a", test_info());
         writer.write(test_frame(0, {32, 24}, {16, 12}));
         EXPECT_EQ(writer.partial_folder(), folder / text("parent/a.partial-", getpid()));
+        writer.background().finish();
         EXPECT_TRUE(fs::exists(writer.partial_folder() / "color/000000.png"));
         EXPECT_FALSE(fs::exists(folder / "parent/a"));
     }
@@ -149,7 +171,7 @@ TEST(SequenceWriter, RefusesWhatItCannotWrite) {
     EXPECT_THAT(error_of([&] {
                     writer.write(test_frame(0, {8, 6}, {16, 12}));
                 }),
-                EndsWith("000000.png: the frame is 8 x 6 pixels, but the sequence 32 x 24"));
+                EndsWith("000000: the frame is 8 x 6 pixels, but the sequence 32 x 24"));
 }
 
 TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
@@ -160,20 +182,6 @@ TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
     write_text(folder / "a/mine", "x");
     EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("cannot be renamed to"));
     EXPECT_EQ(read_text(folder / "a/mine"), "x");
-}
-
-TEST(Truth, LightsAndMaterialsFollowTheFormat) {
-    const TemporaryFolder folder;
-    write_lights(folder / "lights.json", std::vector<PointLight>{{{1, 2, 3}, {4, 5, 6.5}}});
-    write_materials(folder / "materials.json",
-                    std::vector<Material>{{1, "floor", glm::dvec3(0.25), glm::dvec3(0.5), 0.125},
-                                          {2, "wood", std::nullopt, glm::dvec3(0), 1}});
-    using Json = nlohmann::json;
-    EXPECT_EQ(Json::parse(read_text(folder / "lights.json")),
-              Json::parse(R"({"lights": [{"position": [1.0, 2.0, 3.0], "intensity": [4.0, 5.0, 6.5]}]})"));
-    EXPECT_EQ(Json::parse(read_text(folder / "materials.json")), Json::parse(R"({"materials": [
-        {"id": 1, "name": "floor", "kd": [0.25, 0.25, 0.25], "ks": [0.5, 0.5, 0.5], "alpha": 0.125},
-        {"id": 2, "name": "wood", "kd": "texture", "ks": [0.0, 0.0, 0.0], "alpha": 1.0}]})"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -55,6 +56,27 @@ TEST(CameraPath, OscillatesAroundTheScene) {
     EXPECT_GT(lowest, 1.5);
     EXPECT_LT(highest, 3.2);
     EXPECT_GT(highest - lowest, 0.8);
+}
+
+TEST(SteepestView, OfAnOrbitIsItsHighestOrLowestElevation) {
+    OrbitPath orbit{.elevation_rad = 0.6, .elevation_amplitude_rad = 0.3, .elevation_period_s = 8};
+    EXPECT_DOUBLE_EQ(steepest_view(orbit).angle_rad, 0.9);
+    EXPECT_DOUBLE_EQ(steepest_view(orbit).time_s, 2);
+    orbit.elevation_rad = -0.6;
+    EXPECT_DOUBLE_EQ(steepest_view(orbit).angle_rad, 0.9);
+    EXPECT_DOUBLE_EQ(steepest_view(orbit).time_s, 6);
+    orbit.elevation_phase_rad = 1;
+    const double time_s = steepest_view(orbit).time_s;
+    EXPECT_NEAR(std::asin(world_from_camera(orbit, time_s)[2].y), -0.9, 1e-12);
+}
+
+TEST(SteepestView, OfATourIsFoundBetweenItsWaypoints) {
+    // Both waypoints look along x; half way the target passes straight below the camera.
+    const WaypointPath tour{{{{0, 0, 0}, {1, 1, 0}}, {{0, 0, 0}, {-1, 1, 0}}}, 10};
+    EXPECT_DOUBLE_EQ(steepest_view(tour).angle_rad, std::numbers::pi / 2);
+    EXPECT_DOUBLE_EQ(steepest_view(tour).time_s, 2.5);
+    const WaypointPath level{{{{0, 0, 0}, {1, 0, 1}}, {{0, 0, 0}, {-1, 0, 1}}}, 10};
+    EXPECT_EQ(steepest_view(level).angle_rad, 0);
 }
 
 /// The corners of a box in the world.

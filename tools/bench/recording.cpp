@@ -88,7 +88,8 @@ Recording load(const RecordingOptions& options, const vulkan::DeviceOptions& dev
     }
     vulkan::Device device(device_options);
     auto scene = sensor::load_scene(options.sequence.substr(kSynthetic.size()));
-    return read_all(std::make_unique<sensor::SyntheticSource>(device, std::move(scene), options.frames), options);
+    const sensor::SyntheticOptions frames{.frames = options.frames};
+    return read_all(std::make_unique<sensor::SyntheticSource>(device, std::move(scene), frames), options);
 }
 
 void dump(const Recording& recording, const std::filesystem::path& folder) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "sensor/synthetic/scene_file.h"
 #include "tools/commands/commands.h"
 #include "tools/run_settings.h"
 
@@ -17,7 +18,12 @@ void add_run(CLI::App& app) {
     };
     const auto arguments = std::make_shared<Arguments>();
     RunOptions& run_options = arguments->run;
-    command->add_option("sequence", run_options.sequence, "Folder of a sequence, or synthetic:SCENE")->required();
+    command
+        ->add_option("sequence", run_options.sequence,
+                     "Folder of a sequence, or synthetic:SCENE, rendered as it is used; SCENE is a JSON file or one "
+                     "of: " +
+                         sensor::scene_names())
+        ->required();
     command->add_option("--out", run_options.out, "Folder for the results")->required();
     command->add_option("--format", run_options.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
     command->add_option("--frames", run_options.frames,

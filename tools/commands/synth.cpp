@@ -1,29 +1,109 @@
 #include "tools/synth.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <memory>
+#include <vector>
 
-#include <fmt/format.h>
-
+#include "sensor/synthetic/noise.h"
 #include "tools/commands/commands.h"
 
 namespace patina::tools {
+namespace {
+
+/// Parses all of `text` as a number.
+template <class Number>
+bool parse(std::string_view text, Number& number) {
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return failure == std::errc{} && end == text.data() + text.size();
+}
+
+/// Two numbers with `separator` between them.
+template <class Number>
+bool parse_pair(std::string_view text, char separator, Number& first, Number& second) {
+    const size_t at = text.find(separator);
+    return at != text.npos && parse(text.substr(0, at), first) && parse(text.substr(at + 1), second);
+}
+
+Extent2D parse_extent(const std::string& text) {
+    constexpr uint32_t kMost =
+        8192;  // pixels of random numbers are told apart by 16 bits, and devices hold images of it
+    Extent2D extent;
+    if (!parse_pair(text, 'x', extent.width, extent.height) || extent.area() == 0 ||
+        std::max(extent.width, extent.height) > kMost) {
+        throw CLI::ValidationError("--extent", patina::text("'", text, "' is not WIDTHxHEIGHT of 1 to ", kMost,
+                                                            " pixels each, such as 512x424"));
+    }
+    return extent;
+}
+
+PoseNoise parse_pose_noise(const std::string& text) {
+    PoseNoise noise;
+    if (!parse_pair(text, ',', noise.translation_m, noise.rotation_degrees) || !std::isfinite(noise.translation_m) ||
+        !std::isfinite(noise.rotation_degrees) || noise.translation_m < 0 || noise.rotation_degrees < 0) {
+        throw CLI::ValidationError("--pose-noise",
+                                   patina::text("'", text, "' is not METRES,DEGREES from 0, such as 0.002,0.1"));
+    }
+    return noise;
+}
+
+/// Adds an option that keeps empty what was not given.
+template <class Value>
+void add_optional(CLI::App& command, const std::string& name, std::optional<Value>& value, const std::string& help) {
+    command.add_option_function<Value>(
+        name, [&value](const Value& given) { value = given; }, help);
+}
+
+void add_switch(CLI::App& command, const std::string& names, std::optional<bool>& value, const std::string& help) {
+    command.add_flag_function(
+        names, [&value](int64_t given) { value = given > 0; }, help);
+}
+
+void add_recording_options(CLI::App& command, SynthOptions& options) {
+    add_optional(command, "--noise", options.noise, "Errors of depth and colour: " + sensor::noise_preset_names());
+    command.add_option_function<std::string>(
+        "--pose-noise", [&options](const std::string& text) { options.pose_noise = parse_pose_noise(text); },
+        "Errors of the recorded poses, METRES,DEGREES: standard deviations per axis");
+    add_switch(command, "--shadows,!--no-shadows", options.shadows, "Whether things keep light from others");
+    add_switch(command, "--area-lights", options.area_lights, "Lamps with a radius shine from all their surface");
+    add_optional(command, "--bounces", options.bounces, "How often light is reflected before it reaches what is seen");
+    add_optional(command, "--samples", options.samples, "Random samples per pixel, where there is something to sample");
+    add_optional(command, "--environment", options.environment,
+                 "Light from afar: latitude-longitude picture, .hdr or .exr");
+    add_switch(command, "--exr", options.exr, "Colour as linear OpenEXR without clipping, not as 8-bit sRGB");
+    command.add_option_function<std::string>(
+        "--extent", [&options](const std::string& text) { options.extent = parse_extent(text); },
+        "Size of the depth pictures, WIDTHxHEIGHT; an unregistered colour camera scales likewise");
+    command.add_flag_callback(
+        "--no-lighting", [&options] { options.lighting = false; }, "Leave out the low-exposure sequence lighting/");
+}
+
+}  // namespace
 
 void add_synth(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("synth", "Record a built-in scene as a sequence with its truth");
+    CLI::App* command = app.add_subcommand("synth", "Record a synthetic scene as a sequence with its truth");
     struct Arguments {
-        std::string scene, out;
-        uint32_t frames = 120;
+        SynthOptions synth;
         DeviceArguments device;
     };
     const auto arguments = std::make_shared<Arguments>();
-    command->add_option("scene", arguments->scene, "Name of the scene: cubes")->required();
-    command->add_option("--frames", arguments->frames, "How many frames to record")->capture_default_str();
-    command->add_option("--out", arguments->out, "Folder to create")->required();
+    SynthOptions& options = arguments->synth;
+    command->add_option("scene", options.scene, "JSON file of a scene, or one of: " + sensor::scene_names())
+        ->required();
+    command->add_option("--out", options.out, "Folder to create")->required();
+    command->add_option("--frames", options.frames, "How many frames to record")->capture_default_str();
+    command->add_option("--truth-every", options.truth_every,
+                        "Write truth/frames/NNNNNN.exr of every so many frames: materials, normals, depth, radiance");
+    add_optional(*command, "--seed", options.seed, "Seed of noise and random samples");
+    add_optional(*command, "--vary", options.changes.vary, "Seed of other materials, lights and path of the same kind");
+    command->add_option("--mesh", options.changes.mesh, "Mesh in place of those whose height the scene sets");
+    command->add_flag("--quiet", options.quiet, "Print nothing but errors");
+    add_recording_options(*command, options);
     arguments->device.add_to(*command);
     command->callback([arguments] {
         vulkan::Device device(arguments->device.options());
-        synthesise(device, arguments->scene, arguments->frames, arguments->out);
-        fmt::print("{} frames of {} in {}\n", arguments->frames, arguments->scene, arguments->out);
+        synthesise(device, arguments->synth);
     });
 }
 

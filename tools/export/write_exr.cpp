@@ -80,10 +80,20 @@ void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> ch
 }
 
 std::vector<ExrChannel> channels_of(const FrameDump& frame) {
-    std::vector<ExrChannel> channels = rgb_channels("rgb", frame.rgb);
-    channels.push_back(scalar_channel("depth", frame.depth_m));
-    for (ExrChannel& channel : xyz_channels("normal", frame.normal)) channels.push_back(std::move(channel));
-    channels.push_back(scalar_channel("valid", frame.valid));
+    std::vector<ExrChannel> channels;
+    const auto append = [&](const std::vector<ExrChannel>& group) {
+        channels.insert(channels.end(), group.begin(), group.end());
+    };
+    append(rgb_channels("rgb", frame.rgb));
+    append({scalar_channel("depth", frame.depth_m)});
+    append(xyz_channels("normal", frame.normal));
+    append({scalar_channel("valid", frame.valid)});
+    if (!frame.kd.empty()) append(rgb_channels("kd", frame.kd));
+    if (!frame.ks.empty()) append(rgb_channels("ks", frame.ks));
+    if (!frame.alpha.empty()) append({scalar_channel("alpha", frame.alpha)});
+    if (!frame.kd_segment.empty()) append(rgb_channels("kd_segment", frame.kd_segment));
+    if (!frame.rgb_segment.empty()) append(rgb_channels("rgb_segment", frame.rgb_segment));
+    if (!frame.label.empty()) append({scalar_channel("label", frame.label)});
     return channels;
 }
 

@@ -31,15 +31,24 @@ std::vector<ExrChannel> xyz_channels(const std::string& name, const Image<glm::v
 /// name given twice, or a disk that refuses.
 void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels);
 
-/// What a run saw of its model from one colour camera; all pictures have one extent.
+/// What one colour camera sees, of a run's model or of the truth; all pictures have one extent. Groups that are empty
+/// are left out of the file.
 struct FrameDump {
     Image<glm::vec3> rgb;     ///< linear
-    Image<float> depth_m;     ///< along the camera's z axis; 0 where the model was not hit
-    Image<glm::vec3> normal;  ///< world, unit length; zero where the model was not hit
-    Image<float> valid;       ///< 1 where the model was hit, else 0
+    Image<float> depth_m;     ///< along the camera's z axis; 0 where nothing was hit
+    Image<glm::vec3> normal;  ///< world, unit length; zero where nothing was hit
+    Image<float> valid;       ///< 1 where something was hit, else 0
+
+    Image<glm::vec3> kd{};           ///< diffuse albedo
+    Image<glm::vec3> ks{};           ///< specular albedo
+    Image<float> alpha{};            ///< roughness
+    Image<glm::vec3> kd_segment{};   ///< diffuse albedo of the whole segment: before refinement
+    Image<glm::vec3> rgb_segment{};  ///< rgb as kd_segment gives it
+    Image<float> label{};            ///< segment or object, a whole number; 0 = none
 };
 
-/// The channels rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid; further groups may be appended.
+/// The channels of a frame: rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid, and those of kd, ks, alpha,
+/// kd_segment, rgb_segment and label that are not empty.
 std::vector<ExrChannel> channels_of(const FrameDump& frame);
 
 }  // namespace patina

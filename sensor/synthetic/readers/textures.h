@@ -1,0 +1,11 @@
+#pragma once
+
+#include "sensor/json_file.h"
+#include "sensor/synthetic/scene.h"
+
+namespace patina::sensor {
+
+/// Reads one of a scene file's textures: a picture file or a pattern, and what a repeat of it spans.
+Texture read_texture(const JsonValue& value);
+
+}  // namespace patina::sensor

@@ -1,0 +1,221 @@
+#include "tools/eval/evaluate.h"
+
+#include <algorithm>
+#include <deque>
+#include <future>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "sensor/truth.h"
+#include "tools/eval/exr_planes.h"
+#include "tools/eval/frame_channels.h"
+#include "tools/eval/lights.h"
+#include "tools/eval/measure_frame.h"
+#include "tools/eval/metrics.h"
+#include "tools/eval/pixel_errors.h"
+#include "tools/eval/segmentation.h"
+#include "tools/eval/trajectory.h"
+
+namespace patina::eval {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPoseLimit_s = 0.02;      // TUM's own limit for its trajectories
+constexpr unsigned kMostFramesAtOnce = 8;  // each holds some 40 MB at 512 x 424
+
+/// A frame's two files.
+struct FramePair {
+    uint32_t index = 0;
+    fs::path truth;
+    fs::path run;
+};
+
+std::string range_of(const std::map<uint32_t, fs::path>& frames) {
+    return text(frames.size(), " from ", frames.begin()->first, " to ", frames.rbegin()->first);
+}
+
+void expect_folder(const fs::path& folder) {
+    if (!fs::is_directory(folder)) throw Error(folder.string(), " is not a folder");
+}
+
+std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& run, Evaluation& result) {
+    const fs::path truth_folder = sequence / "truth" / "frames", run_folder = run / "frames";
+    const auto truth_frames = exr_frames(truth_folder), run_frames = exr_frames(run_folder);
+    if (truth_frames.empty()) {
+        throw Error(truth_folder.string(), " holds no frames: record the sequence with --truth-every N");
+    }
+    if (run_frames.empty()) throw Error(run_folder.string(), " holds no frames: run with --dump-every N");
+    std::vector<FramePair> pairs;
+    for (const auto& [index, file] : truth_frames) {
+        if (const auto found = run_frames.find(index); found != run_frames.end()) {
+            pairs.push_back({index, file, found->second});
+        }
+    }
+    if (pairs.empty()) {
+        throw Error(truth_folder.string(), " (", range_of(truth_frames), ") and ", run_folder.string(), " (",
+                    range_of(run_frames), ") have no frame in common");
+    }
+    result.truth_frames = truth_frames.size();
+    result.run_frames = run_frames.size();
+    for (const FramePair& pair : pairs) result.frames.push_back(pair.index);
+    return pairs;
+}
+
+/// The trajectories of sequence and run; empty where one of them has none.
+std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, Evaluation& result) {
+    const fs::path truth_file = sequence / "truth" / "trajectory.txt", run_file = run / "trajectory.txt";
+    if (!fs::exists(truth_file) || !fs::exists(run_file)) return {};
+    const std::vector<sensor::StampedPose> truth = read_trajectory(truth_file);
+    std::vector<PosePair> pairs = pair_poses(truth, read_trajectory(run_file), kPoseLimit_s);
+    if (pairs.empty()) {
+        throw Error(run_file.string(), " has no pose within ", kPoseLimit_s, " s of one of ", truth_file.string());
+    }
+    result.trajectory = trajectory_errors(pairs, truth.size());
+    return pairs;
+}
+
+void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTransform& truth_from_run,
+                    double radius_m, Evaluation& result) {
+    const fs::path truth_file = sequence / "truth" / "lights.json", run_file = run / "lights.json";
+    if (!fs::exists(truth_file) || !fs::exists(run_file)) return;
+    std::vector<sensor::PointLight> lights = sensor::read_lights(run_file);
+    for (sensor::PointLight& light : lights) {
+        light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
+    }
+    result.lights = compare_lights(sensor::read_lights(truth_file), lights, radius_m);
+}
+
+/// Everything that all frames are measured with.
+struct Reference {
+    Extent2D extent;
+    std::set<std::string> groups;
+    std::string file;                               ///< the run's first frame, which the above come from
+    std::map<uint32_t, glm::dmat3> truth_from_run;  ///< rotations of the frames that have poses
+};
+
+Reference reference_of(const FramePair& first, std::span<const PosePair> poses) {
+    const ExrPlanes frame = ExrPlanes::read(first.run);
+    Reference reference{frame.extent(), groups_of(frame), frame.file(), {}};
+    if (!reference.groups.contains("valid")) throw Error(frame.file(), " has no channel valid");
+    // truth/trajectory.txt has one line per frame of the sequence, so that a pose's index is its frame's.
+    for (const PosePair& pair : poses) {
+        reference.truth_from_run[static_cast<uint32_t>(pair.index)] =
+            glm::dmat3(pair.truth) * glm::transpose(glm::dmat3(pair.run));
+    }
+    return reference;
+}
+
+FrameMeasurement measure(const FramePair& pair, const Reference& reference) {
+    const ExrPlanes truth = ExrPlanes::read(pair.truth), run = ExrPlanes::read(pair.run);
+    for (const ExrPlanes* frame : {&truth, &run}) {
+        if (frame->extent() == reference.extent) continue;
+        throw Error(frame->file(), " is ", frame->extent(), " pixels, but ", reference.file, " is ", reference.extent);
+    }
+    expect_groups(run, reference.groups, reference.file);
+    const auto rotation = reference.truth_from_run.find(pair.index);
+    return measure_frame(pair.index, truth, run,
+                         rotation == reference.truth_from_run.end() ? glm::dmat3(1) : rotation->second);
+}
+
+/// Gathers what frames contribute; they must come in order, so that sums do not depend on threads.
+class Totals {
+  public:
+    void add(FrameMeasurement frame) {
+        for (auto& [id, object] : frame.objects) {
+            ObjectResult& total = objects_[id];
+            total.pixels += object.pixels;
+            for (const Quantity quantity : kQuantities) {
+                if (!object.points[quantity]) continue;
+                if (!total.quantities[quantity]) total.quantities[quantity].emplace();
+                total.quantities[quantity]->frames.push_back(*object.points[quantity]);
+            }
+        }
+        overlap_.add(frame.overlap);
+        truth_pixels_ += frame.truth_pixels;
+        for (const float error : frame.depth_errors_mm) depth_mm_.add(error);
+        for (const float error : frame.normal_errors_deg) normal_deg_.add(error);
+    }
+
+    /// Moves what was gathered into the result.
+    void finish(bool has_labels, Evaluation& result) {
+        result.depth_mm = depth_mm_.spread(truth_pixels_);
+        result.normal_deg = normal_deg_.spread(truth_pixels_);
+        std::vector<ObjectSegmentation> segmentations;
+        PerQuantity<std::vector<Comparison>> means;
+        for (auto& [id, object] : objects_) {
+            object.id = id;
+            object.name = text("object ", id);
+            if (has_labels) segmentations.push_back(*(object.segmentation = overlap_.segmentation_of(id)));
+            for (const Quantity quantity : kQuantities) {
+                if (auto& series = object.quantities[quantity]) means[quantity].push_back(average(*series));
+            }
+            result.objects.push_back(std::move(object));
+        }
+        if (!segmentations.empty()) result.segmentation = mean_of(segmentations);
+        for (const Quantity quantity : kQuantities) {
+            if (!means[quantity].empty()) result.object_means[quantity] = mean_of(means[quantity]);
+        }
+    }
+
+  private:
+    /// Fills in the mean over frames, and returns it.
+    static const Comparison& average(ObjectQuantity& series) {
+        std::vector<Comparison> frames;
+        for (const FramePoint& point : series.frames) frames.push_back(point.comparison);
+        return series.mean = mean_of(frames);
+    }
+
+    std::map<uint32_t, ObjectResult> objects_;
+    LabelOverlap overlap_;
+    uint64_t truth_pixels_ = 0;
+    PixelErrorSum depth_mm_;
+    PixelErrorSum normal_deg_;
+};
+
+void measure_frames(std::span<const FramePair> pairs, const Reference& reference, const Settings& settings,
+                    Totals& totals) {
+    const size_t at_once = std::clamp(std::thread::hardware_concurrency(), 1u, kMostFramesAtOnce);
+    std::deque<std::future<FrameMeasurement>> pending;
+    size_t started = 0;
+    for (size_t done = 0; done < pairs.size(); ++done) {
+        for (; started < std::min(pairs.size(), done + at_once); ++started) {
+            pending.push_back(std::async(std::launch::async, measure, std::cref(pairs[started]), std::cref(reference)));
+        }
+        totals.add(pending.front().get());
+        pending.pop_front();
+        if (settings.on_frame) settings.on_frame(done + 1, pairs.size());
+    }
+}
+
+void name_objects(const fs::path& materials_file, std::vector<ObjectResult>& objects) {
+    if (!fs::exists(materials_file)) return;
+    for (const sensor::Material& material : sensor::read_materials(materials_file)) {
+        const auto object = std::find_if(objects.begin(), objects.end(),
+                                         [&](const ObjectResult& each) { return each.id == material.id; });
+        if (object != objects.end()) object->name = material.name;
+    }
+}
+
+}  // namespace
+
+Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Settings& settings) {
+    expect_folder(sequence);
+    expect_folder(run);
+    Evaluation result;
+    result.sequence = sequence.string();
+    result.run = run.string();
+    const std::vector<FramePair> pairs = common_frames(sequence, run, result);
+    const std::vector<PosePair> poses = read_poses(sequence, run, result);
+    measure_lights(sequence, run, poses.empty() ? RigidTransform(1.0) : align_worlds(poses), settings.light_radius_m,
+                   result);
+    const Reference reference = reference_of(pairs.front(), poses);
+    result.extent = reference.extent;
+    Totals totals;
+    measure_frames(pairs, reference, settings, totals);
+    totals.finish(reference.groups.contains("label"), result);
+    name_objects(sequence / "truth" / "materials.json", result.objects);
+    return result;
+}
+
+}  // namespace patina::eval

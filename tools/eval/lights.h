@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "tools/eval/result.h"
+
+namespace patina::eval {
+
+/// Pairs each true light with at most one of the run, nearest pairs first, none farther apart than `radius_m`. Both
+/// lists are in one world.
+LightErrors compare_lights(std::span<const sensor::PointLight> truth, std::span<const sensor::PointLight> run,
+                           double radius_m);
+
+}  // namespace patina::eval
