@@ -19,14 +19,14 @@ class Progress {
     explicit Progress(const std::string& file) : file_(file) {}
 
     bool operator()(int, json::parse_event_t event, const json& parsed) {
-        using enum json::parse_event_t;
+        using Event = json::parse_event_t;
         switch (event) {
-            case object_start: levels_.push_back({.is_array = false}); break;
-            case array_start: levels_.push_back({.is_array = true}); break;
-            case key: enter(parsed.get<std::string>()); break;
-            case object_end:
-            case array_end: levels_.pop_back(); [[fallthrough]];
-            case value:
+            case Event::object_start: levels_.push_back({.is_array = false}); break;
+            case Event::array_start: levels_.push_back({.is_array = true}); break;
+            case Event::key: enter(parsed.get<std::string>()); break;
+            case Event::object_end:
+            case Event::array_end: levels_.pop_back(); [[fallthrough]];
+            case Event::value:
                 if (!levels_.empty()) ++levels_.back().elements;
                 break;
         }

@@ -53,7 +53,7 @@ void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& 
         Extent2D{(extent.width + stride_px - 1) / stride_px, (extent.height + stride_px - 1) / stride_px});
 
     auto select = frame.compute("fusion.select_blocks", spirv::select_blocks);
-    select.read("Keys", ids.keys).read("NewSlots", ids.new_slots).read("Fusion", params);
+    select.read("Keys", ids.keys).read("NewSlots", ids.new_slots).push(map.grid());
     ids.counters = select.modify("Counters", ids.counters);
     ids.assign_arguments = select.write("AssignArguments", ids.assign_arguments);
     ids.block_arguments = select.write("BlockArguments", ids.block_arguments);

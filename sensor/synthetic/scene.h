@@ -19,7 +19,8 @@ namespace patina::sensor {
 /// kd that varies over a surface. Pictures repeat in both directions and are interpolated bilinearly. The coordinates
 /// (u, v) run along the surface: in metres on a rectangle (x, y), on each face of a box (its two axes in the order of
 /// their names), around and along a cylinder (its discs: x, z) and, as longitude and latitude times radius, on a
-/// sphere; a mesh has its own texture coordinates.
+/// sphere; a mesh has its own texture coordinates. Longitude 0 is in the direction +z and grows towards +x, latitude
+/// grows with y. At (0, 0) is the picture's top left corner; u runs along its rows, v down its columns.
 struct Texture {
     std::shared_ptr<const Image<glm::vec3>> kd;  ///< linear albedo
     glm::dvec2 repeat{1};                        ///< what one repeat of the picture spans in (u, v)

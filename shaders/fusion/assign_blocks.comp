@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per new key: pops a block from the free list, clears its voxels, and enters it in the table; or leaves
 // the key without a block when it was not among those accepted.
+#include "lib/accepted_key.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
 #include "shared/allocate_blocks.h"
@@ -24,7 +25,7 @@ shared uint block;
 void claim(uint slot) {
     const uint key = keys[slot];
     block = kNoBlock;
-    if (hash_of_key(key) / (0xffffffffu / kAcceptBins + 1u) < counters.accepted_bins) {
+    if (is_accepted(hash_of_key(key), counters.accepted_bins)) {
         block = free_list[counters.claim_base - 1u - atomicAdd(counters.claimed, 1u)];
         block_keys[block] = key;
     }

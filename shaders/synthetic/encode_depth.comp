@@ -31,7 +31,7 @@ float across_edge(ivec2 pixel, float own_m) {
 
 float measured_m(uvec2 pixel, float own_m) {
     const uvec2 stream = random_stream(params.seed, params.frame, pixel.x | pixel.y << 16u);
-    const vec4 numbers = random_numbers(stream, 0u, kDepthNoise);
+    const vec4 numbers = unit_interval(random_words(stream, 0u, kDepthNoise));
     const bool flies = numbers.x < params.flying_pixels;
     const float across_m = flies ? across_edge(ivec2(pixel), own_m) : own_m;
     const float seen_m = own_m + numbers.y * (across_m - own_m);

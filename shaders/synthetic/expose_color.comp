@@ -16,7 +16,7 @@ void main() {
     const vec3 value = params.exposure * radiance_here.rgb;
     const vec3 sigma = sqrt(params.read * params.read + params.shot * value);
     const uvec2 stream = random_stream(params.seed, params.frame, pixel.x | pixel.y << 16u);
-    const vec4 numbers = random_numbers(stream, 0u, kColorNoise);
+    const vec4 numbers = unit_interval(random_words(stream, 0u, kColorNoise));
     const vec3 noise = sigma * vec3(gaussians(numbers.xy), gaussians(numbers.zw).x);
     imageStore(linear_color, ivec2(pixel), vec4(max(value + noise, 0.0), radiance_here.a));
 }

@@ -59,6 +59,14 @@ TEST(OutputFolder, RemovesAnEarlierRunsMarkAndNothingElse) {
     EXPECT_THAT(files_in(folder.path()), ElementsAre("scene.glb"));
 }
 
+TEST(OutputFolder, MarkMayHaveAnotherName) {
+    const TemporaryFolder folder;
+    put(folder / "run.json", "{}");
+    put(folder / "eval.json", "{}");
+    const OutputFolder out(folder.path(), "eval.json");
+    EXPECT_THAT(files_in(folder.path()), ElementsAre("run.json"));
+}
+
 TEST(OutputFolder, WritesBytesAsTheyAre) {
     const TemporaryFolder folder;
     OutputFolder out(folder.path());

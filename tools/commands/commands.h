@@ -24,5 +24,6 @@ void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_run(CLI::App& app);
+void add_eval(CLI::App& app);
 
 }  // namespace patina::tools

@@ -11,8 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFinishedMark = "run.json";
-
 /// Beside `place`, so that the rename stays within one file system.
 fs::path temporary_for(const fs::path& place) {
     return place.parent_path() / (".patina-partial-" + place.filename().string());
@@ -45,12 +43,11 @@ void check_writable(const fs::path& folder) {
         throw Error("output folder ", folder, ": files in it cannot be removed: ", failure.message());
 }
 
-void remove_finished_mark(const fs::path& folder) {
+void remove_finished_mark(const fs::path& folder, const std::string& mark) {
     std::error_code failure;
-    fs::remove(folder / kFinishedMark, failure);
+    fs::remove(folder / mark, failure);
     if (failure) {
-        throw Error("output folder ", folder, ": an earlier ", kFinishedMark,
-                    " cannot be removed: ", failure.message());
+        throw Error("output folder ", folder, ": an earlier ", mark, " cannot be removed: ", failure.message());
     }
 }
 
@@ -62,10 +59,10 @@ void check_name(const fs::path& name) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
+OutputFolder::OutputFolder(fs::path path, const std::string& finished_mark) : path_(std::move(path)) {
     create_folder(path_);
     check_writable(path_);
-    remove_finished_mark(path_);
+    remove_finished_mark(path_, finished_mark);
 }
 
 OutputFolder::~OutputFolder() {

@@ -7,14 +7,15 @@
 
 namespace patina {
 
-/// The folder a run writes into. Every file appears whole or not at all: it is written beside its place under a
-/// temporary name and renamed into it. What was there before stays until its replacement is complete, except for an
-/// earlier run's `run.json`: that is removed at once, so that its presence says that this run finished.
+/// The folder a command writes into. Every file appears whole or not at all: it is written beside its place under a
+/// temporary name and renamed into it. What was there before stays until its replacement is complete, except for the
+/// file that is written last, a run's `run.json`: that is removed at once, so that its presence says that this run
+/// finished.
 class OutputFolder {
   public:
-    /// Creates the folder and its parents where missing, checks that it can be written to, and removes an earlier run's
-    /// `run.json`. Throws Error where the path is a file or cannot be written to.
-    explicit OutputFolder(std::filesystem::path path);
+    /// Creates the folder and its parents where missing, checks that it can be written to, and removes an earlier
+    /// `finished_mark`. Throws Error where the path is a file or cannot be written to.
+    explicit OutputFolder(std::filesystem::path path, const std::string& finished_mark = "run.json");
 
     /// Removes what was staged but not published.
     ~OutputFolder();

@@ -3,15 +3,10 @@
 #include <span>
 #include <string>
 
+#include "tools/export/report_page.h"
 #include "tools/export/run_record.h"
 
 namespace patina {
-
-/// A picture of the report.
-struct ReportPicture {
-    std::string caption;
-    std::string png;  ///< the bytes of a PNG file
-};
 
 /// The text of report.html: what a person wants to know of a run, in one file that needs no other and no network. Reads
 /// in light and dark themes and on paper. `pictures` may be empty.

@@ -1,0 +1,20 @@
+// Directions as points of a square: the octahedron's eight faces unfolded (Meyer et al. 2010, "On floating-point
+// normal vectors"). Functions without bindings.
+#ifndef PATINA_LIB_OCTAHEDRAL_GLSL
+#define PATINA_LIB_OCTAHEDRAL_GLSL
+
+vec2 fold(vec2 point) { return (1.0 - abs(point.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(point, vec2(0.0))); }
+
+// A direction of any length but 0 to [-1, 1]^2.
+vec2 to_octahedral(vec3 direction) {
+    const vec3 d = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
+    return d.z >= 0.0 ? d.xy : fold(d.xy);
+}
+
+// Its inverse, of unit length.
+vec3 from_octahedral(vec2 point) {
+    const float z = 1.0 - abs(point.x) - abs(point.y);
+    return normalize(vec3(z >= 0.0 ? point : fold(point), z));
+}
+
+#endif

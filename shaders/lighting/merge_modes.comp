@@ -1,0 +1,39 @@
+// Seeds of one lamp end in one place: keeps the heaviest mode of each neighbourhood, heaviest first.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared/find_lights.h"
+
+layout(local_size_x = 1) in;
+layout(std140, binding = 0) uniform Params { FindLightsParams params; };
+layout(std430, binding = 1) readonly buffer Modes { EmitterMode modes[]; };
+layout(std430, binding = 2) writeonly buffer Candidates { EmitterMode candidates[]; };  // weight 0 ends it
+
+shared EmitterMode chosen[kMaxLightCandidates];
+
+bool near(EmitterMode a, EmitterMode b) {
+    const float reach = a.has_depth != 0u ? params.bandwidth_m : params.bandwidth_chord;
+    return a.has_depth == b.has_depth && distance(a.point.xyz, b.point.xyz) <= reach;
+}
+
+bool is_new(EmitterMode mode, uint count) {
+    for (uint k = 0u; k < count; ++k) {
+        if (near(mode, chosen[k])) return false;
+    }
+    return true;
+}
+
+void main() {
+    uint count = 0u;
+    while (count < kMaxLightCandidates) {
+        EmitterMode best = EmitterMode(vec4(0.0), 0.0, 0u, 0u, 0u);
+        for (uint i = 0u; i < kMeanShiftSeeds; ++i) {
+            const EmitterMode mode = modes[i];
+            if (mode.weight > best.weight && is_new(mode, count)) best = mode;
+        }
+        if (best.weight == 0.0) break;
+        chosen[count++] = best;
+    }
+    for (uint k = 0u; k < kMaxLightCandidates; ++k) {
+        candidates[k] = k < count ? chosen[k] : EmitterMode(vec4(0.0), 0.0, 0u, 0u, 0u);
+    }
+}

@@ -1,0 +1,66 @@
+// Mean-shift with a flat kernel (Comaniciu and Meer 2002): moves each seed to the centre of the luminous mass around
+// it, in space for emitters with depth, on the sphere of bearings for those without.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/camera.glsl"
+#include "shared/find_lights.h"
+
+layout(local_size_x = kMeanShiftGroup) in;
+layout(std140, binding = 0) uniform Params { FindLightsParams params; };
+layout(std430, binding = 1) readonly buffer Places { uint places[]; };
+layout(std430, binding = 2) readonly buffer Emitters { Emitter emitters[]; };
+layout(std430, binding = 3) writeonly buffer Modes { EmitterMode modes[]; };
+#include "lib/luminance.glsl"
+
+const uint kIterations = 12u;
+
+shared vec4 partial[kMeanShiftGroup];
+
+// Emitters of one kind are compared; those of the other lie at infinity.
+vec3 point_of(Emitter e, vec3 camera_m) {
+    return e.bearing_range.w > 0.0 ? camera_m + e.bearing_range.w * e.bearing_range.xyz : e.bearing_range.xyz;
+}
+
+vec4 sum_of_group(vec4 own) {
+    const uint lane = gl_LocalInvocationIndex;
+    partial[lane] = own;
+    barrier();
+    for (uint reach = kMeanShiftGroup / 2u; reach > 0u; reach /= 2u) {
+        if (lane < reach) partial[lane] += partial[lane + reach];
+        barrier();
+    }
+    const vec4 sum = partial[0];
+    barrier();
+    return sum;
+}
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex, seed = gl_WorkGroupID.x;
+    const uint count = min(places[params.group_count], kMaxEmitters);
+    const uint seeds = min(count, kMeanShiftSeeds);
+    if (seed >= seeds) {
+        if (lane == 0u) modes[seed] = EmitterMode(vec4(0.0), 0.0, 0u, 0u, 0u);
+        return;
+    }
+    const vec3 camera_m = camera_center_m(params.camera);
+    const Emitter start = emitters[count > kMeanShiftSeeds ? seed * count / kMeanShiftSeeds : seed];
+    const bool has_depth = start.bearing_range.w > 0.0;
+    const float bandwidth = has_depth ? params.bandwidth_m : params.bandwidth_chord;
+    vec3 mode = point_of(start, camera_m);
+    float weight = 0.0;
+    for (uint i = 0u; i < kIterations; ++i) {
+        vec4 own = vec4(0.0);
+        for (uint k = lane; k < count; k += kMeanShiftGroup) {
+            const Emitter e = emitters[k];
+            const vec3 offset = point_of(e, camera_m) - mode;
+            const bool inside = (e.bearing_range.w > 0.0) == has_depth && dot(offset, offset) <= bandwidth * bandwidth;
+            // Sums of offsets keep more digits than sums of points.
+            if (inside) own += vec4(offset, 1.0) * (luminance(e.radiance_angle.rgb) * e.radiance_angle.w);
+        }
+        const vec4 sum = sum_of_group(own);
+        mode += sum.xyz / max(sum.w, 1e-30);
+        weight = sum.w;
+    }
+    if (!has_depth) mode = normalize(mode);
+    if (lane == 0u) modes[seed] = EmitterMode(vec4(mode, 0.0), weight, has_depth ? 1u : 0u, 0u, 0u);
+}

@@ -1,0 +1,141 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/run_folder.h"
+#include "tests/eval/eval_rig.h"
+
+// `patina eval` as a user meets it.
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using sensor::testing::read_text;
+using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class Eval : public ::testing::Test {
+  protected:
+    Outcome eval(std::vector<std::string> more = {}) const {
+        std::vector<std::string> arguments{"eval", rig_.sequence(), rig_.run()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return patina(arguments);
+    }
+
+    /// eval must fail with one line, which is returned, and leave the run's folder as it was.
+    std::string failure() const {
+        const auto before = files_in(rig_.run());
+        const std::string message = expect_failure(eval({"--quiet"}));
+        EXPECT_EQ(files_in(rig_.run()), before);
+        EXPECT_FALSE(fs::exists(rig_.run() / "eval"));
+        return message;
+    }
+
+    const fs::path& sequence() const { return sequence_; }
+    const fs::path& run() const { return run_; }
+
+    const test::EvalRig rig_;
+
+  private:
+    const fs::path sequence_ = rig_.sequence(), run_ = rig_.run();
+};
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : files_in(folder)) names.push_back(name);
+    return names;
+}
+
+TEST_F(Eval, PrintsTheScoresAndWritesTheReport) {
+    const Outcome outcome = eval();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("S1 floor, S2 box"), HasSubstr("\nkd refined   0.0000 0.0000"),
+                                   HasSubstr("\nDepth error     0.00 mm median"), HasSubstr("report.html")));
+    EXPECT_THAT(names_in(run() / "eval"), ElementsAre("eval.json", "report.html"));
+    const auto json = nlohmann::json::parse(read_text(run() / "eval/eval.json"));
+    EXPECT_EQ(json["frames"], (nlohmann::json{0, 10, 20, 30}));
+    EXPECT_EQ(json["object_means"]["kd"]["filled"]["mad"], 0);
+    EXPECT_THAT(read_text(run() / "eval/report.html"), HasSubstr("Error pictures"));
+}
+
+TEST_F(Eval, TheSameRunGivesTheSameBytes) {
+    eval();
+    const auto first = files_in(run() / "eval");
+    eval();
+    EXPECT_EQ(files_in(run() / "eval"), first);
+}
+
+TEST_F(Eval, WritesWhereItIsTold) {
+    write_text(run() / "run.json", "{}");
+    const Outcome outcome = eval({"--out", run(), "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "");
+    EXPECT_TRUE(fs::exists(run() / "eval.json"));
+    EXPECT_EQ(read_text(run() / "run.json"), "{}") << "a run stays finished";
+    EXPECT_FALSE(fs::exists(run() / "eval"));
+}
+
+TEST_F(Eval, LightRadiusDecidesAboutMatches) {
+    sensor::write_lights(run() / "lights.json", std::vector<sensor::PointLight>{{{0, -2.5, 1.75}, {3, 3, 3}}});
+    EXPECT_THAT(eval().out, HasSubstr("0 of 2 matched within 0.50 m"));
+    EXPECT_THAT(eval({"--light-radius", "1"}).out, HasSubstr("1 of 2 matched within 1.00 m"));
+    EXPECT_THAT(expect_failure(eval({"--light-radius", "0"}), 2), HasSubstr("--light-radius"));
+}
+
+TEST_F(Eval, SequenceWithoutTruth) {
+    fs::remove_all(sequence() / "truth");
+    EXPECT_THAT(failure(), AllOf(HasSubstr("truth/frames"), HasSubstr("--truth-every")));
+    fs::remove_all(sequence());
+    EXPECT_THAT(failure(), HasSubstr(sequence().string()));
+}
+
+TEST_F(Eval, RunWithoutFrames) {
+    fs::remove_all(run() / "frames");
+    EXPECT_THAT(failure(), AllOf(HasSubstr("frames holds no frames"), HasSubstr("--dump-every")));
+    fs::remove_all(run());
+    EXPECT_THAT(failure(), HasSubstr(run().string()));
+    EXPECT_FALSE(fs::exists(run())) << "a mistyped folder must not be created";
+}
+
+TEST_F(Eval, NoFrameInCommon) {
+    for (const uint32_t index : {0, 10, 20, 30}) {
+        fs::rename(rig_.run_frame(index), rig_.run_frame(index + 5));
+    }
+    EXPECT_THAT(failure(), HasSubstr("have no frame in common"));
+}
+
+TEST_F(Eval, DamagedFrame) {
+    fs::resize_file(rig_.run_frame(20), 100);
+    EXPECT_THAT(failure(), HasSubstr("000020.exr"));
+}
+
+TEST_F(Eval, OutputFolderThatCannotBeWrittenTo) {
+    write_text(run() / "eval", "a file");
+    EXPECT_THAT(expect_failure(eval({"--quiet"})), AllOf(HasSubstr("output folder"), HasSubstr("is a file")));
+    EXPECT_EQ(read_text(run() / "eval"), "a file");
+}
+
+class FromSceneToScores : public RunFolderTest {};
+
+TEST_F(FromSceneToScores, GeometryIsReconstructed) {
+    const fs::path recording = beside("cubes");
+    const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "2", "--extent", "96x80",
+                                  "--no-lighting", "--quiet", "--out", recording});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    // At this size, pixels are farther apart than the voxels would be by default.
+    run_quietly(recording, {"--dump-every", "1", "--set", "map.voxel_m=0.03"});
+    const Outcome outcome = patina({"eval", recording, out()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("2 frames of 96 x 80"), HasSubstr("\nDepth error"),
+                                   HasSubstr("hold no kd, kd refined, ks, alpha and RGB.")));
+    const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
+    EXPECT_EQ(json["frames"], (nlohmann::json{0, 2}));
+    EXPECT_LT(json["depth_mm"]["median"], 10);
+    EXPECT_GT(json["depth_mm"]["coverage"], 0.8);
+    EXPECT_LT(json["trajectory"]["ate_rmse_m"], 1e-6);
+    EXPECT_LT(json["object_means"]["rgb"]["filled"]["mad"], 0.1);
+}
+
+}  // namespace
+}  // namespace patina::testing

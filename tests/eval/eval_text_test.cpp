@@ -1,0 +1,126 @@
+#include "tools/eval/eval_text.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "tests/eval/made_up_evaluation.h"
+
+namespace patina::eval {
+namespace {
+
+using test::full_evaluation;
+using test::geometry_only;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The characters of the longest line; of those that UTF-8 writes with several bytes, the first counts.
+size_t longest_line(const std::string& text) {
+    std::istringstream lines(text);
+    size_t longest = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const auto is_first = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
+        longest = std::max(longest, static_cast<size_t>(std::ranges::count_if(line, is_first)));
+    }
+    return longest;
+}
+
+/// Two objects, of which the second has no ks, and everything is filled.
+Evaluation small_evaluation() {
+    Evaluation evaluation = full_evaluation(2, 10);
+    for (ObjectResult& object : evaluation.objects) {
+        for (const Quantity quantity : kQuantities) object.quantities[quantity]->mean.coverage = 1;
+    }
+    evaluation.objects[1].quantities[Quantity::kKs].reset();
+    evaluation.objects[0].quantities[Quantity::kAlpha]->mean.filled->psnr_db = std::numeric_limits<double>::infinity();
+    evaluation.trajectory.reset();
+    evaluation.segmentation.reset();
+    evaluation.lights->invented.clear();
+    return evaluation;
+}
+
+TEST(EvalText, LooksLikeTable1) {
+    EXPECT_EQ(eval_text(small_evaluation()),
+              R"(out/<b>run</b> against recordings/bunnies: 10 frames of 512 x 424 (truth has 10, the run 15)
+
+S1 floor, S2 yellow <script> figure
+
+                     MAD                  RMSE                PSNR, dB                SSIM
+                 S1     S2    avg      S1     S2    avg      S1     S2    avg      S1     S2    avg
+kd           0.0100 0.0200 0.0300  0.0125 0.0250 0.0375   39.00  38.00  37.00  0.9950 0.9900 0.9850
+kd refined   0.0300 0.0400 0.0400  0.0375 0.0500 0.0500   37.00  36.00  36.00  0.9850 0.9800 0.9800
+ks           0.0500      - 0.0500  0.0625      - 0.0625   35.00      -  35.00  0.9750      - 0.9750
+alpha        0.0700 0.0800 0.0600  0.0875 0.1000 0.0750     inf  32.00  34.00  0.9650 0.9600 0.9700
+RGB          0.0900 0.1000 0.0700  0.1125 0.1250 0.0875   31.00  30.00  33.00  0.9550 0.9500 0.9650
+RGB refined  0.1100 0.1200 0.0800  0.1375 0.1500 0.1000   29.00  28.00  32.00  0.9450 0.9400 0.9600
+
+                  coverage
+                 S1     S2    avg
+kd           100.0% 100.0%  97.5%
+kd refined   100.0% 100.0%  97.5%
+ks           100.0%      -  97.5%
+alpha        100.0% 100.0%  97.5%
+RGB          100.0% 100.0%  97.5%
+RGB refined  100.0% 100.0%  97.5%
+
+Depth error     1.50 mm median, 2.25 mean, 4.75 at 90% of the pixels, RMSE 3.12; coverage 98.4%
+Normal error    0.50 deg median, 1.25 mean, 2.75 at 90% of the pixels, RMSE 1.62; coverage 98.4%
+Lights          1 of 2 matched within 0.50 m; 1 missed, 0 invented; the run's intensities are 2.000 times the true ones
+  true light 1 at (1.00, -2.00, 3.00) m: light 2 of the run, 20.0 mm off
+    intensity off by 100.0% 100.0% 100.0%; after division by the common factor by 12.5% 0.0% 0.0%
+  true light 2 at (-1.00, -2.00, 3.00) m: missed
+
+Note: Segmentation was not measured: the run's frames hold no labels.
+Note: The trajectory was not compared: truth and run do not both have one.
+)");
+}
+
+TEST(EvalText, FitsATerminal) {
+    for (const size_t objects : {1, 4, 5, 6, 7, 30}) {
+        EXPECT_LE(longest_line(eval_text(full_evaluation(objects))), 120u) << objects << " objects";
+    }
+}
+
+TEST(EvalText, ManyObjectsHaveALineEach) {
+    const std::string text = eval_text(full_evaluation(30));
+    EXPECT_THAT(text, HasSubstr("\nS1 floor                 0.0100  0.0300  0.0500  0.0700  0.0900  0.1100   0.0125"));
+    EXPECT_THAT(text, HasSubstr("\nS2 yellow <script> fi~   0.0200"));
+    EXPECT_THAT(text, HasSubstr("\nS3 K\xc3\xbc"
+                                "che & \"more\"        0.0300"));
+    EXPECT_THAT(text, HasSubstr("\nS30 chair 29             0.3000"));
+    EXPECT_THAT(text, HasSubstr("\navg                      0.0300"));
+}
+
+TEST(EvalText, UnfilledPixelsCostInATableOfTheirOwn) {
+    const std::string text = eval_text(full_evaluation());
+    const size_t zeros = text.find("With unfilled pixels counted as zero:");
+    ASSERT_NE(zeros, std::string::npos);
+    EXPECT_THAT(text.substr(zeros), HasSubstr("\nkd           0.0125 0.0225"));
+    EXPECT_THAT(text.substr(zeros), Not(HasSubstr("coverage\n")));
+    EXPECT_THAT(eval_text(small_evaluation()), Not(HasSubstr("counted as zero")));
+}
+
+TEST(EvalText, SaysWhatTheRunDidNotWrite) {
+    const std::string text = eval_text(geometry_only());
+    EXPECT_THAT(text, HasSubstr("\nkd                -      -      -      -      -       -"));
+    EXPECT_THAT(text, HasSubstr("\nRGB refined  0.1100"));
+    EXPECT_THAT(text, HasSubstr("Note: The run's frames hold no kd, kd refined, ks, alpha and RGB.\n"));
+    EXPECT_THAT(text, HasSubstr("Note: Lights were not compared"));
+}
+
+TEST(EvalText, NothingSeenIsSaid) {
+    const std::string text = eval_text({});
+    EXPECT_THAT(text, HasSubstr("No object of the truth is seen"));
+    EXPECT_THAT(text, Not(HasSubstr("MAD")));
+}
+
+TEST(EvalText, NamesCannotMoveTheCursor) {
+    Evaluation evaluation = full_evaluation();
+    evaluation.objects[0].name = "a\033[2Jb\nc";
+    EXPECT_THAT(eval_text(evaluation), HasSubstr("S1 a?[2Jb?c"));
+}
+
+}  // namespace
+}  // namespace patina::eval

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/eval/result.h"
+
+namespace patina::eval {
+
+/// Which pixels a score is over.
+enum class Pixels { kFilled, kUnfilledAsZero };
+
+/// One metric in Table 1: its cells as text, "-" where there is nothing.
+struct MetricCells {
+    std::string metric;                           ///< "MAD", "PSNR, dB"
+    std::vector<std::vector<std::string>> cells;  ///< by row, then column
+};
+
+/// The paper's Table 1. Its rows are the quantities, and its columns the objects, S1 to Sn, and their average. With
+/// more than kMostObjectColumns objects it is turned: rows are the objects by name, and their average.
+struct ScoreTable {
+    bool is_turned = false;
+    std::vector<std::string> rows, columns;
+    std::vector<MetricCells> metrics;  ///< over the filled pixels, the coverage is the last
+};
+
+inline constexpr size_t kMostObjectColumns = 6;
+
+/// Lays out the scores over these pixels.
+ScoreTable score_table(const Evaluation& evaluation, Pixels pixels);
+
+/// True where a region of some object and frame is not filled wholly, so that the two kinds of scores differ.
+bool has_unfilled(const Evaluation& evaluation);
+
+/// "S1" for the first object.
+std::string short_name(size_t object);
+
+/// "S1 floor, S2 box": what the columns of Table 1 stand for; empty where it is turned.
+std::string column_key(const Evaluation& evaluation);
+
+/// What a person calls a quantity: "kd", "kd refined", "RGB".
+const char* title_of(Quantity quantity);
+
+/// Notes about what could not be measured, because the run or the sequence does not have it; a sentence each.
+std::vector<std::string> absences(const Evaluation& evaluation);
+
+/// A result in words.
+struct Finding {
+    std::string name;   ///< "Depth error"
+    std::string value;  ///< "2.10 mm median, ..."
+};
+
+/// What was measured of depth, normals, trajectory, segmentation and lights.
+std::vector<Finding> findings(const Evaluation& evaluation);
+
+/// A true light and what stands for it, or a light that the run invented.
+struct LightRow {
+    std::string light;                           ///< "true light 1", "light 3 of the run"
+    std::string position;                        ///< in metres: "0.10, -2.30, 1.00"
+    std::string match;                           ///< "light 2 of the run", "missed", "invented"
+    std::optional<std::string> position_error;   ///< "21.0 mm"; this and the following with a match only
+    std::optional<std::string> intensity_error;  ///< per channel: "3.2% 3.1% 4.0%"
+    std::optional<std::string> after_factor;     ///< likewise, after division by the common factor
+};
+
+/// One row per true light, then one per invented light.
+std::vector<LightRow> light_rows(const LightErrors& lights);
+
+}  // namespace patina::eval
