@@ -58,6 +58,18 @@ TEST(SceneFile, ObjectsAreAsWritten) {
     EXPECT_EQ(std::get<SphereShape>(ball.parts[0].shape).radius_m, 0.2);
 }
 
+TEST(SceneFile, AnOffsetMovesATexturesTopLeftCorner) {
+    const TemporaryFolder folder;
+    nlohmann::json scene = small_scene();
+    const auto picture = [&] { return *load(folder / "a.json", scene).objects[0].texture->kd; };
+    const Image<glm::vec3> plain = picture();
+    scene["textures"]["tiles"]["offset"] = {0.0625, -0.03125};  // of repeats of 0.5 and 0.25: 8 texels right, 8 up
+    const Image<glm::vec3> moved = picture();
+    for (uint32_t y = 0; y < 64; ++y)
+        for (uint32_t x = 0; x < 64; ++x) ASSERT_EQ(moved.at((x + 8) % 64, (y + 56) % 64), plain.at(x, y));
+    EXPECT_NE(moved.at(4, 4), plain.at(4, 4));
+}
+
 TEST(SceneFile, TheFirstRotationIsTheOutermost) {
     const TemporaryFolder folder;
     json scene = small_scene();
