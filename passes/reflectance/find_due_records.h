@@ -6,14 +6,15 @@ namespace patina {
 
 /// Records whose visibility or albedo may be out of date.
 struct DueRecords {
-    RecordList march;   ///< whose lights are marched again, params.most_marched of them at most, about
+    RecordList march;   ///< whose lights are marched again
     RecordList refine;  ///< whose albedo is computed again
 };
 
-/// Lists what is due: of the records in `changed`, and of those in a window of the table that moves on from update to
-/// update, so that changes of lights, materials and of the geometry around reach every record. Records wait that were
-/// never marched, or whose surface moved since, or that lie in the window, when there are more than params.most_marched
-/// of them; which are taken, a range of hashes says that moves on too. Neither depends on record ids.
+/// Lists what is due: all records in a window of the table (about params.refreshed of them) that moves on from update
+/// to update, so that changes of lights, materials and of the geometry around reach every record; and those in
+/// `changed`: all for refinement, and for marching those that never were, or whose surface moved since. Where these are
+/// more than params.most_changed, a range of hashes that moves on too says which are taken; the others wait for their
+/// next change or for the window. What is listed does not depend on record ids.
 DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed);
 
 }  // namespace patina

@@ -24,7 +24,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     params.voxels = models.voxel_map.grid();
     params.edge_shift = models.observation_map.edge_shift();
     params.stamp = models.state.next_stamp();
-    params.most_marched = settings.marched_records;
+    params.most_changed = settings.marched_records;
     params.refreshed = settings.refreshed_records;
     params.max_window = max_window;
     params.shadows = settings.shadows ? 1 : 0;

@@ -13,8 +13,8 @@ namespace patina {
 /// How much of the reflectance is brought up to date in a frame.
 struct ReflectanceSettings {
     bool shadows = true;                ///< false: every light reaches every surface, as in the paper
-    uint32_t marched_records = 2048;    ///< whose lights are marched in a frame at most, about
-    uint32_t refreshed_records = 2048;  ///< looked at again in a frame though nothing is known to have changed, about
+    uint32_t marched_records = 2048;    ///< changed records whose lights are marched in a frame at most, about
+    uint32_t refreshed_records = 2048;  ///< and others, looked at again in turn, about
 };
 
 /// The models that a refinement reads and writes.
@@ -33,8 +33,8 @@ struct RefinedReflectance {
 };
 
 /// Brings visibility and albedo of what is due in this frame up to date: of the records in `changed` (what
-/// add_collect_observations returned), and of some others in turn. Versions of the visibility and albedo in `records`
-/// are replaced. Throws Error when a budget is 0.
+/// add_collect_observations returned), and of some others in turn. Versions of the visibility and albedo in
+/// `records` are replaced. Throws Error when a budget is 0.
 RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
                                           const RecordList& changed, MapAccess access,

@@ -15,7 +15,7 @@ layout(std140, binding = 0) uniform Lights {
     PointLight lights[kMaxPointLights];
 };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
-layout(std430, binding = 2) readonly buffer Accepted { uint accepted[]; };
+layout(std430, binding = 2) readonly buffer March { uint listed[]; };
 layout(std430, binding = 3) buffer Status { RecordStatus status[]; };
 layout(std430, binding = 4) buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 5) buffer Refine { uint refine[]; };
@@ -24,7 +24,9 @@ layout(push_constant) uniform Push { ReflectanceParams params; };
 
 const uint kMaxSteps = 1024u;
 const float kLiftVox = 2.5;         // from where the march starts, above the surface
+const float kMostSkippedVox = 7.5;  // of the way, to get there
 const float kInsideVox = 0.5;       // a voxel this deep is inside, whatever the noise of a nearest voxel
+const float kGrazeShare = 0.75;     // of a record's voxel
 const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
 const float kLampMarginVox = 3.0;   // kept from a lamp, whose own surface is in the map
 const float kUnknownLampM = 0.15;   // the radius assumed of a lamp whose radius is not known
@@ -54,13 +56,12 @@ struct Passage {
     bool uncertain;  // it passes a surface, on either side, so near that another point of the voxel may see otherwise
 };
 
-// From above a surface along a ray that leaves it with `slope` voxels a voxel.
-Passage march(vec3 start, vec3 direction, float reach_vox, float slope, float graze_vox) {
+// Along a ray from `gone` to `reach` (voxels), which begins `lift` above a surface and leaves it with `slope`.
+Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, float lift, float graze_vox) {
     const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
-    float gone = 0.0;
     float deepest = 1e6;
     bool grazed = false;
-    for (uint i = 0u; i < kMaxSteps && gone < reach_vox && deepest > -graze_vox; ++i) {
+    for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
         const vec3 at = start + direction * gone;
         const ivec3 voxel = ivec3(floor(at));
         const uint block = find_block(params.voxels, voxel >> 3);
@@ -70,7 +71,7 @@ Passage march(vec3 start, vec3 direction, float reach_vox, float slope, float gr
         const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
         deepest = min(deepest, here);
         // The surface itself is this far.
-        grazed = grazed || here < min(graze_vox, 0.5 * (kLiftVox + gone * slope));
+        grazed = grazed || here < min(graze_vox, 0.5 * (lift + gone * slope));
         const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
         gone += have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
     }
@@ -80,16 +81,19 @@ Passage march(vec3 start, vec3 direction, float reach_vox, float slope, float gr
 
 Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
     const float inverse_voxel = 1.0 / params.voxels.voxel_m;
-    const vec3 offset = (light.position_m.xyz - point_m) * inverse_voxel - kLiftVox * normal;
-    const float distance_vox = length(offset);
-    const vec3 direction = offset / max(distance_vox, 1e-6);
+    const vec3 offset_vox = (light.position_m.xyz - point_m) * inverse_voxel;
+    const float distance_vox = max(length(offset_vox), 1e-6);
+    const vec3 direction = offset_vox / distance_vox;
     const float cosine = dot(direction, normal);
     if (cosine < kBackCosine) return Passage(false, false);
+    // Above the surface, if possible on the way itself, as a lifted way would move the shadow.
+    const float skipped = min(kLiftVox / max(cosine, 1e-6), kMostSkippedVox);
+    const float lift = max(kLiftVox - skipped * cosine, 0.0);
     const float lamp_m = light.position_m.w > 0.0 ? light.position_m.w : kUnknownLampM;
     const float lamp_vox = min(lamp_m * inverse_voxel + kLampMarginVox, kMostLampShare * distance_vox);
-    const float graze_vox = 0.6 * params.records.voxel_m * inverse_voxel;
-    Passage passage = march(point_m * inverse_voxel + kLiftVox * normal, direction, distance_vox - lamp_vox,
-                            max(cosine, 0.0), graze_vox);
+    const float graze_vox = kGrazeShare * params.records.voxel_m * inverse_voxel;
+    Passage passage = march(point_m * inverse_voxel + lift * normal, direction, skipped, distance_vox - lamp_vox,
+                            cosine, lift, graze_vox);
     passage.uncertain = passage.uncertain || cosine < kGrazingCosine;
     return passage;
 }
@@ -114,8 +118,8 @@ Reached find_lights(vec3 point_m, vec3 normal) {
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;
-    if (item >= accepted[0]) return;
-    const uint record = accepted[1u + item];
+    if (item >= listed[0]) return;
+    const uint record = listed[1u + item];
     const VoxelRecord known = records[record];
     const vec3 normal = surface_normal(known);
     const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);

@@ -28,8 +28,8 @@ struct RecordStatus {
 
 // Where the next update goes on; its parity says which entry it reads, and it writes the other.
 struct RefreshCursors {
-    uvec2 march;   // bin of voxel hashes
-    uvec2 window;  // bucket of the table
+    uvec2 changed;  // bin of voxel hashes
+    uvec2 window;   // bucket of the table
 };
 
 struct ReflectanceParams {
@@ -37,8 +37,8 @@ struct ReflectanceParams {
     VoxelGrid voxels;   // the voxel map's
     uint edge_shift;    // of the observation map
     uint stamp;         // the update's index + 1
-    uint most_marched;  // records whose lights are marched in one update, about
-    uint refreshed;     // records looked at though nothing is known to have changed, about
+    uint most_changed;  // changed records whose lights are marched in one update, about
+    uint refreshed;     // and others, about
     uint max_window;    // buckets of the table looked at
     uint shadows;       // 0: every light reaches every voxel
     uint materials;     // entries of the table
