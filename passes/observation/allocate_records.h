@@ -4,7 +4,7 @@
 
 #include "engine/graph/frame.h"
 #include "passes/model/observation_map.h"
-#include "passes/observation/record_list.h"
+#include "passes/model/record_list.h"
 
 namespace patina {
 

@@ -1,4 +1,4 @@
-#include "passes/observation/record_list.h"
+#include "passes/model/record_list.h"
 
 namespace patina {
 

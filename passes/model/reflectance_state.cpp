@@ -1,0 +1,27 @@
+#include "passes/model/reflectance_state.h"
+
+namespace patina {
+
+ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
+    : status_(device.create_buffer(
+          {.name = "reflectance.status", .bytes = map.settings().capacity_records * sizeof(gpu::RecordStatus)})),
+      cursors_(device.create_buffer({.name = "reflectance.cursors", .bytes = sizeof(gpu::RefreshCursors)})) {}
+
+void ReflectanceState::reset(graph::Frame& frame) {
+    stamp_ = 0;
+    ReflectanceStateIds ids = import(frame);
+    ids.status = frame.fill(ids.status, 0);
+    ids.cursors = frame.fill(ids.cursors, 0);
+    keep(frame, ids);
+}
+
+ReflectanceStateIds ReflectanceState::import(graph::Frame& frame) const {
+    return {frame.import(status_), frame.import(cursors_)};
+}
+
+void ReflectanceState::keep(graph::Frame& frame, const ReflectanceStateIds& ids) {
+    frame.keep(ids.status);
+    frame.keep(ids.cursors);
+}
+
+}  // namespace patina

@@ -1,0 +1,66 @@
+#include "passes/reflectance/find_due_records.h"
+
+#include <algorithm>
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+namespace {
+
+/// Binds what both passes that look for due records have in common; they list what waits for marching in `march`.
+void bind(graph::PassBuilder& pass, ReflectanceFrame& reflectance, RecordList& march, RecordList& refine) {
+    pass.read("Lights", reflectance.lights).read("Materials", reflectance.materials);
+    pass.read("Records", reflectance.records.records).push(reflectance.params);
+    reflectance.state.status = pass.modify("Status", reflectance.state.status);
+    march.list = pass.modify("March", march.list);
+    march.arguments = pass.modify("MarchArguments", march.arguments);
+    refine.list = pass.modify("Refine", refine.list);
+    refine.arguments = pass.modify("RefineArguments", refine.arguments);
+}
+
+void add_due_window(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecords& due) {
+    auto pass = frame.compute("reflectance.due_window", spirv::due_window);
+    bind(pass, reflectance, due.march, due.refine);
+    const ObservationMapIds& ids = reflectance.records;
+    pass.read("Keys", ids.keys).read("Blocks", ids.blocks).read("RecordTable", ids.record_table);
+    pass.read("RecordCounters", ids.record_counters);
+    reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
+    const uint32_t buckets =
+        std::min(reflectance.params.max_window + gpu::kMaxProbes, reflectance.map.table_slots() / gpu::kBucketSlots);
+    pass.dispatch_covering(buckets * gpu::kBucketSlots);
+}
+
+/// Returns the records that wait for marching.
+RecordList add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed,
+                           RecordList& refine) {
+    RecordList waiting = create_record_list(frame, "reflectance.waiting", reflectance.map.settings().capacity_records);
+    auto pass = frame.compute("reflectance.due_changed", spirv::due_changed);
+    bind(pass, reflectance, waiting, refine);
+    pass.read("ChangedList", changed.list);
+    pass.dispatch_indirect(changed.arguments);
+    return waiting;
+}
+
+void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& waiting, RecordList& march) {
+    auto pass = frame.compute("reflectance.accept_due", spirv::accept_due);
+    pass.read("Waiting", waiting.list).read("Records", reflectance.records.records).push(reflectance.params);
+    reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
+    march.list = pass.modify("March", march.list);
+    march.arguments = pass.modify("MarchArguments", march.arguments);
+    pass.dispatch_indirect(waiting.arguments);
+}
+
+}  // namespace
+
+DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed) {
+    const uint32_t capacity = reflectance.map.settings().capacity_records;
+    DueRecords due{create_record_list(frame, "reflectance.march", capacity),
+                   create_record_list(frame, "reflectance.refine", capacity)};
+    add_due_window(frame, reflectance, due);
+    const RecordList waiting = add_due_changed(frame, reflectance, changed, due.refine);
+    add_accept_due(frame, reflectance, waiting, due.march);
+    return due;
+}
+
+}  // namespace patina

@@ -1,0 +1,78 @@
+#include "passes/reflectance/reflectance.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "passes/reflectance/find_visibility.h"
+#include "passes/reflectance/refine_albedo.h"
+
+namespace patina {
+
+namespace {
+
+constexpr uint32_t kLeastUpdates = 8;  // in which the window goes through the table, however few records there are
+constexpr uint32_t kEverything = UINT32_MAX;
+
+void check_budget(const char* name, uint32_t records) {
+    if (records == 0) throw Error("reflectance.", name, " is 0, it must be at least 1");
+}
+
+gpu::ReflectanceParams make_params(const ReflectanceModels& models, const ReflectanceSettings& settings,
+                                   uint32_t max_window) {
+    gpu::ReflectanceParams params{};
+    params.records = models.observation_map.grid();
+    params.voxels = models.voxel_map.grid();
+    params.edge_shift = models.observation_map.edge_shift();
+    params.stamp = models.state.next_stamp();
+    params.most_changed = settings.marched_records;
+    params.refreshed = settings.refreshed_records;
+    params.max_window = max_window;
+    params.shadows = settings.shadows ? 1 : 0;
+    params.materials = models.materials.capacity();
+    return params;
+}
+
+RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
+                              ObservationMapIds& records, const RecordList& changed, MapAccess access,
+                              const gpu::ReflectanceParams& params) {
+    ReflectanceStateIds state = models.state.import(frame);
+    ReflectanceFrame reflectance{models.voxel_map,
+                                 voxels,
+                                 access,
+                                 models.observation_map,
+                                 records,
+                                 state,
+                                 models.lights.upload(frame),
+                                 models.materials.import(frame),
+                                 params};
+    DueRecords due = add_find_due_records(frame, reflectance, changed);
+    add_find_visibility(frame, reflectance, due);
+    add_refine_albedo(frame, reflectance, due.refine);
+    ReflectanceState::keep(frame, state);
+    return {due.march, due.refine};
+}
+
+}  // namespace
+
+RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+                                          const VoxelMapIds& voxels, ObservationMapIds& records,
+                                          const RecordList& changed, MapAccess access,
+                                          const ReflectanceSettings& settings) {
+    check_budget("marched_records", settings.marched_records);
+    check_budget("refreshed_records", settings.refreshed_records);
+    const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
+    return add_update(frame, models, voxels, records, changed, access,
+                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)));
+}
+
+RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+                                              const VoxelMapIds& voxels, ObservationMapIds& records, MapAccess access,
+                                              const ReflectanceSettings& settings) {
+    ReflectanceSettings all = settings;
+    all.marched_records = all.refreshed_records = kEverything;
+    const RecordList none = create_record_list(frame, "reflectance.none", 1);
+    const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
+    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets));
+}
+
+}  // namespace patina

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "passes/model/lights.h"
+#include "passes/model/map_access.h"
+#include "passes/model/observation_map.h"
+#include "passes/model/record_list.h"
+#include "passes/model/reflectance_state.h"
+#include "passes/model/segment_materials.h"
+#include "passes/model/voxel_map.h"
+
+namespace patina {
+
+/// How much of the reflectance is brought up to date in a frame.
+struct ReflectanceSettings {
+    bool shadows = true;                ///< false: every light reaches every surface, as in the paper
+    uint32_t marched_records = 2048;    ///< changed records whose lights are marched in a frame at most, about
+    uint32_t refreshed_records = 2048;  ///< and others, looked at again in turn, about
+};
+
+/// The models that a refinement reads and writes.
+struct ReflectanceModels {
+    const VoxelMap& voxel_map;
+    const ObservationMap& observation_map;
+    const Lights& lights;
+    SegmentMaterials& materials;
+    ReflectanceState& state;
+};
+
+/// What one frame computed again.
+struct RefinedReflectance {
+    RecordList marched;  ///< records whose visibility was found
+    RecordList refined;  ///< records whose albedo was computed, but for those whose lights were never marched
+};
+
+/// Brings visibility and albedo of what is due in this frame up to date: of the records in `changed` (what
+/// add_collect_observations returned), and of some others in turn. Versions of the visibility and albedo in
+/// `records` are replaced. Throws Error when a budget is 0.
+RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+                                          const VoxelMapIds& voxels, ObservationMapIds& records,
+                                          const RecordList& changed, MapAccess access,
+                                          const ReflectanceSettings& settings);
+
+/// The same for all records at once, as at the end of a reconstruction.
+RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+                                              const VoxelMapIds& voxels, ObservationMapIds& records, MapAccess access,
+                                              const ReflectanceSettings& settings);
+
+}  // namespace patina

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/model/map_access.h"
+#include "passes/model/observation_map.h"
+#include "passes/model/record_list.h"
+#include "passes/model/reflectance_state.h"
+#include "passes/model/voxel_map.h"
+#include "shared/reflectance.h"
+
+namespace patina {
+
+/// What the passes of one update share.
+struct ReflectanceFrame {
+    const VoxelMap& voxel_map;
+    const VoxelMapIds& voxels;
+    MapAccess access;
+    const ObservationMap& map;
+    ObservationMapIds& records;  ///< visibility and albedo are replaced
+    ReflectanceStateIds& state;  ///< replaced
+    graph::BufferId lights;      ///< Lights::upload
+    graph::BufferId materials;   ///< SegmentMaterials::import
+    gpu::ReflectanceParams params;
+};
+
+}  // namespace patina

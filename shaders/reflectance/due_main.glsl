@@ -1,0 +1,32 @@
+// Body of the passes that look for records whose visibility or albedo is out of date, and list them, each once.
+#include "lib/record_list.glsl"
+#include "lib/reflectance.glsl"
+
+layout(std140, binding = 0) uniform Lights {
+    LightHeader header;
+    PointLight lights[kMaxPointLights];
+};
+layout(std430, binding = 1) readonly buffer Materials { SegmentMaterial materials[]; };
+layout(std430, binding = 2) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 3) buffer Status { RecordStatus status[]; };
+layout(std430, binding = 4) buffer March { uint march[]; };
+layout(std430, binding = 5) buffer MarchArguments { uint march_arguments[]; };
+layout(std430, binding = 6) buffer Refine { uint refine[]; };
+layout(std430, binding = 7) buffer RefineArguments { uint refine_arguments[]; };
+layout(push_constant) uniform Push { ReflectanceParams params; };
+
+// `observed`: its observations, surface or label changed. `refresh`: what is around it may have.
+void consider(uint record, bool observed, bool refresh) {
+    const VoxelRecord known = records[record];
+    if (observation_count(known) == 0u) return;
+    const bool march_again = refresh || !is_marched_from(status[record].marched, known, header.position_version);
+    if (march_again && atomicExchange(status[record].march_stamp, params.stamp) != params.stamp) {
+        APPEND_RECORD(march, march_arguments, record)
+    }
+    const uint label = record_label(known);
+    const uint version = label != 0u && label < params.materials ? materials[label].version : 0u;
+    const bool refine_again = observed || status[record].refined != refined_word(header.version, version);
+    if (refine_again && atomicExchange(status[record].refine_stamp, params.stamp) != params.stamp) {
+        APPEND_RECORD(refine, refine_arguments, record)
+    }
+}

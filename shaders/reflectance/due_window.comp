@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Lists what is due of the records in a window of the table that moves on with every update. A window of the table,
+// which is in the order of hashes, holds the same voxels in every run, as record ids would not.
+#include "lib/voxel_map.glsl"
+#include "reflectance/due_main.glsl"
+
+layout(local_size_x = kWindowGroup) in;
+layout(std430, binding = 8) readonly buffer Keys { uint keys[]; };
+layout(std430, binding = 9) readonly buffer Blocks { uint blocks[]; };
+layout(std430, binding = 10) readonly buffer RecordTable { uvec4 record_table[]; };
+layout(std430, binding = 11) readonly buffer RecordCounters { MapCounters record_counters; };
+layout(std430, binding = 12) buffer Cursors { RefreshCursors cursors; };
+
+void consider_quad(uvec4 entries) {
+    for (uint i = 0u; i < 4u; ++i) {
+        if (entries[i] < kNewRecord) consider(entries[i], false, true);
+    }
+}
+
+void main() {
+    const uint mask = params.records.bucket_mask;
+    const float share = float(params.refreshed) / float(max(record_counters.high_water, 1u));
+    const uint window = clamp(uint(min(share, 1.0) * float(mask + 1u)), 1u, params.max_window);
+    const uint parity = params.stamp & 1u;
+    const uint cursor = cursors.window[parity];
+    const uint item = gl_GlobalInvocationID.x;
+    if (item == 0u) cursors.window[parity ^ 1u] = (cursor + window) & mask;
+
+    // A full bucket's keys lie in those behind it.
+    if (item / kBucketSlots >= min(window + kMaxProbes - 1u, mask + 1u)) return;
+    const uint slot = (cursor * kBucketSlots + item) & (mask * kBucketSlots + kBucketSlots - 1u);
+    const uint key = keys[slot];
+    if (key == kEmptyKey || ((hash_of_key(key) - cursor) & mask) >= window) return;
+    const uint block = blocks[slot];
+    if (block == kNoBlock) return;
+    const uint quads = 1u << (3u * params.edge_shift - 2u);
+    for (uint quad = 0u; quad < quads; ++quad) consider_quad(record_table[block * quads + quad]);
+}

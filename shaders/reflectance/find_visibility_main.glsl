@@ -1,0 +1,135 @@
+// Body of the shaders that find which lights reach a voxel. The includer declares the map's table and distances and how
+// to load them:
+//   KEYS(bucket)    uvec4, the keys of a bucket
+//   BLOCK(slot)     uint, the block id of a table slot
+//   VOXEL(C, i)     uint, voxel i of the literal chunk C
+// The march reads nearest voxels. Space that was never seen is open.
+#include "lib/block_lookup.glsl"
+#include "lib/record_list.glsl"
+#include "lib/reflectance.glsl"
+#include "lib/voxel_chunks.glsl"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std140, binding = 0) uniform Lights {
+    LightHeader header;
+    PointLight lights[kMaxPointLights];
+};
+layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 2) readonly buffer March { uint listed[]; };
+layout(std430, binding = 3) buffer Status { RecordStatus status[]; };
+layout(std430, binding = 4) buffer Visibility { uvec2 visibility[]; };
+layout(std430, binding = 5) buffer Refine { uint refine[]; };
+layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
+layout(push_constant) uniform Push { ReflectanceParams params; };
+
+const uint kMaxSteps = 1024u;
+const float kLiftVox = 2.5;         // from where the march starts, above the surface
+const float kMostSkippedVox = 7.5;  // of the way, to get there
+const float kInsideVox = 0.5;       // a voxel this deep is inside, whatever the noise of a nearest voxel
+const float kGrazeShare = 0.75;     // of a record's voxel
+const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
+const float kLampMarginVox = 3.0;   // kept from a lamp, whose own surface is in the map
+const float kUnknownLampM = 0.15;   // the radius assumed of a lamp whose radius is not known
+const float kMostLampShare = 0.3;   // of the way to it
+const float kGrazingCosine = 0.12;  // 7 degrees above the surface, about what its normal may be off
+const float kBackCosine = -0.2;     // lights behind the surface by more do not reach it
+
+// The voxel at voxel coordinates; `block` is its block.
+uint load_voxel(uint block, ivec3 coordinates) {
+    const ivec3 within = coordinates & 7;
+    const uint index = index_in_chunk(params.voxels.chunk_shift, block) * kBlockVoxels +
+                       uint(within.z << 6 | within.y << 3 | within.x);
+    uint voxel;
+#define LOAD_VOXEL(C) voxel = VOXEL(C, index)
+    WITH_CHUNK(params.voxels.chunk_shift, block, LOAD_VOXEL)
+    return voxel;
+}
+
+// How far a ray goes on within the block that it is in.
+float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
+    const vec3 ends = (vec3(block * 8) + 8.0 * step(vec3(0.0), inverse_direction) - at) * inverse_direction;
+    return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
+}
+
+struct Passage {
+    bool open;
+    bool uncertain;  // it passes a surface, on either side, so near that another point of the voxel may see otherwise
+};
+
+// Along a ray from `gone` to `reach` (voxels), which begins `lift` above a surface and leaves it with `slope`.
+Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, float lift, float graze_vox) {
+    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    float deepest = 1e6;
+    bool grazed = false;
+    for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
+        const vec3 at = start + direction * gone;
+        const ivec3 voxel = ivec3(floor(at));
+        const uint block = find_block(params.voxels, voxel >> 3);
+        const bool have = block != kNoBlock;
+        const uint found = have ? load_voxel(block, voxel) : 0u;
+        const bool seen = voxel_weight(found) > 0u;
+        const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
+        deepest = min(deepest, here);
+        // The surface itself is this far.
+        grazed = grazed || here < min(graze_vox, 0.5 * (lift + gone * slope));
+        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
+        gone += have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
+    }
+    const bool open = deepest > -kInsideVox;
+    return Passage(open, grazed && deepest > -graze_vox);
+}
+
+Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
+    const float inverse_voxel = 1.0 / params.voxels.voxel_m;
+    const vec3 offset_vox = (light.position_m.xyz - point_m) * inverse_voxel;
+    const float distance_vox = max(length(offset_vox), 1e-6);
+    const vec3 direction = offset_vox / distance_vox;
+    const float cosine = dot(direction, normal);
+    if (cosine < kBackCosine) return Passage(false, false);
+    // Above the surface, if possible on the way itself, as a lifted way would move the shadow.
+    const float skipped = min(kLiftVox / max(cosine, 1e-6), kMostSkippedVox);
+    const float lift = max(kLiftVox - skipped * cosine, 0.0);
+    const float lamp_m = light.position_m.w > 0.0 ? light.position_m.w : kUnknownLampM;
+    const float lamp_vox = min(lamp_m * inverse_voxel + kLampMarginVox, kMostLampShare * distance_vox);
+    const float graze_vox = kGrazeShare * params.records.voxel_m * inverse_voxel;
+    Passage passage = march(point_m * inverse_voxel + lift * normal, direction, skipped, distance_vox - lamp_vox,
+                            cosine, lift, graze_vox);
+    passage.uncertain = passage.uncertain || cosine < kGrazingCosine;
+    return passage;
+}
+
+// Bits of the lights, in two words; all, where there are no shadows.
+struct Reached {
+    uvec2 open;
+    uvec2 uncertain;
+};
+
+Reached find_lights(vec3 point_m, vec3 normal) {
+    if (params.shadows == 0u) return Reached(uvec2(0xffffffffu), uvec2(0u));
+    Reached reached = Reached(uvec2(0u), uvec2(0u));
+    for (uint i = 0u; i < header.count; ++i) {
+        const Passage passage = light_passage(point_m, normal, lights[i]);
+        const uvec2 bit = uvec2(i < 32u ? 1u << i : 0u, i < 32u ? 0u : 1u << (i - 32u));
+        reached.open |= passage.open ? bit : uvec2(0u);
+        reached.uncertain |= passage.uncertain ? bit : uvec2(0u);
+    }
+    return reached;
+}
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x;
+    if (item >= listed[0]) return;
+    const uint record = listed[1u + item];
+    const VoxelRecord known = records[record];
+    const vec3 normal = surface_normal(known);
+    const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
+    const Reached reached = find_lights(point_m, normal);
+    const bool same = is_marched(status[record].marched, header.position_version) &&
+                      visibility[record] == reached.open && status[record].uncertain == reached.uncertain;
+    visibility[record] = reached.open;
+    status[record].uncertain = reached.uncertain;
+    status[record].marched = marched_word(known, header.position_version);
+    if (!same && atomicExchange(status[record].refine_stamp, params.stamp) != params.stamp) {
+        APPEND_RECORD(refine, refine_arguments, record)
+    }
+}

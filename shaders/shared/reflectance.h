@@ -1,0 +1,49 @@
+// Visibility of lights and refinement of the albedo, by record of the observation map.
+#ifndef PATINA_SHARED_REFLECTANCE_H
+#define PATINA_SHARED_REFLECTANCE_H
+#include "shared/lights.h"
+#include "shared/observations.h"
+INTEROP_BEGIN
+
+INTEROP_CONST float kKdDeviation = 0.05f;  // an albedo of this standard deviation has half the weight of an exact one
+INTEROP_CONST uint kWindowGroup = 64u;     // of the pass over table slots
+
+// The specular part of a segment's material; label 0, and labels without an entry, have none.
+struct SegmentMaterial {
+    vec4 ks_alpha;  // rgb, Ward roughness
+    uint version;   // changes with the material, above 0; 0: no entry
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+// What a record's visibility and albedo were computed from.
+struct RecordStatus {
+    uint marched;       // surface and version of the lights' positions, lib/reflectance.glsl; 0: never
+    uint refined;       // versions of lights and material; 0: never
+    uint march_stamp;   // the update that listed it last for marching
+    uint refine_stamp;  // for refinement
+    uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
+};
+
+// Where the next update goes on; its parity says which entry it reads, and it writes the other.
+struct RefreshCursors {
+    uvec2 changed;  // bin of voxel hashes
+    uvec2 window;   // bucket of the table
+};
+
+struct ReflectanceParams {
+    VoxelGrid records;  // the observation map's grid
+    VoxelGrid voxels;   // the voxel map's
+    uint edge_shift;    // of the observation map
+    uint stamp;         // the update's index + 1
+    uint most_changed;  // changed records whose lights are marched in one update, about
+    uint refreshed;     // and others, about
+    uint max_window;    // buckets of the table looked at
+    uint shadows;       // 0: every light reaches every voxel
+    uint materials;     // entries of the table
+    uint pad0;
+};
+
+INTEROP_END
+#endif

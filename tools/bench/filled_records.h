@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/graph/frame.h"
+#include "passes/model/observation_map.h"
+#include "passes/model/record_list.h"
+
+namespace patina {
+
+/// An observation of a record that is made up.
+struct FilledObservation {
+    glm::vec3 to_viewer{0, 0, 1};
+    glm::vec3 rgb{0};
+    std::array<bool, 3> clipped{};
+};
+
+/// A record that is made up: a surface within the voxel that a point lies in.
+struct FilledRecord {
+    glm::vec3 point_m{0};
+    glm::vec3 normal{0, 0, 1};
+    uint32_t label = 0;
+    std::vector<FilledObservation> observations;  ///< at most gpu::kMaxObservations
+};
+
+/// The surface point as the record keeps it: `point_m` moved within the tangent plane, below the voxel's centre.
+glm::vec3 kept_point_m(const ObservationMap& map, const FilledRecord& record);
+
+/// Writes records 0, 1, ... of a map that was just reset, without their entries in its table.
+void add_fill_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+                      const std::vector<FilledRecord>& records);
+
+/// The list of records 0 to count - 1.
+RecordList add_list_records(graph::Frame& frame, uint32_t count);
+
+}  // namespace patina

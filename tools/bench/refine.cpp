@@ -1,0 +1,176 @@
+// patina_refine_bench: how long the refinement of albedos takes, on records that are made up. See docs/benchmarks.md.
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <random>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "engine/graph/runner.h"
+#include "passes/reflectance/reflectance.h"
+#include "tools/bench/distribution.h"
+#include "tools/bench/filled_records.h"
+#include "tools/commands/commands.h"
+
+namespace patina::bench {
+
+namespace {
+
+struct Options {
+    tools::DeviceArguments device;
+    uint32_t records = 60000;
+    uint32_t observations = gpu::kMaxObservations;
+    uint32_t lights = 4;
+    uint32_t frames = 40;
+    uint32_t warmup = 4;
+    bool diffuse = false;
+};
+
+/// Processor time of this process, all threads together.
+double processor_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+/// A floor of voxels side by side, each seen from random directions above it, of one glossy material.
+std::vector<FilledRecord> floor_records(const Options& options, float voxel_m) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> angle(0, 6.283f), cosine(0.3f, 1), level(0.1f, 0.6f);
+    const auto width = static_cast<uint32_t>(std::sqrt(static_cast<float>(options.records))) + 1;
+    std::vector<FilledRecord> records;
+    for (uint32_t i = 0; i < options.records; ++i) {
+        const glm::vec2 at = (glm::vec2(i % width, i / width) - 0.5f * static_cast<float>(width)) * voxel_m;
+        FilledRecord record{{at.x, 0.3f * voxel_m, at.y}, {0, -1, 0}, 1, {}};
+        for (uint32_t k = 0; k < options.observations; ++k) {
+            const float up = cosine(random), around = angle(random), across = std::sqrt(1 - up * up);
+            record.observations.push_back({{across * std::cos(around), -up, across * std::sin(around)},
+                                           {level(random), level(random), level(random)},
+                                           {}});
+        }
+        records.push_back(record);
+    }
+    return records;
+}
+
+/// The models, filled.
+struct Bench {
+    Bench(vulkan::Device& device, const Options& options)
+        : voxel_map(device, {.capacity_blocks = 64}),
+          map(device, {.capacity_blocks = 64, .capacity_records = options.records}),
+          materials(device, 2),
+          state(device, map),
+          runner(device) {
+        std::vector<PointLight> lamps;
+        for (uint32_t i = 0; i < options.lights; ++i) {
+            const float x = 2.0f * static_cast<float>(i % 8) - 4.0f, z = 2.0f * static_cast<float>(i / 8) - 4.0f;
+            lamps.push_back({{x, -2.2f, z}, glm::vec3(3), 0.05f});
+        }
+        lights.set(lamps, glm::vec3(0.02f));
+        if (!options.diffuse) materials.set(1, glm::vec3(0.1f), 0.2f);
+        settings.shadows = false;
+        settings.marched_records = UINT32_MAX;
+        graph::Frame frame = runner.begin();
+        voxel_map.reset(frame, glm::dvec3(0));
+        map.reset(frame, glm::dvec3(0));
+        state.reset(frame);
+        runner.submit(std::move(frame));
+        frame = runner.begin();
+        ObservationMapIds ids = map.import(frame);
+        add_fill_records(frame, map, ids, floor_records(options, map.settings().voxel_m));
+        ObservationMap::keep(frame, ids);
+        runner.submit(std::move(frame));
+    }
+
+    /// One update in which `count` records have changed.
+    void update(uint32_t count) {
+        runner.wait();
+        graph::Frame frame = runner.begin();
+        ObservationMapIds ids = map.import(frame);
+        const RecordList changed = add_list_records(frame, count);
+        add_refine_reflectance(frame, {voxel_map, map, lights, materials, state}, voxel_map.import(frame), ids, changed,
+                               MapAccess::kStorage, settings);
+        ObservationMap::keep(frame, ids);
+        runner.submit(std::move(frame));
+        runner.wait();
+    }
+
+    /// Processor time of each of `frames` updates.
+    std::vector<float> measure(uint32_t count, uint32_t frames) {
+        std::vector<float> samples;
+        for (uint32_t i = 0; i < frames; ++i) {
+            const double start = processor_ms();
+            update(count);
+            samples.push_back(static_cast<float>(processor_ms() - start));
+        }
+        return samples;
+    }
+
+    VoxelMap voxel_map;
+    ObservationMap map;
+    Lights lights;
+    SegmentMaterials materials;
+    ReflectanceState state;
+    ReflectanceSettings settings;
+    graph::Runner runner;
+};
+
+void print(const char* name, const Distribution& d) {
+    fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
+}
+
+void run(const Options& options) {
+    vulkan::Device device(options.device.options());
+    Bench bench(device, options);
+    bench.measure(options.records, options.warmup);
+    bench.measure(0, 1);
+    bench.runner.clear_timings();
+    const Distribution all = distribution(bench.measure(options.records, options.frames));
+    const auto timings = bench.runner.pass_timings();
+    const Distribution none = distribution(bench.measure(0, options.frames));
+    fmt::print("{}, {}\n{} records with {} observations and {} lights, {} frames\n\n", device.caps().name,
+               device.caps().driver, options.records, options.observations, options.lights, options.frames);
+    fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
+    for (const graph::Timing& timing : timings) {
+        if (timing.name.starts_with("reflectance.")) print(timing.name.c_str(), distribution(timing.samples_ms));
+    }
+    print("processor time of an update", all);
+    print("the same, nothing to refine", none);
+    fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", "refinement",
+               (all.median - none.median) / 2);
+}
+
+}  // namespace
+
+}  // namespace patina::bench
+
+int main(int argc, char** argv) {
+    using namespace patina;
+    CLI::App app("Measures how long the refinement of albedos takes", "patina_refine_bench");
+    bench::Options options;
+    app.add_option("--records", options.records, "Voxels to refine")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, 262144u));
+    app.add_option("--observations", options.observations, "Of each of them")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, gpu::kMaxObservations));
+    app.add_option("--lights", options.lights, "Point lights")
+        ->capture_default_str()
+        ->check(CLI::Range(0u, gpu::kMaxPointLights));
+    app.add_flag("--diffuse", options.diffuse, "Without a specular material");
+    app.add_option("--frames", options.frames, "How many updates to measure")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    app.add_option("--warmup", options.warmup, "How many to run before")->capture_default_str();
+    options.device.add_to(app);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        bench::run(options);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "patina_refine_bench: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
