@@ -1,0 +1,57 @@
+#include "passes/shading/predict_radiance.h"
+
+#include "shared/predict_radiance.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+namespace {
+
+/// The records that a view can show, found and packed once.
+struct PackedRecords {
+    graph::BufferId entries;  ///< u32 per observation voxel of each block of the voxel map: record id, or kNoRecord
+    graph::BufferId content;  ///< uvec4 per record: lib/packed_records.glsl
+};
+
+PackedRecords add_pack_records(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+                               const ObservationMap& map, const ObservationMapIds& records,
+                               const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
+    auto pass = frame.compute("shading.pack_records", spirv::pack_records);
+    pass.read("View", inputs.view).read("ViewGrid", inputs.view_grid);
+    pass.read("BlockKeys", voxels.block_keys).read("Counters", voxels.counters);
+    pass.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
+    pass.read("Records", records.records).read("Albedo", records.albedo).read("Visibility", records.visibility);
+    pass.read("Status", state.status);
+    const uint64_t entries = uint64_t{voxel_map.settings().capacity_blocks} << 3 * map.edge_shift();
+    PackedRecords packed;
+    packed.entries = pass.create("Entries", entries * sizeof(uint32_t));
+    packed.content = pass.create("Packed", uint64_t{map.settings().capacity_records} * sizeof(glm::uvec4));
+    pass.push(gpu::PackRecordsParams{voxel_map.grid(), map.grid(), map.edge_shift(), 0, 0, 0});
+    pass.dispatch_indirect(voxels.block_arguments);
+    return packed;
+}
+
+}  // namespace
+
+PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+                                     const ObservationMap& map, const ObservationMapIds& records,
+                                     const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
+    const Extent2D extent = frame.common_extent({inputs.position_m, inputs.normal});
+    const PackedRecords packed = add_pack_records(frame, voxel_map, voxels, map, records, state, inputs);
+    auto pass = frame.compute("shading.predict_radiance", spirv::predict_radiance);
+    pass.read("position_m", inputs.position_m).read("normal", inputs.normal).read("View", inputs.view);
+    pass.read("ViewGrid", inputs.view_grid).read("Entries", packed.entries).read("Packed", packed.content);
+    pass.read("Records", records.records).read("Visibility", records.visibility);
+    pass.read("Lights", inputs.lights).read("Materials", inputs.materials);
+    PredictedImages out;
+    out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
+    out.label = pass.create("label", {extent, vulkan::Format::kR32u});
+    out.ks_alpha = pass.create("ks_alpha", {extent, vulkan::Format::kRgba16f});
+    out.rgb = pass.create("rgb", {extent, vulkan::Format::kRgba16f});
+    pass.push(gpu::PredictRadianceParams{map.settings().voxel_m, map.edge_shift(), inputs.material_count,
+                                         inputs.shadows ? 1u : 0u});
+    pass.dispatch_covering(extent);
+    return out;
+}
+
+}  // namespace patina

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/model/observation_map.h"
+#include "passes/model/reflectance_state.h"
+#include "passes/model/segment_materials.h"
+#include "passes/model/voxel_map.h"
+
+namespace patina {
+
+/// The surface as one camera sees it, and where to look for its records.
+struct PredictRadianceInputs {
+    graph::ImageId position_m;  ///< W x H rgba32f: world; w is 0 where nothing was hit
+    graph::ImageId normal;      ///< W x H rgba16f: world, unit length; 0 where it is not known
+    graph::BufferId view;       ///< gpu::ViewParams of the camera
+    graph::BufferId view_grid;  ///< u32 per block of the box around the view: block id of the voxel map, or kNoBlock
+    graph::BufferId lights;     ///< gpu::LightHeader, gpu::PointLight[gpu::kMaxPointLights]
+    graph::BufferId materials;  ///< gpu::SegmentMaterial[material_count]
+    uint32_t material_count = 0;
+    bool shadows = true;  ///< false: every light reaches every surface, as in the paper
+};
+
+/// What the model looks like. All zero where nothing was hit.
+struct PredictedImages {
+    graph::ImageId kd;     ///< W x H rgba16f: diffuse albedo; a is 1 where it is known, else all is 0
+    graph::ImageId label;  ///< W x H r32ui: segment, 0 where none is known
+    graph::ImageId
+        ks_alpha;        ///< W x H rgba16f: specular albedo and Ward roughness of the segment; 0 without a material
+    graph::ImageId rgb;  ///< W x H rgba16f: linear pixel value; a is 1 where kd is known, else all is 0
+};
+
+/// Reflectance and radiance of each surface point (paper, Eq. 6 with Ward's Eq. 2-4, and an ambient term). Kd is the
+/// trilinear mean of the eight records around the point (Section 3.7), each weighted by its certainty and by how much
+/// its surface is the point's: normals agree, its tangent plane passes by. Where none of them is known, the nearest
+/// known one within a voxel more counts. How much of a light reaches the point is interpolated likewise. The segment
+/// is that of the nearest record with a label. Throws Error when the images differ in extent.
+PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+                                     const ObservationMap& map, const ObservationMapIds& records,
+                                     const ReflectanceStateIds& state, const PredictRadianceInputs& inputs);
+
+}  // namespace patina

@@ -1,0 +1,49 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Finds the records in the blocks that a view's grid holds, once per block instead of for each pixel, and packs what
+// shading needs of them. One invocation per block of the voxel map.
+#include "lib/packed_records.glsl"
+#include "lib/view_grid.glsl"
+#include "shared/predict_radiance.h"
+
+layout(local_size_x = kVisibleGroup) in;
+layout(std140, binding = 0) uniform View { ViewParams view; };
+layout(std430, binding = 1) readonly buffer ViewGrid { uint view_grid[]; };
+layout(std430, binding = 2) readonly buffer BlockKeys { uint block_keys[]; };
+layout(std430, binding = 3) readonly buffer Counters { MapCounters counters; };
+layout(std430, binding = 4) readonly buffer Keys { uvec4 keys[]; };
+layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
+layout(std430, binding = 6) readonly buffer RecordTable { uint record_table[]; };
+layout(std430, binding = 7) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 8) readonly buffer Albedo { uvec2 albedo[]; };
+layout(std430, binding = 9) readonly buffer Visibility { uvec2 visibility[]; };
+layout(std430, binding = 10) readonly buffer Status { RecordStatus status[]; };
+layout(std430, binding = 11) writeonly buffer Entries {
+    uint entries[];
+};  // record id per voxel of each block, or kNoRecord
+layout(std430, binding = 12) writeonly buffer Packed { uvec4 packed_records[]; };
+layout(push_constant) uniform Push { PackRecordsParams params; };
+#define KEYS(bucket) keys[bucket]
+#define BLOCK(slot) blocks[slot]
+#define RECORD(entry) record_table[entry]
+#include "lib/find_record.glsl"
+
+void main() {
+    const uint block = gl_GlobalInvocationID.x;
+    if (block >= counters.high_water) return;
+    const uint key = block_keys[block];
+    if (key == kEmptyKey) return;
+    const ivec3 coordinates = block_of_key(params.voxels, key);
+    const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates);
+    if (cell == kOutsideGrid || view_grid[cell] != block) return;
+
+    const uint voxels = 1u << 3u * params.edge_shift;
+    for (uint i = 0u; i < voxels; ++i) {
+        const uint record =
+            find_record(params.records, params.edge_shift, voxel_of_record(coordinates, i, params.edge_shift));
+        entries[block * voxels + i] = record;
+        if (record == kNoRecord) continue;
+        packed_records[record] =
+            pack_record(records[record], albedo[record], status[record].marched != 0u, visibility[record].x);
+    }
+}

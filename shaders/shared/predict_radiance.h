@@ -1,0 +1,27 @@
+// Re-rendering: what a camera sees of the model, with its reflectance and the lights.
+#ifndef PATINA_SHARED_PREDICT_RADIANCE_H
+#define PATINA_SHARED_PREDICT_RADIANCE_H
+#include "shared/reflectance.h"
+INTEROP_BEGIN
+
+INTEROP_CONST uint kPredictGroupX = 32u;
+INTEROP_CONST uint kPredictGroupY = 4u;
+
+struct PackRecordsParams {
+    VoxelGrid voxels;   // the voxel map's grid
+    VoxelGrid records;  // the observation map's
+    uint edge_shift;    // of the observation map
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+struct PredictRadianceParams {
+    float voxel_m;    // of the observations
+    uint edge_shift;  // of the observation map
+    uint materials;   // entries of the table
+    uint shadows;     // 0: every light reaches every surface
+};
+
+INTEROP_END
+#endif

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "passes/model/lights.h"
+#include "passes/model/reflectance_state.h"
+#include "passes/model/segment_materials.h"
+#include "tests/gpu/observation_rig.h"
+#include "tests/reference/predict_radiance.h"
+
+namespace patina {
+
+/// Where a record lies.
+struct RecordPlace {
+    std::array<int, 3> voxel{};
+    glm::dvec3 point_m{0};  ///< of its surface, below the voxel's centre
+    glm::dvec3 normal{0};
+};
+
+/// What the shading makes of a view.
+struct ShadedView {
+    Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb;
+    Image<uint32_t> label;
+};
+
+/// A model whose geometry and records come from the passes, and whose albedo, visibility and labels are painted on, for
+/// tests.
+class ShadingRig {
+  public:
+    ShadingRig(vulkan::Device& device, graph::Runner& runner, float voxel_m);
+
+    /// Fuses and observes a scene from one pose.
+    void see(const reference::DistanceField& field, const RigidTransform& world_from_camera);
+
+    /// Gives every record what `paint` returns; normal and offset stay its own.
+    void paint(const std::function<reference::ShadedRecord(const RecordPlace&)>& paint);
+
+    ShadedView predict(const Intrinsics& camera, const RigidTransform& world_from_camera, bool shadows = true);
+
+    /// The painted model with the lights as the reference takes it.
+    reference::ShadedScene scene() const;
+
+    static const Intrinsics& camera();
+
+    Lights lights;
+    SegmentMaterials materials;
+
+  private:
+    struct Stored {
+        std::vector<gpu::VoxelRecord> records;
+        std::vector<glm::uvec2> albedo, visibility;
+        std::vector<gpu::RecordStatus> status;
+    };
+    Stored read();
+    void write(const Stored& stored);
+
+    double voxel_m_;
+    graph::Runner& runner_;
+    ObservationRig observations_;
+    ReflectanceState state_;
+    std::map<std::array<int, 3>, reference::ShadedRecord> painted_;
+};
+
+}  // namespace patina

@@ -1,0 +1,115 @@
+#include "tests/reference/predict_radiance.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace patina::reference {
+
+namespace {
+
+/// Linear from 1 at `all` to 0 at `none`.
+double fall(double value, double all, double none) { return std::clamp((value - none) / (all - none), 0.0, 1.0); }
+
+/// A record of the point's own surface.
+struct Neighbour {
+    const ShadedRecord* record;
+    double weight;     ///< of its surface
+    double share;      ///< in trilinear interpolation; below 0 where it has none
+    double distance2;  ///< from its voxel's centre, in voxels
+};
+
+/// The records of the point's own surface, out of those of 2^3 voxels or, with margin 1, of 4^3 around it.
+std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, int margin) {
+    std::vector<Neighbour> result;
+    const glm::dvec3 at = point_m / scene.voxel_m - 0.5;
+    const glm::ivec3 low(glm::floor(at));
+    for (int z = low.z - margin; z <= low.z + 1 + margin; ++z) {
+        for (int y = low.y - margin; y <= low.y + 1 + margin; ++y) {
+            for (int x = low.x - margin; x <= low.x + 1 + margin; ++x) {
+                const auto found = scene.records.find({x, y, z});
+                if (found == scene.records.end()) continue;
+                const ShadedRecord& record = found->second;
+                const glm::dvec3 away = at - glm::dvec3(x, y, z), shares = 1.0 - glm::abs(away);
+                const double off = std::abs(glm::dot(record.normal, away) - record.offset_vox);
+                const double weight = fall(glm::dot(record.normal, normal), 0.75, 0.25) * fall(off, 0.5, 1.0);
+                const bool inside = glm::all(glm::greaterThanEqual(shares, glm::dvec3(0)));
+                if (weight > 0) {
+                    result.push_back(
+                        {&record, weight, inside ? shares.x * shares.y * shares.z : -1, glm::dot(away, away)});
+                }
+            }
+        }
+    }
+    return result;
+}
+
+bool is_known(const ShadedRecord& record) { return record.certainty != glm::dvec3(0); }
+
+template <class Wanted>
+const ShadedRecord* nearest(const std::vector<Neighbour>& all, const Wanted& wanted) {
+    const ShadedRecord* best = nullptr;
+    double least = std::numeric_limits<double>::max();
+    for (const Neighbour& neighbour : all) {
+        if (!wanted(*neighbour.record) || neighbour.distance2 >= least) continue;
+        least = neighbour.distance2;
+        best = neighbour.record;
+    }
+    return best;
+}
+
+glm::dvec3 mean_kd(const std::vector<Neighbour>& around) {
+    glm::dvec3 sum(0), weights(0);
+    for (const Neighbour& neighbour : around) {
+        const glm::dvec3 weight = neighbour.weight * neighbour.share * neighbour.record->certainty;
+        sum += weight * neighbour.record->kd;
+        weights += weight;
+    }
+    return sum / glm::max(weights, 1e-20);
+}
+
+/// The share of the surface around the point that light i reaches; nothing where no record knows.
+std::optional<double> share_lit(const std::vector<Neighbour>& around, size_t i) {
+    double lit = 0, all = 0;
+    for (const Neighbour& neighbour : around) {
+        if (!neighbour.record->marched) continue;
+        const double weight = neighbour.weight * neighbour.share;
+        all += weight;
+        if (neighbour.record->reached >> i & 1) lit += weight;
+    }
+    return all > 0 ? std::optional(lit / all) : std::nullopt;
+}
+
+}  // namespace
+
+ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 viewer_m) {
+    const std::vector<Neighbour> around = neighbours(scene, point_m, normal, 0),
+                                 farther = neighbours(scene, point_m, normal, 1);
+    const bool filled =
+        std::none_of(around.begin(), around.end(), [](const Neighbour& n) { return is_known(*n.record); });
+    const ShadedRecord* fill = filled ? nearest(farther, is_known) : nullptr;
+    const auto labelled = [](const ShadedRecord& record) { return record.label != 0; };
+    const ShadedRecord* segment = nearest(around, labelled);
+    if (!segment && filled) segment = nearest(farther, labelled);
+
+    ShadedPoint result;
+    if (segment) result.label = segment->label;
+    if (scene.materials.count(result.label)) result.gloss = scene.materials.at(result.label);
+    if (filled && !fill) return result;
+    result.known = true;
+    result.kd = fill ? fill->kd : mean_kd(around);
+    result.rgb = scene.ambient * result.kd;
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        const glm::dvec3 offset = scene.lights[i].position_m - point_m;
+        const glm::dvec3 to_light = glm::normalize(offset);
+        double lit = 1;
+        if (scene.shadows) lit = share_lit(around, i).value_or(fill ? double(fill->reached >> i & 1) : 1);
+        const Ward material{result.kd, result.gloss.ks, std::max(result.gloss.alpha, 0.01)};
+        const glm::dvec3 facing = scene.lights[i].intensity / glm::dot(offset, offset);
+        result.rgb += lit * ward(material, normal, to_light, glm::normalize(viewer_m - point_m)) * facing *
+                      std::max(glm::dot(normal, to_light), 0.0);
+    }
+    return result;
+}
+
+}  // namespace patina::reference
