@@ -32,6 +32,7 @@ const float kClippedShare = 1e-3;      // the weight of what is only a lower bou
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
+const float kLeastExponent = -60.0;  // denormal numbers, which an open end would lead to, take processors half the time
 const float kLog2E = 1.442695;
 const uint kAnyClipped = 7u << 26;  // of a direction word
 const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
@@ -80,7 +81,7 @@ Irradiance add_lights(vec3 point_m, vec3 normal, float exponent_scale, bool spec
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float along = cosine + normal_cosine[k];
             const float tan2 = (2.0 + 2.0 * dot(to_light, direction_of[k])) / (along * along) - 1.0;
-            highlight[k] += gloss * exp2(exponent_scale * max(tan2, 0.0));
+            highlight[k] += gloss * exp2(clamp(exponent_scale * tan2, kLeastExponent, 0.0));
         }
     }
     return irradiance;
