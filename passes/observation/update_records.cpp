@@ -6,6 +6,16 @@
 
 namespace patina {
 
+namespace {
+
+/// True where the colour camera sees past what hides a point from it, or hides it, other than the depth camera does.
+bool is_apart(const gpu::ObservationParams& params) {
+    const auto center = [](const gpu::Camera& camera) { return glm::inverse(camera.camera_from_world)[3]; };
+    return glm::distance(center(params.depth_camera), center(params.color_camera)) > 1e-4f;
+}
+
+}  // namespace
+
 RecordList add_update_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
                               const ObservationInputs& inputs, const RecordList& visible, graph::BufferId params,
                               const gpu::ObservationParams& values) {
@@ -21,7 +31,7 @@ RecordList add_update_records(graph::Frame& frame, const ObservationMap& map, Ob
     collect.read("position_m", inputs.position_m).read("normal", inputs.normal);
     collect.read("depth_m", inputs.depth_m).read("slope", inputs.slope).read("color_linear", inputs.color_linear);
     collect.read("labels", labels).read("Observation", params).read("Visible", visible.list);
-    collect.specialise("kVoxelChunks", map.chunks());
+    collect.specialise("kVoxelChunks", map.chunks()).specialise("kColorApart", is_apart(values) ? 1 : 0);
     ids.records = collect.modify("Records", ids.records);
     ids.changed = collect.modify("Changed", ids.changed);
     ids.directions = collect.modify("Directions", ids.directions);

@@ -2,13 +2,11 @@
 // of the two most similar (paper, Section 3.4). The includer declares
 //   layout(std430, binding = n) buffer Directions { uvec4 quads[]; } directions[kMaxVoxelChunks];
 //   layout(std430, binding = n) buffer Colors { uvec4 quads[]; } colors[kMaxVoxelChunks];
-// A record keeps its closest pair of directions. So a new one is compared with 30 directions and not 31 with one
-// another, and nothing else is done where it is dropped, which is the rule once a voxel was seen from all around.
+// A record keeps its closest pair of directions. So a new one is compared with 30 directions, not 31 with one another,
+// and that is all where it is dropped, as most are once a voxel was seen from all around.
 #include "lib/observations.glsl"
 #include "lib/record_colors.glsl"
 #include "lib/record_directions.glsl"
-
-const uint kAdded = kMaxObservations;  // the new observation's number among 31
 
 struct Insertion {
     uint count;         // of observations, afterwards
@@ -27,48 +25,42 @@ void store_color(uint chunk_shift, uint record, uint item, uint word) {
     WITH_CHUNK(chunk_shift, record, STORE_COLOR)
 }
 
-vec3 stored[kMaxObservations];  // the record's directions on the grid
-float closest_distance2;        // of its closest pair
-uvec2 closest_pair;             // earlier, later
-
 struct Nearest {
     uint item;
     float distance2;
-    float next_distance2;  // of the next nearest
 };
 
-// Loads the record, and finds which of its first `count` directions is nearest to `at`; the first of several.
+// Which of a record's first `count` directions is nearest to `at`; the first of several. Four at a time: unrolled
+// whole, some devices take minutes to compile it.
 Nearest find_nearest(uint chunk_shift, uint record, uint count, vec3 at) {
-    Nearest nearest = Nearest(0u, kFarApart, kFarApart);
-    [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+    Nearest nearest = Nearest(0u, kFarApart);
+    for (uint quad = 0u; 4u * quad < count; ++quad) {
         const uvec4 words = load_directions(chunk_shift, record, quad);
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint item = 4u * quad + i;
-            if (item == kClosestDistance) closest_distance2 = count < 2u ? kFarApart : uintBitsToFloat(words[i]);
-            if (item == kClosestPair) closest_pair = uvec2(words[i] & 0xffu, words[i] >> 8);
-            if (item >= kMaxObservations) continue;
-            stored[item] = direction_on_grid(words[i]);
-            const float distance2 = item < count ? grid_distance2(stored[item], at) : kFarApart;
-            const bool nearer = distance2 < nearest.distance2;
-            nearest.next_distance2 = nearer ? nearest.distance2 : min(nearest.next_distance2, distance2);
-            nearest.item = nearer ? item : nearest.item;
+            const float distance2 = item < count ? grid_distance2(direction_on_grid(words[i]), at) : kFarApart;
+            nearest.item = distance2 < nearest.distance2 ? item : nearest.item;
             nearest.distance2 = min(nearest.distance2, distance2);
         }
     }
     return nearest;
 }
 
-// Which of the closest pair of 31 observations goes: the one whose next nearest neighbour is nearer, so that gaps are
-// not widened; the later one when these are equal.
+// Which of the closest pair goes for a new one: the one whose next nearest neighbour is nearer, so that gaps are not
+// widened; the later one when these are equal.
 uint choose_dropped(uint chunk_shift, uint record, uvec2 pair, vec3 added) {
-    const bool with_added = pair.y == kAdded;
     const vec3 a = direction_on_grid(load_direction(chunk_shift, record, pair.x));
-    const vec3 b = with_added ? added : direction_on_grid(load_direction(chunk_shift, record, pair.y));
-    vec2 next = with_added ? vec2(kFarApart) : vec2(grid_distance2(a, added), grid_distance2(b, added));
-    [[unroll]] for (uint item = 0u; item < kMaxObservations; ++item) {
-        const bool other = item != pair.x && item != pair.y;
-        const vec2 apart = vec2(grid_distance2(a, stored[item]), grid_distance2(b, stored[item]));
-        next = min(next, other ? apart : vec2(kFarApart));
+    const vec3 b = direction_on_grid(load_direction(chunk_shift, record, pair.y));
+    vec2 next = vec2(grid_distance2(a, added), grid_distance2(b, added));
+    for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+        const uvec4 words = load_directions(chunk_shift, record, quad);
+        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+            const uint item = 4u * quad + i;
+            const bool other = item < kMaxObservations && item != pair.x && item != pair.y;
+            const vec3 direction = direction_on_grid(words[i]);
+            const vec2 apart = vec2(grid_distance2(a, direction), grid_distance2(b, direction));
+            next = min(next, other ? apart : vec2(kFarApart));
+        }
     }
     return next.x < next.y ? pair.x : pair.y;
 }
@@ -87,17 +79,20 @@ bool merge(uint chunk_shift, uint record, uint item, vec3 rgb, bvec3 clipped) {
     return after != before || flagged != word;
 }
 
-// Puts the new one in place of the dropped one of 31, if that is another.
+// Of 31 observations one of the closest pair goes. Where the new one belongs to it, that is the new one: were it the
+// other, a camera that moves slowly would drag its last observation along and leave nothing behind. The set's smallest
+// distance never shrinks by this.
 Insertion replace(uint chunk_shift, uint record, Nearest nearest, vec3 at, uint direction, uint color) {
-    // Of pairs as close, the one that was there first.
-    const uvec2 pair = nearest.distance2 < closest_distance2 ? uvec2(nearest.item, kAdded) : closest_pair;
+    const uvec4 last = load_directions(chunk_shift, record, kRecordQuads - 1u);
+    // Of pairs as close, the one that was there first counts.
+    if (nearest.distance2 < uintBitsToFloat(last[kClosestDistance % 4u])) {
+        return Insertion(kMaxObservations, false, false);
+    }
+    const uvec2 pair = uvec2(last[kClosestPair % 4u] & 0xffu, last[kClosestPair % 4u] >> 8);
     const uint dropped = choose_dropped(chunk_shift, record, pair, at);
-    if (dropped == kAdded) return Insertion(kMaxObservations, false, false);
     store_direction(chunk_shift, record, dropped, direction);
     store_color(chunk_shift, record, dropped, color);
-    const float to_others = nearest.item == dropped ? nearest.next_distance2 : nearest.distance2;
-    return Insertion(kMaxObservations, true,
-                     any(equal(closest_pair, uvec2(dropped))) || to_others <= closest_distance2);
+    return Insertion(kMaxObservations, true, true);
 }
 
 // Adds an observation to a record that has `count`. Directions within sqrt(merge_distance2) grid steps are the same.
@@ -113,7 +108,9 @@ Insertion insert_observation(uint chunk_shift, uint record, uint count, vec3 dir
     if (count == kMaxObservations) return replace(chunk_shift, record, nearest, at, word, color);
     store_direction(chunk_shift, record, count, word);
     store_color(chunk_shift, record, count, color);
-    if (count > 0u && nearest.distance2 < closest_distance2) {
+    const float closest =
+        count < 2u ? kFarApart : uintBitsToFloat(load_direction(chunk_shift, record, kClosestDistance));
+    if (count > 0u && nearest.distance2 < closest) {
         store_direction(chunk_shift, record, kClosestDistance, floatBitsToUint(nearest.distance2));
         store_direction(chunk_shift, record, kClosestPair, nearest.item | count << 8);
     }

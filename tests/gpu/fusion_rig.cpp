@@ -17,14 +17,13 @@ namespace {
 
 constexpr float kNearM = 0.1f;
 
-/// Four half floats per pixel to four floats.
+}  // namespace
+
 Image<glm::vec4> widen(const Image<uint64_t>& halves) {
     Image<glm::vec4> wide(halves.extent());
     for (size_t i = 0; i < halves.pixels().size(); ++i) wide.pixels()[i] = glm::unpackHalf4x16(halves.pixels()[i]);
     return wide;
 }
-
-}  // namespace
 
 reference::BlockCoordinates coordinates_of_key(uint32_t key) {
     return {static_cast<int>(key % 2048) - 1024, static_cast<int>(key / 2048 % 1024) - 512,

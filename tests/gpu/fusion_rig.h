@@ -37,6 +37,9 @@ struct BlockContent {
 };
 using MapContent = std::map<reference::BlockCoordinates, BlockContent>;
 
+/// Four half floats per pixel to four floats.
+Image<glm::vec4> widen(const Image<uint64_t>& halves);
+
 /// Coordinates of a key in a map around the world's origin.
 reference::BlockCoordinates coordinates_of_key(uint32_t key);
 

@@ -28,7 +28,7 @@ void ObservationRig::fuse(const RigFrame& frame, int times) {
     for (int i = 0; i < times; ++i) fusion_.fuse(frame.camera, frame.world_from_camera, frame.depth_m);
 }
 
-ObservationRig::Counts ObservationRig::collect(const RigFrame& rig_frame) {
+ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
     graph::Frame frame = runner_.begin();
     const Extent2D extent = rig_frame.camera.extent;
     ObservationInputs inputs;
@@ -55,10 +55,12 @@ ObservationRig::Counts ObservationRig::collect(const RigFrame& rig_frame) {
                                  make_camera(rig_frame.color.camera, rig_frame.color.world_from_camera), frame_++);
     ObservationMap::keep(frame, ids);
     const graph::Readback seen = frame.read_back(collected.visible.list, 0, 4),
-                          changed = frame.read_back(collected.changed.list, 0, 4);
+                          changed = frame.read_back(collected.changed.list, 0, 4),
+                          position = frame.read_back(model.position_m), normal = frame.read_back(model.normal);
     runner_.submit(std::move(frame));
     runner_.wait();
-    return {seen.as<uint32_t>().front(), changed.as<uint32_t>().front()};
+    return {seen.as<uint32_t>().front(), changed.as<uint32_t>().front(), position.image<glm::vec4>(),
+            widen(normal.image<uint64_t>())};
 }
 
 gpu::MapCounters ObservationRig::read(graph::BufferId ObservationMapIds::*counters) {
@@ -71,6 +73,22 @@ gpu::MapCounters ObservationRig::read(graph::BufferId ObservationMapIds::*counte
 
 gpu::MapCounters ObservationRig::block_counters() { return read(&ObservationMapIds::block_counters); }
 gpu::MapCounters ObservationRig::record_counters() { return read(&ObservationMapIds::record_counters); }
+
+std::vector<gpu::VoxelRecord> ObservationRig::find(const std::vector<glm::ivec4>& voxels) {
+    graph::Frame frame = runner_.begin();
+    const ObservationMapIds ids = map_.import(frame);
+    auto find = frame.compute("test.find_records", spirv::test_find_records);
+    find.read("Voxels", frame.upload<glm::ivec4>("voxels", voxels)).read("Keys", ids.keys).read("Blocks", ids.blocks);
+    find.read("RecordTable", ids.record_table).read("Records", ids.records);
+    const auto found = find.create("Found", voxels.size() * sizeof(gpu::VoxelRecord));
+    const auto count = static_cast<uint32_t>(voxels.size());
+    find.push(gpu::TestObservationParams{map_.grid(), count, map_.edge_shift(), 0, 0});
+    find.dispatch_covering(count);
+    const graph::Readback read = frame.read_back(found);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    return read.as<gpu::VoxelRecord>();
+}
 
 ObservationContent ObservationRig::content() {
     const uint32_t blocks = block_counters().high_water, count = std::max(record_counters().high_water, 1u);

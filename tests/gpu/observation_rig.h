@@ -39,13 +39,16 @@ class ObservationRig {
     /// Fuses the frame's depth; `times` so that every block is allocated.
     void fuse(const RigFrame& frame, int times = 4);
 
-    struct Counts {
-        uint32_t visible = 0, changed = 0;
+    struct Collected {
+        uint32_t visible = 0, changed = 0;    ///< records
+        Image<glm::vec4> position_m, normal;  ///< the model as it was cast
     };
     /// Casts the model into the frame's camera and collects its observations.
-    Counts collect(const RigFrame& frame);
+    Collected collect(const RigFrame& frame);
 
     ObservationContent content();
+    /// The records that shaders find for these voxels (w unused); block_key is kEmptyKey where there is none.
+    std::vector<gpu::VoxelRecord> find(const std::vector<glm::ivec4>& voxels);
     gpu::MapCounters block_counters();
     gpu::MapCounters record_counters();
 
