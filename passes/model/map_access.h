@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "engine/vulkan/device.h"
+#include "passes/model/observation_map.h"
 #include "passes/model/voxel_map.h"
 
 namespace patina {
@@ -15,5 +16,6 @@ enum class MapAccess : uint8_t {
 
 /// The faster way on this device that its limits allow for this map.
 MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const VoxelMap& map);
+MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const ObservationMap& map);
 
 }  // namespace patina

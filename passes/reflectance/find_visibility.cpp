@@ -5,7 +5,7 @@
 namespace patina {
 
 void add_find_visibility(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecords& due) {
-    const bool texel = reflectance.access == MapAccess::kTexel;
+    const bool texel = reflectance.access.voxels == MapAccess::kTexel;
     auto pass =
         frame.compute("reflectance.find_visibility", texel ? spirv::find_visibility_texel : spirv::find_visibility);
     pass.read("Lights", reflectance.lights).read("Records", reflectance.records.records);

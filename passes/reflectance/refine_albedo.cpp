@@ -5,7 +5,8 @@
 namespace patina {
 
 void add_refine_albedo(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& refine) {
-    auto pass = frame.compute("reflectance.refine_albedo", spirv::refine_albedo);
+    const bool texel = reflectance.access.observations == MapAccess::kTexel;
+    auto pass = frame.compute("reflectance.refine_albedo", texel ? spirv::refine_albedo_texel : spirv::refine_albedo);
     ObservationMapIds& ids = reflectance.records;
     pass.read("Lights", reflectance.lights).read("Materials", reflectance.materials).read("Records", ids.records);
     pass.read("Visibility", ids.visibility).read("Refine", refine.list).push(reflectance.params);

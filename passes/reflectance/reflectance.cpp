@@ -33,7 +33,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
 }
 
 RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
-                              ObservationMapIds& records, const RecordList& changed, MapAccess access,
+                              ObservationMapIds& records, const RecordList& changed, const ReflectanceAccess& access,
                               const gpu::ReflectanceParams& params) {
     ReflectanceStateIds state = models.state.import(frame);
     ReflectanceFrame reflectance{models.voxel_map,
@@ -54,9 +54,14 @@ RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& mode
 
 }  // namespace
 
+ReflectanceAccess preferred_reflectance_access(const vulkan::DeviceCaps& caps, const VoxelMap& voxel_map,
+                                               const ObservationMap& observation_map) {
+    return {preferred_map_access(caps, voxel_map), preferred_map_access(caps, observation_map)};
+}
+
 RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
-                                          const RecordList& changed, MapAccess access,
+                                          const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings) {
     check_budget("marched_records", settings.marched_records);
     check_budget("refreshed_records", settings.refreshed_records);
@@ -66,8 +71,8 @@ RefinedReflectance add_refine_reflectance(graph::Frame& frame, const Reflectance
 }
 
 RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
-                                              const VoxelMapIds& voxels, ObservationMapIds& records, MapAccess access,
-                                              const ReflectanceSettings& settings) {
+                                              const VoxelMapIds& voxels, ObservationMapIds& records,
+                                              const ReflectanceAccess& access, const ReflectanceSettings& settings) {
     ReflectanceSettings all = settings;
     all.marched_records = all.refreshed_records = kEverything;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);

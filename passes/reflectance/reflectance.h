@@ -1,12 +1,8 @@
 #pragma once
 
 #include "passes/model/lights.h"
-#include "passes/model/map_access.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/record_list.h"
-#include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
-#include "passes/model/voxel_map.h"
+#include "passes/reflectance/reflectance_frame.h"
 
 namespace patina {
 
@@ -16,6 +12,10 @@ struct ReflectanceSettings {
     uint32_t marched_records = 2048;    ///< changed records whose lights are marched in a frame at most, about
     uint32_t refreshed_records = 2048;  ///< and others, looked at again in turn, about
 };
+
+/// The fastest on this device.
+ReflectanceAccess preferred_reflectance_access(const vulkan::DeviceCaps& caps, const VoxelMap& voxel_map,
+                                               const ObservationMap& observation_map);
 
 /// The models that a refinement reads and writes.
 struct ReflectanceModels {
@@ -37,12 +37,12 @@ struct RefinedReflectance {
 /// `records` are replaced. Throws Error when a budget is 0.
 RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
-                                          const RecordList& changed, MapAccess access,
+                                          const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings);
 
 /// The same for all records at once, as at the end of a reconstruction.
 RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
-                                              const VoxelMapIds& voxels, ObservationMapIds& records, MapAccess access,
-                                              const ReflectanceSettings& settings);
+                                              const VoxelMapIds& voxels, ObservationMapIds& records,
+                                              const ReflectanceAccess& access, const ReflectanceSettings& settings);
 
 }  // namespace patina

@@ -10,11 +10,17 @@
 
 namespace patina {
 
+/// Through which descriptors the maps are read.
+struct ReflectanceAccess {
+    MapAccess voxels = MapAccess::kStorage;
+    MapAccess observations = MapAccess::kStorage;
+};
+
 /// What the passes of one update share.
 struct ReflectanceFrame {
     const VoxelMap& voxel_map;
     const VoxelMapIds& voxels;
-    MapAccess access;
+    ReflectanceAccess access;
     const ObservationMap& map;
     ObservationMapIds& records;  ///< visibility and albedo are replaced
     ReflectanceStateIds& state;  ///< replaced

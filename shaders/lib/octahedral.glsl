@@ -14,7 +14,9 @@ vec2 to_octahedral(vec3 direction) {
 // Its inverse, of unit length.
 vec3 from_octahedral(vec2 point) {
     const float z = 1.0 - abs(point.x) - abs(point.y);
-    return normalize(vec3(z >= 0.0 ? point : fold(point), z));
+    const float folded = max(-z, 0.0);
+    return normalize(
+        vec3(point.x - (point.x >= 0.0 ? folded : -folded), point.y - (point.y >= 0.0 ? folded : -folded), z));
 }
 
 #endif

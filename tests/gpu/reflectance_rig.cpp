@@ -42,7 +42,7 @@ glm::dvec3 unpack_certainty(uint32_t word) {
 ReflectanceRig::ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
                                const ObservationMap& observation_map)
     : materials(device, 64),
-      access(preferred_map_access(device.caps(), voxel_map)),
+      access(preferred_reflectance_access(device.caps(), voxel_map, observation_map)),
       runner_(runner),
       voxel_map_(voxel_map),
       observation_map_(observation_map),

@@ -38,7 +38,7 @@ class ReflectanceRig {
 
     Lights lights;
     SegmentMaterials materials;
-    MapAccess access;
+    ReflectanceAccess access;
 
   private:
     ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_}; }

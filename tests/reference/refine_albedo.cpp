@@ -23,13 +23,17 @@ struct Rest {
     double whole() const { return std::min({share.r, share.g, share.b}); }
 };
 
-/// Reweights four times; the first time, nothing is known of where the mean lies.
+/// Reweights three times, at first about the plain mean with a scale from the plain mean size.
 void reweight(std::vector<Rest>& rests, double noise) {
-    double mean = 0, inverse_scale = 0;
+    double mean = 0, scale = 0;
+    for (const Rest& rest : rests) {
+        mean += rest.brightness() / static_cast<double>(rests.size());
+        scale += 1.5 * std::abs(rest.brightness()) / static_cast<double>(rests.size());
+    }
     const auto share = [&](const Rest& rest) {
-        return std::pow(1 + std::pow((rest.brightness() - mean) * inverse_scale, 2), -2);
+        return std::pow(1 + std::pow((rest.brightness() - mean) / (noise + scale), 2), -2);
     };
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 3; ++i) {
         double weights = 1e-20, sum = 0, spread = 0;
         for (const Rest& rest : rests) {
             const double weight = rest.trust * rest.whole() * share(rest);
@@ -38,7 +42,7 @@ void reweight(std::vector<Rest>& rests, double noise) {
             spread += weight * std::abs(rest.brightness() - mean);
         }
         mean = sum / weights;
-        inverse_scale = 1 / (noise + 1.5 * spread / weights);
+        scale = 1.5 * spread / weights;
     }
     for (Rest& rest : rests) rest.robust = share(rest);
 }

@@ -91,7 +91,7 @@ struct Bench {
         ObservationMapIds ids = map.import(frame);
         const RecordList changed = add_list_records(frame, count);
         add_refine_reflectance(frame, {voxel_map, map, lights, materials, state}, voxel_map.import(frame), ids, changed,
-                               MapAccess::kStorage, settings);
+                               preferred_reflectance_access(runner.device().caps(), voxel_map, map), settings);
         ObservationMap::keep(frame, ids);
         runner.submit(std::move(frame));
         runner.wait();

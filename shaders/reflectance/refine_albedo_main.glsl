@@ -1,0 +1,220 @@
+// Body of the shaders that refine albedos: the diffuse albedo of a voxel from all its observations, given the specular
+// part of its segment's material (paper, Section 3.7, Eq. 7). Lights and surface are the same for all of them, so Eq. 7
+// is the mean of what is left of the observed colours without their highlights, over the irradiance. A robust mean:
+// lights, normals and materials are estimates, and what they are off by shows most in highlights. The includer declares
+// the records' directions and colours.
+//
+// One invocation per record; lights in the outer loop, so that what a light and a surface have in common is computed
+// once, and observations unrolled in the inner one.
+#include "lib/reflectance.glsl"
+#include "lib/voxel_chunks.glsl"
+#include "lib/ward.glsl"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std140, binding = 0) uniform Lights {
+    LightHeader header;
+    PointLight lights[kMaxPointLights];
+};
+layout(std430, binding = 1) readonly buffer Materials { SegmentMaterial materials[]; };
+layout(std430, binding = 2) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 3) readonly buffer Visibility { uvec2 visibility[]; };
+layout(std430, binding = 4) readonly buffer Refine { uint refine[]; };
+layout(std430, binding = 5) buffer Status { RecordStatus status[]; };
+layout(std430, binding = 6) buffer Albedo { uvec2 albedo[]; };
+layout(push_constant) uniform Push { ReflectanceParams params; };
+#include "lib/record_colors.glsl"
+#include "lib/record_directions.glsl"
+
+const float kNoise = 0.002;            // of an observed colour, linear: 8-bit sRGB's steps in dark tones
+const float kRelativeNoise = 0.02;     // and that of bright ones, with the camera's own
+const float kHighlightError = 0.5;     // what of a predicted highlight may be wrong
+const float kClippedShare = 1e-3;      // the weight of what is only a lower bound: counts where there is nothing else
+const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
+const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
+const float kLeastAlpha = 0.01;
+const float kLeastExponent = -60.0;  // denormal numbers, which an open end would lead to, take processors half the time
+const float kLog2E = 1.442695;
+const uint kAnyClipped = 7u << 26;  // of a direction word
+const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
+
+// Of the brightnesses: where they lie, and their mean distance from there.
+struct Center {
+    float brightness;
+    float spread;
+};
+
+// What lights do to the surface, over pi.
+struct Irradiance {
+    vec3 sum;
+    vec3 uncertain;  // of it, what may not reach the voxel, or does though it is not in the sum
+};
+
+uint direction_word[kMaxObservations];
+vec3 direction_of[kMaxObservations];  // to the viewer
+float normal_cosine[kMaxObservations];
+vec3 highlight[kMaxObservations];     // at first without ks and what does not depend on the light
+vec3 diffuse[kMaxObservations];       // what is left of the colour
+float brightness[kMaxObservations];   // of that
+float trust[kMaxObservations];        // its inverse variance, relative to one without a highlight; 0: no observation
+float whole_trust[kMaxObservations];  // less where a channel is clipped
+
+uint bit_of(uvec2 bits, uint i) { return (i < 32u ? bits.x >> i : bits.y >> (i - 32u)) & 1u; }
+
+// Adds up all lights. Ward's lobe (lib/ward.glsl) in a form without trigonometry: with unit l and v, h = l + v has
+// |h|^2 = 2 + 2 l.v, and tan^2 of its angle to the normal is |h|^2 / (n.h)^2 - 1. The error of this difference, 1e-6,
+// is small beside alpha^2.
+Irradiance add_lights(vec3 point_m, vec3 normal, float exponent_scale, bool specular, uvec2 reached, uvec2 uncertain) {
+    Irradiance irradiance = Irradiance(header.ambient.rgb, vec3(0.0));
+    for (uint i = 0u; i < header.count; ++i) {
+        const vec3 offset_m = lights[i].position_m.xyz - point_m;
+        const float distance2 = max(dot(offset_m, offset_m), 1e-6);
+        const vec3 to_light = offset_m * inversesqrt(distance2);
+        const float cosine = max(dot(normal, to_light), 0.0);
+        const vec3 facing = lights[i].intensity.rgb / distance2;
+        const vec3 received = facing * (cosine / kWardPi);
+        const bool lit = bit_of(reached, i) != 0u;
+        irradiance.sum += lit ? received : vec3(0.0);
+        irradiance.uncertain += bit_of(uncertain, i) != 0u ? received : vec3(0.0);
+        // cos / sqrt(cos) of Eq. 3 and 6.
+        const vec3 gloss = lit ? facing * sqrt(cosine) : vec3(0.0);
+        if (!specular) continue;
+        [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+            const float along = cosine + normal_cosine[k];
+            const float tan2 = (2.0 + 2.0 * dot(to_light, direction_of[k])) / (along * along) - 1.0;
+            highlight[k] += gloss * exp2(clamp(exponent_scale * tan2, kLeastExponent, 0.0));
+        }
+    }
+    return irradiance;
+}
+
+void unpack_directions(uint record, vec3 normal) {
+    [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+        const uvec4 words = load_directions(params.records.chunk_shift, record, quad);
+        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+            const uint k = 4u * quad + i;
+            if (k >= kMaxObservations) continue;
+            direction_word[k] = words[i];
+            direction_of[k] = observation_direction(words[i]);
+            normal_cosine[k] = max(dot(direction_of[k], normal), kLeastCosine);
+            highlight[k] = vec3(0.0);
+        }
+    }
+}
+
+float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
+
+// Takes the highlights from the colours. Returns a first guess of where the brightness of the rest lies: the plain
+// mean, with a scale that even wild observations are within.
+Center remove_highlights(uint record, uint count, vec3 ks_over_n) {
+    float sum = 0.0, sizes = 0.0;
+    [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+        const uvec4 words = load_colors(params.records.chunk_shift, record, quad);
+        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+            const uint k = 4u * quad + i;
+            if (k >= kMaxObservations) continue;
+            highlight[k] *= ks_over_n * inversesqrt(normal_cosine[k]);
+            diffuse[k] = unpack_shared_exponent(words[i]) - highlight[k];
+            brightness[k] = mean_of(diffuse[k]);
+            sum += k < count ? brightness[k] : 0.0;
+            sizes += k < count ? abs(brightness[k]) : 0.0;
+        }
+    }
+    const float inverse_count = 1.0 / float(count);
+    return Center(sum * inverse_count, sizes * inverse_count);
+}
+
+void set_trust(uint count, float noise) {
+    const float share = kHighlightError / noise;
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        const float doubt = mean_of(highlight[k]) * share;
+        trust[k] = k < count ? normal_cosine[k] / (1.0 + doubt * doubt) : 0.0;
+        whole_trust[k] = (direction_word[k] & kAnyClipped) != 0u ? kClippedShare * trust[k] : trust[k];
+    }
+}
+
+// How much an observation counts beside a mean (Geman and McClure's weight).
+float robust_share(float off, float inverse_scale) {
+    const float scaled = off * inverse_scale;
+    const float share = 1.0 / (1.0 + scaled * scaled);
+    return share * share;
+}
+
+// The centre of the brightnesses by iteratively reweighted least squares; the scale follows from the residuals.
+Center find_center(Center center, float noise) {
+    for (uint i = 0u; i < kRobustSteps; ++i) {
+        const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
+        float weights = 1e-20, shift = 0.0, spread = 0.0;
+        [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+            const float off = brightness[k] - center.brightness;
+            const float weight = whole_trust[k] * robust_share(off, inverse_scale);
+            weights += weight;
+            shift += weight * off;
+            spread += weight * abs(off);
+        }
+        const float inverse_weights = 1.0 / weights;
+        center = Center(center.brightness + shift * inverse_weights, spread * inverse_weights);
+    }
+    return center;
+}
+
+struct Estimate {
+    vec3 diffuse;   // the mean
+    vec3 variance;  // of it
+};
+
+// By channel, as clipping is.
+Estimate robust_mean(Center center, float noise) {
+    const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
+    vec3 weights = vec3(1e-20), squares = vec3(0.0), mean = vec3(0.0);
+    float whole = 0.0, spread = 0.0;
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        const float off = brightness[k] - center.brightness;
+        const float weight = trust[k] * robust_share(off, inverse_scale);
+        const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), observation_clipped(direction_word[k]));
+        weights += share;
+        squares += share * share;
+        mean += share * diffuse[k];
+        whole += weight;
+        spread += weight * off * off;
+    }
+    const vec3 variance = noise * noise / weights + (spread / max(whole, 1e-20)) * squares / (weights * weights);
+    return Estimate(mean / weights, variance);
+}
+
+// Kd where the voxel is lit, with its certainty.
+uvec2 packed_albedo(Estimate estimate, Irradiance irradiance) {
+    const bvec3 lit = greaterThan(irradiance.sum, vec3(kLeastIrradiance));
+    const vec3 inverse = 1.0 / max(irradiance.sum, kLeastIrradiance);
+    const vec3 kd = mix(vec3(0.0), max(estimate.diffuse * inverse, 0.0), lit);
+    const vec3 doubt = kd * min(irradiance.uncertain * inverse, 1.0);
+    const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt;
+    const vec3 certainty = 1.0 / (1.0 + variance / (kKdDeviation * kKdDeviation));
+    return uvec2(pack_shared_exponent(kd), pack_certainty(mix(vec3(0.0), certainty, lit)));
+}
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x;
+    if (item >= refine[0]) return;
+    const uint record = refine[1u + item];
+    if (!is_marched(status[record].marched, header.position_version)) return;
+    const VoxelRecord known = records[record];
+    const uint count = observation_count(known);
+    const uint label = record_label(known);
+    const bool has_entry = label != 0u && label < params.materials;
+    const SegmentMaterial material = materials[has_entry ? label : 0u];
+    const bool specular = has_entry && any(greaterThan(material.ks_alpha.rgb, vec3(0.0)));
+    const float alpha = max(material.ks_alpha.w, kLeastAlpha);
+    const vec3 normal = surface_normal(known);
+    const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
+
+    unpack_directions(record, normal);
+    const Irradiance irradiance =
+        add_lights(point_m, normal, -kLog2E / (alpha * alpha), specular, visibility[record], status[record].uncertain);
+    const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
+    const Center guess = remove_highlights(record, count, ks / (4.0 * kWardPi * alpha * alpha));
+    const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);
+    set_trust(count, noise);
+    const Estimate estimate = robust_mean(find_center(guess, noise), noise);
+    albedo[record] = packed_albedo(estimate, irradiance);
+    status[record].refined = refined_word(header.version, has_entry ? material.version : 0u);
+}
