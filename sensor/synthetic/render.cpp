@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/core/shader_camera.h"
+#include "sensor/synthetic/environment_table.h"
+#include "sensor/synthetic/gather_light.h"
 #include "sensor/synthetic/scene_data.h"
 #include "shared/trace_scene.h"
 #include "spirv/shaders.h"
@@ -51,11 +53,6 @@ class Uploader {
     graph::Frame frame_;
 };
 
-/// Invocations take kBundleRays pixels of a column each.
-Extent2D bundles_of(Extent2D extent) {
-    return {extent.width, (extent.height + gpu::kBundleRays - 1) / gpu::kBundleRays};
-}
-
 RenderedImages add_trace(graph::Frame& frame, const SceneModel& scene, Extent2D extent,
                          const gpu::TraceSceneParams& params) {
     auto pass = frame.compute("synthetic.trace_scene", spirv::trace_scene);
@@ -86,8 +83,17 @@ void add_shade(graph::Frame& frame, const SceneModel& scene, RenderedImages& ima
 
 }  // namespace
 
+Extent2D bundles_of(Extent2D extent) {
+    return {extent.width, (extent.height + gpu::kBundleRays - 1) / gpu::kBundleRays};
+}
+
 SceneModel::SceneModel(graph::Runner& runner, const Scene& scene) {
-    const SceneData data = pack_scene(scene);
+    SceneData data = pack_scene(scene);
+    EnvironmentTable environment;
+    if (scene.environment) environment = make_environment_table(scene.name, *scene.environment->radiance);
+    data.info.environment_size = {environment.extent.width, environment.extent.height};
+    has_environment_ = scene.environment.has_value();
+    has_area_lights_ = data.info.has_lamps != 0;
     Uploader upload(runner);
     info_ = upload.buffer("scene info", std::vector{data.info});
     nodes_ = upload.image("scene nodes", Format::kRgba32u, data.nodes);
@@ -97,6 +103,8 @@ SceneModel::SceneModel(graph::Runner& runner, const Scene& scene) {
     objects_ = upload.buffer("scene objects", data.objects);
     triangle_surfaces_ = upload.buffer("scene triangle surfaces", data.triangles);
     texels_ = upload.image("scene texels", Format::kRgba32f, data.texels);
+    environment_ = upload.buffer("scene environment", environment.cells);
+    environment_aliases_ = upload.buffer("scene environment aliases", environment.aliases);
     upload.submit();
 }
 
@@ -111,12 +119,20 @@ void SceneModel::bind_surfaces(graph::Frame& frame, graph::PassBuilder& pass) co
     pass.read("texels", frame.import(texels_));
 }
 
+void SceneModel::bind_environment(graph::Frame& frame, graph::PassBuilder& pass) const {
+    pass.read("Environment", frame.import(environment_));
+    pass.read("EnvironmentAliases", frame.import(environment_aliases_));
+}
+
 RenderedImages add_render(graph::Frame& frame, const SceneModel& scene, const Intrinsics& camera,
-                          const RigidTransform& world_from_camera, const RenderSettings& settings, uint32_t) {
+                          const RigidTransform& world_from_camera, const RenderSettings& settings,
+                          uint32_t frame_index) {
     if (camera.distorted()) throw Error("the pass 'synthetic.trace_scene' takes a camera without lens distortion");
     const gpu::TraceSceneParams params{make_camera(camera, world_from_camera)};
     RenderedImages images = add_trace(frame, scene, camera.extent, params);
-    add_shade(frame, scene, images, camera.extent, params, settings.shadows);
+    if (!samples_direct_light(scene, settings))
+        add_shade(frame, scene, images, camera.extent, params, settings.shadows);
+    add_gather_light(frame, scene, camera, world_from_camera, settings, frame_index, images);
     return images;
 }
 

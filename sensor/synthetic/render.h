@@ -18,15 +18,23 @@ class SceneModel {
     void bind_geometry(graph::Frame& frame, graph::PassBuilder& pass) const;
     /// Binds what shaders/synthetic/surface.glsl declares beyond that.
     void bind_surfaces(graph::Frame& frame, graph::PassBuilder& pass) const;
+    /// Binds what shaders/synthetic/environment.glsl declares beyond that.
+    void bind_environment(graph::Frame& frame, graph::PassBuilder& pass) const;
+
+    bool has_environment() const { return has_environment_; }
+    bool has_area_lights() const { return has_area_lights_; }  ///< whether any lamp has a radius
 
   private:
-    vulkan::BufferRef info_, lights_, objects_, triangle_surfaces_;
+    vulkan::BufferRef info_, lights_, objects_, triangle_surfaces_, environment_, environment_aliases_;
     vulkan::ImageRef nodes_, triangles_, parts_, texels_;
+    bool has_environment_ = false;
+    bool has_area_lights_ = false;
 };
 
-/// What a camera sees at each pixel, through the pixel's centre. Where it sees nothing, all images are 0.
+/// What a camera sees at each pixel, through the pixel's centre. Where it sees nothing, all images are 0, but for the
+/// radiance of an environment.
 struct RenderedImages {
-    graph::ImageId radiance;   ///< W x H rgba32f, linear pixel values; a = 1 where anything is seen
+    graph::ImageId radiance;   ///< W x H rgba32f, linear pixel values; a = 1 where anything but the environment is seen
     graph::ImageId depth_m;    ///< W x H r32f, along the camera's z axis
     graph::ImageId object_id;  ///< W x H r32ui; 0 on lamps
     graph::ImageId normal;     ///< W x H rgba32f, world, unit length, towards the camera; a unused
@@ -35,9 +43,12 @@ struct RenderedImages {
     graph::ImageId lifted_m;  ///< W x H rgba32f, world: a little above the surface, where rays may leave it; 0 on lamps
 };
 
+/// The invocations that cover an image in passes that trace bundles of rays: each takes kBundleRays pixels of a column.
+Extent2D bundles_of(Extent2D extent);
+
 /// Ray-traces a scene with Ward materials (paper, Eq. 2-4, 6). The same settings give the same pixels; frames of one
 /// sequence pass their index as `frame_index` to differ in their random samples. Throws Error when the camera has lens
-/// distortion.
+/// distortion, or when light is to be sampled (add_gather_light) with no samples.
 RenderedImages add_render(graph::Frame& frame, const SceneModel& scene, const Intrinsics& camera,
                           const RigidTransform& world_from_camera, const RenderSettings& settings = {},
                           uint32_t frame_index = 0);

@@ -23,6 +23,9 @@ struct SceneInfo {
     uint light_count;
     uint has_lamps;  // whether any light is a lamp, a sphere that is seen
     uint pad0;
+    uvec2 environment_size;  // pixels of its picture; unused without one
+    uint pad1;
+    uint pad2;
 };
 
 // A node of the trees, in depth-first order; boxes are axis-aligned in the world, metres.

@@ -6,8 +6,8 @@ INTEROP_BEGIN
 
 struct TestObservationParams {
     VoxelGrid grid;
-    uint records;  // to gather, or to insert into
-    uint step;     // which observation of every stream is inserted
+    uint records;  // to gather, to insert into, or to find
+    uint step;     // which observation of every stream is inserted; or the map's edge shift
     float merge_distance2;
     uint pad0;
 };

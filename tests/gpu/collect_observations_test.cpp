@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -334,6 +335,13 @@ TEST_F(CollectObservations, AgreesWithTheReferenceOnAClutteredScene) {
             frames.back().labels = labels;
         }
         for (const RigFrame& frame : frames) rig.fuse(frame, 2);
+        // Readings that come and go within the tolerance from the model.
+        for (RigFrame& frame : frames) {
+            for (size_t k = 0; k < frame.depth_m.pixels().size(); ++k) {
+                const float wave = std::sin(0.3f * static_cast<float>(k % kCamera.extent.width));
+                if (frame.depth_m.pixels()[k] > 0) frame.depth_m.pixels()[k] += 0.025f * wave;
+            }
+        }
         size_t compared = 0, differ = 0, observations = 0;
         for (uint32_t i = 0; i < frames.size(); ++i) {
             const RigFrame& frame = frames[i];
@@ -398,6 +406,37 @@ TEST_F(CollectObservations, TheSameFramesGiveTheSameBytesInOneChunkOrMany) {
         if (!first) first = content;
         EXPECT_GT(content.size(), 1500u);
         EXPECT_EQ(content, *first);
+    }
+}
+
+TEST_F(CollectObservations, ShadersFindARecordByItsVoxel) {
+    for (const float voxel_m : {0.02f, 0.01f}) {
+        ObservationMapSettings settings;
+        settings.voxel_m = voxel_m;
+        settings.capacity_records = 1000;  // some are refused
+        ObservationRig rig = this->rig(every_pixel(), settings);
+        const RigFrame frame = frame_of(wall_, pose_);
+        rig.fuse(frame);
+        rig.collect(frame);
+        const ObservationContent content = rig.content();
+        EXPECT_LT(content.size(), 1001u);
+        std::vector<glm::ivec4> voxels;
+        const int deep = static_cast<int>(1.003f / voxel_m);
+        for (int z = deep - 2; z <= deep + 2; ++z) {
+            for (int y = -35; y < 35; ++y) {
+                for (int x = -35; x < 35; ++x) voxels.emplace_back(x, y, z, 0);
+            }
+        }
+        const std::vector<gpu::VoxelRecord> found = rig.find(voxels);
+        size_t have = 0;
+        for (size_t i = 0; i < voxels.size(); ++i) {
+            const auto expected = content.find({voxels[i].x, voxels[i].y, voxels[i].z});
+            ASSERT_EQ(found[i].block_key != gpu::kEmptyKey, expected != content.end());
+            if (expected == content.end()) continue;
+            EXPECT_EQ(std::memcmp(&found[i], &expected->second.record, sizeof(gpu::VoxelRecord)), 0);
+            ++have;
+        }
+        EXPECT_GT(have, 300u);
     }
 }
 

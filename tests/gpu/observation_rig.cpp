@@ -74,6 +74,22 @@ gpu::MapCounters ObservationRig::read(graph::BufferId ObservationMapIds::*counte
 gpu::MapCounters ObservationRig::block_counters() { return read(&ObservationMapIds::block_counters); }
 gpu::MapCounters ObservationRig::record_counters() { return read(&ObservationMapIds::record_counters); }
 
+std::vector<gpu::VoxelRecord> ObservationRig::find(const std::vector<glm::ivec4>& voxels) {
+    graph::Frame frame = runner_.begin();
+    const ObservationMapIds ids = map_.import(frame);
+    auto find = frame.compute("test.find_records", spirv::test_find_records);
+    find.read("Voxels", frame.upload<glm::ivec4>("voxels", voxels)).read("Keys", ids.keys).read("Blocks", ids.blocks);
+    find.read("RecordTable", ids.record_table).read("Records", ids.records);
+    const auto found = find.create("Found", voxels.size() * sizeof(gpu::VoxelRecord));
+    const auto count = static_cast<uint32_t>(voxels.size());
+    find.push(gpu::TestObservationParams{map_.grid(), count, map_.edge_shift(), 0, 0});
+    find.dispatch_covering(count);
+    const graph::Readback read = frame.read_back(found);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    return read.as<gpu::VoxelRecord>();
+}
+
 ObservationContent ObservationRig::content() {
     const uint32_t blocks = block_counters().high_water, count = std::max(record_counters().high_water, 1u);
     graph::Frame frame = runner_.begin();

@@ -47,6 +47,8 @@ class ObservationRig {
     Collected collect(const RigFrame& frame);
 
     ObservationContent content();
+    /// The records that shaders find for these voxels (w unused); block_key is kEmptyKey where there is none.
+    std::vector<gpu::VoxelRecord> find(const std::vector<glm::ivec4>& voxels);
     gpu::MapCounters block_counters();
     gpu::MapCounters record_counters();
 
