@@ -17,26 +17,19 @@ void main() {
     const uint entry = gl_GlobalInvocationID.x;
     if (entry >= stale[0]) return;
     const uint record = stale[1u + entry];
-    vec3 stored[kMaxObservations];
-    [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
-        const uvec4 words = load_directions(grid.chunk_shift, record, quad);
-        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
-            if (4u * quad + i < kMaxObservations) stored[4u * quad + i] = direction_on_grid(words[i]);
-        }
-    }
     float closest = kFarApart;
     uvec2 pair = uvec2(0u);
     for (uint later = 1u; later < kMaxObservations; ++later) {
         const vec3 at = direction_on_grid(load_direction(grid.chunk_shift, record, later));
-        float nearest = kFarApart;
-        uint nearest_item = 0u;
-        [[unroll]] for (uint item = 0u; item < kMaxObservations - 1u; ++item) {
-            const float distance2 = item < later ? grid_distance2(stored[item], at) : kFarApart;
-            nearest_item = distance2 < nearest ? item : nearest_item;
-            nearest = min(nearest, distance2);
+        for (uint quad = 0u; 4u * quad < later; ++quad) {
+            const uvec4 words = load_directions(grid.chunk_shift, record, quad);
+            [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+                const uint item = 4u * quad + i;
+                const float distance2 = item < later ? grid_distance2(direction_on_grid(words[i]), at) : kFarApart;
+                pair = distance2 < closest ? uvec2(item, later) : pair;
+                closest = min(closest, distance2);
+            }
         }
-        pair = nearest < closest ? uvec2(nearest_item, later) : pair;
-        closest = min(closest, nearest);
     }
     const uint last = index_in_chunk(grid.chunk_shift, record) * kRecordQuads + kRecordQuads - 1u;
 #define STORE(C) directions[C].quads[last].zw = uvec2(floatBitsToUint(closest), pair.x | pair.y << 8)

@@ -25,29 +25,21 @@ void store_color(uint chunk_shift, uint record, uint item, uint word) {
     WITH_CHUNK(chunk_shift, record, STORE_COLOR)
 }
 
-vec3 stored[kMaxObservations];  // the record's directions on the grid
-float closest_distance2;        // of its closest pair
-uvec2 closest_pair;             // earlier, later
-
 struct Nearest {
     uint item;
     float distance2;
 };
 
-// Loads the record, and finds which of its first `count` directions is nearest to `at`; the first of several.
+// Which of a record's first `count` directions is nearest to `at`; the first of several. Four at a time: unrolled
+// whole, some devices take minutes to compile it.
 Nearest find_nearest(uint chunk_shift, uint record, uint count, vec3 at) {
     Nearest nearest = Nearest(0u, kFarApart);
-    [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+    for (uint quad = 0u; 4u * quad < count; ++quad) {
         const uvec4 words = load_directions(chunk_shift, record, quad);
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint item = 4u * quad + i;
-            if (item == kClosestDistance) closest_distance2 = count < 2u ? kFarApart : uintBitsToFloat(words[i]);
-            if (item == kClosestPair) closest_pair = uvec2(words[i] & 0xffu, words[i] >> 8);
-            if (item >= kMaxObservations) continue;
-            stored[item] = direction_on_grid(words[i]);
-            const float distance2 = item < count ? grid_distance2(stored[item], at) : kFarApart;
-            const bool nearer = distance2 < nearest.distance2;
-            nearest.item = nearer ? item : nearest.item;
+            const float distance2 = item < count ? grid_distance2(direction_on_grid(words[i]), at) : kFarApart;
+            nearest.item = distance2 < nearest.distance2 ? item : nearest.item;
             nearest.distance2 = min(nearest.distance2, distance2);
         }
     }
@@ -56,16 +48,21 @@ Nearest find_nearest(uint chunk_shift, uint record, uint count, vec3 at) {
 
 // Which of the closest pair goes for a new one: the one whose next nearest neighbour is nearer, so that gaps are not
 // widened; the later one when these are equal.
-uint choose_dropped(uint chunk_shift, uint record, vec3 added) {
-    const vec3 a = direction_on_grid(load_direction(chunk_shift, record, closest_pair.x));
-    const vec3 b = direction_on_grid(load_direction(chunk_shift, record, closest_pair.y));
+uint choose_dropped(uint chunk_shift, uint record, uvec2 pair, vec3 added) {
+    const vec3 a = direction_on_grid(load_direction(chunk_shift, record, pair.x));
+    const vec3 b = direction_on_grid(load_direction(chunk_shift, record, pair.y));
     vec2 next = vec2(grid_distance2(a, added), grid_distance2(b, added));
-    [[unroll]] for (uint item = 0u; item < kMaxObservations; ++item) {
-        const bool other = item != closest_pair.x && item != closest_pair.y;
-        const vec2 apart = vec2(grid_distance2(a, stored[item]), grid_distance2(b, stored[item]));
-        next = min(next, other ? apart : vec2(kFarApart));
+    for (uint quad = 0u; quad < kRecordQuads; ++quad) {
+        const uvec4 words = load_directions(chunk_shift, record, quad);
+        [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+            const uint item = 4u * quad + i;
+            const bool other = item < kMaxObservations && item != pair.x && item != pair.y;
+            const vec3 direction = direction_on_grid(words[i]);
+            const vec2 apart = vec2(grid_distance2(a, direction), grid_distance2(b, direction));
+            next = min(next, other ? apart : vec2(kFarApart));
+        }
     }
-    return next.x < next.y ? closest_pair.x : closest_pair.y;
+    return next.x < next.y ? pair.x : pair.y;
 }
 
 // Averages an observation into one from the same direction, unless that has had enough: a resting camera soon changes
@@ -86,9 +83,13 @@ bool merge(uint chunk_shift, uint record, uint item, vec3 rgb, bvec3 clipped) {
 // other, a camera that moves slowly would drag its last observation along and leave nothing behind. The set's smallest
 // distance never shrinks by this.
 Insertion replace(uint chunk_shift, uint record, Nearest nearest, vec3 at, uint direction, uint color) {
+    const uvec4 last = load_directions(chunk_shift, record, kRecordQuads - 1u);
     // Of pairs as close, the one that was there first counts.
-    if (nearest.distance2 < closest_distance2) return Insertion(kMaxObservations, false, false);
-    const uint dropped = choose_dropped(chunk_shift, record, at);
+    if (nearest.distance2 < uintBitsToFloat(last[kClosestDistance % 4u])) {
+        return Insertion(kMaxObservations, false, false);
+    }
+    const uvec2 pair = uvec2(last[kClosestPair % 4u] & 0xffu, last[kClosestPair % 4u] >> 8);
+    const uint dropped = choose_dropped(chunk_shift, record, pair, at);
     store_direction(chunk_shift, record, dropped, direction);
     store_color(chunk_shift, record, dropped, color);
     return Insertion(kMaxObservations, true, true);
@@ -107,7 +108,9 @@ Insertion insert_observation(uint chunk_shift, uint record, uint count, vec3 dir
     if (count == kMaxObservations) return replace(chunk_shift, record, nearest, at, word, color);
     store_direction(chunk_shift, record, count, word);
     store_color(chunk_shift, record, count, color);
-    if (count > 0u && nearest.distance2 < closest_distance2) {
+    const float closest =
+        count < 2u ? kFarApart : uintBitsToFloat(load_direction(chunk_shift, record, kClosestDistance));
+    if (count > 0u && nearest.distance2 < closest) {
         store_direction(chunk_shift, record, kClosestDistance, floatBitsToUint(nearest.distance2));
         store_direction(chunk_shift, record, kClosestPair, nearest.item | count << 8);
     }
