@@ -46,17 +46,30 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 
 }  // namespace
 
-ModelView PendingView::get() const { return {position_m_.image<glm::vec4>(), widened(normal_), widened(color_)}; }
+ModelView PendingView::get() const {
+    ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
+    if (reflectance_) {
+        view.reflectance = {widened(reflectance_->kd), widened(reflectance_->ks_alpha),
+                            reflectance_->label.image<uint32_t>(), widened(reflectance_->rgb)};
+    }
+    return view;
+}
 
 Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings)
     : settings_(checked(settings)),
       runner_(device),
       map_(device, settings.map),
-      access_(preferred_map_access(device.caps(), map_)) {}
+      access_(preferred_map_access(device.caps(), map_)) {
+    if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
+}
 
 void Reconstruction::check(const RgbdFrame& frame) const {
     check_size("depth", frame.depth.pixels, frame.depth.camera);
     check_size("colour", frame.color.pixels, frame.color.camera);
+    if (!frame.labels.empty() && frame.labels.size() != frame.depth.camera.extent.area()) {
+        throw Error("the label picture has ", frame.labels.size(), " pixels, the depth camera ",
+                    frame.depth.camera.extent);
+    }
     // Readers orthonormalise poses; what is left is rounding.
     const double defect = rotation_defect(frame.world_from_depth);
     if (!(defect < 1e-3)) throw Error("the pose of frame ", frames_, " is not rigid: its rotation is off by ", defect);
@@ -77,6 +90,7 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
                   fusion.color ? std::optional(input.color) : std::nullopt);
+    if (reflectance_) observe(graph, ids, visible, input, slope, frame);
     if (settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         graph.keep(model.position_m);
@@ -88,11 +102,34 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     return visible;
 }
 
+void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                             const InputImages& input, graph::ImageId slope, const RgbdFrame& frame) {
+    const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
+    ObservationInputs inputs{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
+    if (!frame.labels.empty()) {
+        const std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
+        inputs.labels =
+            graph.upload("labels", {frame.depth.camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
+    }
+    reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+                      make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
+                      frames_);
+}
+
+void Reconstruction::refine_all() {
+    if (!reflectance_ || frames_ == 0) return;
+    graph::Frame graph = runner_.begin();
+    reflectance_->refine_all(graph, map_.import(graph));
+    runner_.submit(std::move(graph));
+}
+
 void Reconstruction::add(const RgbdFrame& frame) {
     check(frame);
     if (frames_ == 0) {
         graph::Frame graph = runner_.begin();
-        map_.reset(graph, glm::dvec3(frame.world_from_depth[3]));
+        const glm::dvec3 center_m(frame.world_from_depth[3]);
+        map_.reset(graph, center_m);
+        if (reflectance_) reflectance_->reset(graph, center_m);
         runner_.submit(std::move(graph));
     }
     graph::Frame graph = runner_.begin();
@@ -116,6 +153,11 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
+    if (reflectance_) {
+        const PredictedImages seen = reflectance_->add_predict(graph, ids, visible, model);
+        pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
+                                graph.read_back(seen.rgb)};
+    }
     runner_.submit(std::move(graph));
     return pending;
 }

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "passes/fusion/raycast.h"
 #include "passes/input/input.h"
 #include "passes/model/voxel_map.h"
+#include "passes/reflectance_model.h"
 #include "passes/surface/mesh.h"
 
 namespace patina {
@@ -21,8 +23,10 @@ struct ReconstructionSettings {
     VoxelMapSettings map;
     FusionSettings fusion;
     InputSettings input;
-    float near_m = 0.1f;            ///< nothing nearer to a camera is cast
-    uint32_t remove_every = 16;     ///< blocks without surface are removed every so many frames; 0 keeps them
+    float near_m = 0.1f;         ///< nothing nearer to a camera is cast
+    uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    /// Observations and albedo beside the geometry; empty: none. Needs lights (Reconstruction::reflectance).
+    std::optional<ReflectanceModelSettings> reflectance{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -32,6 +36,8 @@ struct RgbdFrame {
     ColorInput color;
     RigidTransform color_from_depth{1.0};
     RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
+    /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known.
+    std::span<const uint16_t> labels{};
 };
 
 /// What a camera sees of the model; all pictures have its extent.
@@ -39,6 +45,15 @@ struct ModelView {
     Image<glm::vec4> position_m;  ///< world; w: depth along the optical axis, 0 where nothing was hit
     Image<glm::vec4> normal;      ///< world, unit length; 0 where nothing was hit
     Image<glm::vec4> color;       ///< linear; a = 0 where there is none
+
+    /// What the model reflects, where it has reflectance (shading/predict_radiance.h).
+    struct Reflectance {
+        Image<glm::vec4> kd;        ///< diffuse albedo; a = 1 where it is known
+        Image<glm::vec4> ks_alpha;  ///< of the segment
+        Image<uint32_t> label;      ///< 0: none
+        Image<glm::vec4> rgb;       ///< linear re-rendering; a = 1 where kd is known
+    };
+    std::optional<Reflectance> reflectance{};
 };
 
 /// A view on its way from the device.
@@ -50,7 +65,11 @@ class PendingView {
 
   private:
     friend class Reconstruction;
+    struct Reflectance {
+        graph::Readback kd, ks_alpha, label, rgb;
+    };
     graph::Readback position_m_, normal_, color_;
+    std::optional<Reflectance> reflectance_;
 };
 
 /// Fuses RGB-D frames into a volume and extracts its surface. Frames are submitted without waiting for the device, two
@@ -79,6 +98,13 @@ class Reconstruction {
     /// How many blocks the depth camera saw in the frame that counters() tells of.
     uint32_t visible_blocks();
 
+    /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
+    void refine_all();
+
+    /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
+    /// any time.
+    ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
+
     uint32_t frames() const { return frames_; }
     const ReconstructionSettings& settings() const { return settings_; }
     const VoxelMap& map() const { return map_; }
@@ -86,6 +112,8 @@ class Reconstruction {
 
   private:
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
+    void observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible, const InputImages& input,
+                 graph::ImageId slope, const RgbdFrame& frame);
     void check(const RgbdFrame& frame) const;
     void take_counts();
 
@@ -93,6 +121,7 @@ class Reconstruction {
     graph::Runner runner_;
     VoxelMap map_;
     MapAccess access_;
+    std::optional<ReflectanceModel> reflectance_;
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;

@@ -1,5 +1,7 @@
 #include "tools/frame_dumps.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "tools/export/previews.h"
@@ -11,6 +13,26 @@ namespace {
 
 constexpr uint32_t kPreviews = 4;
 
+Image<glm::vec3> rgb_of(const Image<glm::vec4>& image) {
+    Image<glm::vec3> rgb(image.extent());
+    std::transform(image.pixels().begin(), image.pixels().end(), rgb.pixels().begin(),
+                   [](glm::vec4 pixel) { return glm::vec3(pixel); });
+    return rgb;
+}
+
+/// What the model reflects; 0 where that is unknown, so that leaving hard pixels out does not pay.
+void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance) {
+    dump.kd = rgb_of(reflectance.kd);
+    dump.ks = rgb_of(reflectance.ks_alpha);
+    dump.rgb = rgb_of(reflectance.rgb);
+    dump.alpha = Image<float>(dump.kd.extent());
+    dump.label = Image<float>(dump.kd.extent());
+    for (size_t i = 0; i < dump.kd.extent().area(); ++i) {
+        dump.alpha.pixels()[i] = reflectance.ks_alpha.pixels()[i].a;
+        dump.label.pixels()[i] = static_cast<float>(reflectance.label.pixels()[i]);
+    }
+}
+
 /// The model as a dump's planes: colour and depth of the camera that looks.
 FrameDump to_dump(const ModelView& view) {
     const Extent2D extent = view.position_m.extent();
@@ -21,6 +43,7 @@ FrameDump to_dump(const ModelView& view) {
         dump.normal.pixels()[i] = glm::vec3(view.normal.pixels()[i]);
         dump.rgb.pixels()[i] = glm::vec3(view.color.pixels()[i]);
     }
+    if (view.reflectance) add_reflectance(dump, *view.reflectance);
     return dump;
 }
 

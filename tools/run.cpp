@@ -19,9 +19,11 @@
 #include "tools/export/write_glb.h"
 #include "tools/frame_dumps.h"
 #include "tools/interrupt.h"
+#include "tools/lights.h"
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
 #include "tools/run_settings.h"
+#include "tools/run_truth.h"
 #include "tools/version.h"
 
 namespace patina::tools {
@@ -48,11 +50,41 @@ std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
     return std::make_unique<sensor::PrefetchSource>(std::move(source));
 }
 
-std::unique_ptr<sensor::Source> open_synthetic(const RunOptions& options, vulkan::Device& device) {
+std::unique_ptr<sensor::SyntheticSource> open_synthetic(const RunOptions& options, vulkan::Device& device) {
     const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
     return std::make_unique<sensor::SyntheticSource>(device,
                                                      sensor::load_scene(options.sequence.substr(kSynthetic.size())),
                                                      sensor::SyntheticOptions{.frames = frames});
+}
+
+/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
+std::vector<PointLight> lights_of(const RunOptions& options) {
+    std::vector<PointLight> lights;
+    if (!options.lights.empty()) {
+        for (const sensor::PointLight& light : sensor::read_lights(options.lights))
+            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), 0});
+    } else if (!options.lighting.empty()) {
+        LightsOptions find;
+        find.sequence = options.lighting;
+        find.quiet = options.quiet;
+        find.device = options.device;
+        for (const FoundLight& light : find_lights(find))
+            lights.push_back({light.position_m, light.intensity, light.radius_m});
+        if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
+    }
+    return lights;
+}
+
+/// With lights, reflectance is estimated; without, there is nothing to estimate it from.
+ReconstructionSettings settings_of(const RunOptions& options, const std::vector<PointLight>& lights) {
+    ReconstructionSettings settings = options.settings;
+    if (lights.empty()) {
+        const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
+        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
+    } else if (!settings.reflectance) {
+        settings.reflectance.emplace();
+    }
+    return settings;
 }
 
 PassTime summarised(const graph::Timing& timing) {
@@ -80,14 +112,18 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
 class Run {
   public:
     Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder, vulkan::Device& device,
-        sensor::Source& source)
+        sensor::Source& source, std::vector<PointLight> lights, const RunTruth& truth)
         : options_(options),
           interrupt_(interrupt),
           folder_(folder),
           device_(device),
           source_(source),
           info_(source.info()),
-          reconstruction_(device, options.settings) {
+          lights_(std::move(lights)),
+          truth_(truth),
+          settings_(settings_of(options, lights_)),
+          reconstruction_(device, settings_) {
+        if (reconstruction_.reflectance()) prepare_reflectance(*reconstruction_.reflectance());
         if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
         dumps_.emplace(folder, info_.frames, options.dump_every);
     }
@@ -126,6 +162,7 @@ class Run {
         const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
         folder_.publish("scene.glb");
         folder_.write("trajectory.txt", trajectory_text(poses_));
+        if (!lights_.empty()) write_lights();
         if (!options_.dump_graph.empty()) {
             write_text(options_.dump_graph.string() + ".dot", graph_dot_);
             write_text(options_.dump_graph.string() + ".json", graph_json_);
@@ -143,12 +180,25 @@ class Run {
     }
 
   private:
+    void prepare_reflectance(ReflectanceModel& reflectance) {
+        reflectance.set_lights(lights_);
+        if (!options_.truth_materials) return;
+        for (const sensor::Material& m : truth_.materials())
+            reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
+    }
+
     void fuse(const sensor::Frame& frame) {
         if (!frame.world_from_camera) {
             ledger_.skip(frame.index, fmt::format("frame {} has no pose", frame.index));
             return;
         }
-        reconstruction_.add(to_rgbd(info_, frame));
+        RgbdFrame rgbd = to_rgbd(info_, frame);
+        Image<uint16_t> labels;
+        if (options_.truth_labels) {
+            labels = truth_.labels(frame.index, info_.depth.extent);
+            rgbd.labels = labels.pixels();
+        }
+        reconstruction_.add(rgbd);
         ledger_.use(frame.index);
         poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
         if (!options_.dump_graph.empty()) {
@@ -169,6 +219,14 @@ class Run {
         dumps_->finish();
         throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames; '",
                           folder_.path().string(), "' holds what was complete, and no run.json");
+    }
+
+    void write_lights() {
+        std::vector<sensor::PointLight> lights;
+        for (const PointLight& light : lights_)
+            lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
+        sensor::write_lights(folder_.stage("lights.json"), lights);
+        folder_.publish("lights.json");
     }
 
     void check_validation() const {
@@ -192,7 +250,10 @@ class Run {
         const vulkan::DeviceCaps& caps = device_.caps();
         record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
         record.seed = options_.seed;
-        record.settings = settings_json(options_.settings);
+        record.settings = settings_json(settings_);
+        record.settings["lights"] = lights_.size();
+        record.settings["truth_labels"] = options_.truth_labels;
+        record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
         record.settings["dump_every"] = options_.dump_every;
@@ -203,6 +264,9 @@ class Run {
         record.voxel_pool = {blocks_used(), capacity, counters.refused_blocks};
         for (const auto& pool : reconstruction_.map().memory()) {
             record.memory.push_back({pool.name, pool.bytes, blocks_used(), capacity});
+        }
+        if (ReflectanceModel* reflectance = reconstruction_.reflectance()) {
+            for (const auto& pool : reflectance->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
         }
         record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
         record.totals = {{"vertices", scene.vertices},
@@ -245,6 +309,9 @@ class Run {
     sensor::Source& source_;
     sensor::SequenceInfo info_;
     Clock::time_point start_ = Clock::now();
+    std::vector<PointLight> lights_;
+    const RunTruth& truth_;
+    ReconstructionSettings settings_;
     Reconstruction reconstruction_;
     sensor::Ledger ledger_;
     std::optional<FrameDumps> dumps_;
@@ -261,11 +328,15 @@ void run(const RunOptions& options) {
     OutputFolder folder(options.out);
     check_graph_folder(options.dump_graph);
     std::optional<vulkan::Device> device;  // outlives the source, which may compute on it
-    std::unique_ptr<sensor::Source> source;
-    if (!is_synthetic(options)) source = open_recording(options);
+    std::unique_ptr<sensor::Source> recorded;
+    std::unique_ptr<sensor::SyntheticSource> rendered;
+    if (!is_synthetic(options)) recorded = open_recording(options);
+    std::vector<PointLight> lights = lights_of(options);
     device.emplace(options.device);
-    if (is_synthetic(options)) source = open_synthetic(options, *device);
-    Run job(options, interrupt, folder, *device, *source);
+    if (is_synthetic(options)) rendered = open_synthetic(options, *device);
+    const RunTruth truth(options.sequence, rendered.get());
+    sensor::Source& source = recorded ? *recorded : *rendered;
+    Run job(options, interrupt, folder, *device, source, std::move(lights), truth);
     job.fuse_all();
     job.write_results();
 }

@@ -32,11 +32,25 @@ void for_each_setting(Settings& s, Visit&& visit) {
     visit("view.near_m", s.near_m);
     visit("view.every_frame", s.view_every_frame);
     visit("map.remove_every", s.remove_every);
+    if (s.reflectance) {
+        visit("reflectance.voxel_m", s.reflectance->voxel_m);
+        visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
+        visit("reflectance.capacity_records", s.reflectance->capacity_records);
+        visit("reflectance.shadows", s.reflectance->refine.shadows);
+        visit("reflectance.marched_records", s.reflectance->refine.marched_records);
+        visit("reflectance.refreshed_records", s.reflectance->refine.refreshed_records);
+        visit("observe.stride_px", s.reflectance->observe.stride_px);
+        visit("observe.max_distance_m", s.reflectance->observe.max_distance_m);
+        visit("observe.max_angle_degrees", s.reflectance->observe.max_angle_degrees);
+        visit("observe.depth_tolerance_m", s.reflectance->observe.depth_tolerance_m);
+        visit("observe.edge_margin_px", s.reflectance->observe.edge_margin_px);
+    }
 }
 
 std::string known_keys() {
     std::string keys;
-    const ReconstructionSettings defaults;
+    ReconstructionSettings defaults;
+    defaults.reflectance.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
@@ -58,6 +72,9 @@ bool assign(Value& setting, double number) {
 
 void set(ReconstructionSettings& settings, const std::string& key, std::optional<double> number,
          const std::string& written, const std::string& where) {
+    if (!settings.reflectance && (key.starts_with("reflectance.") || key.starts_with("observe."))) {
+        settings.reflectance.emplace();
+    }
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

@@ -1,0 +1,69 @@
+#include "passes/reflectance_model.h"
+
+#include "shared/voxel_map.h"
+
+namespace patina {
+namespace {
+
+ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceModelSettings& settings) {
+    ObservationMapSettings observations;
+    observations.voxel_m = settings.voxel_m;
+    observations.block_m = map.settings().voxel_m * gpu::kBlockEdge;
+    observations.capacity_blocks = settings.capacity_blocks;
+    observations.capacity_records = settings.capacity_records;
+    return observations;
+}
+
+}  // namespace
+
+ReflectanceModel::ReflectanceModel(vulkan::Device& device, const VoxelMap& map,
+                                   const ReflectanceModelSettings& settings)
+    : map_(map),
+      settings_(settings),
+      observations_(device, observations_of(map, settings)),
+      materials_(device, settings.capacity_labels),
+      state_(device, observations_),
+      access_(preferred_reflectance_access(device.caps(), map, observations_)) {}
+
+void ReflectanceModel::set_lights(std::span<const PointLight> lights, glm::vec3 ambient) {
+    lights_.set(lights, ambient);
+}
+
+void ReflectanceModel::set_material(uint32_t label, glm::vec3 ks, float alpha) { materials_.set(label, ks, alpha); }
+
+void ReflectanceModel::reset(graph::Frame& frame, glm::dvec3 center_m) {
+    observations_.reset(frame, center_m);
+    state_.reset(frame);
+}
+
+void ReflectanceModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index) {
+    ObservationMapIds records = observations_.import(frame);
+    const CollectedRecords collected = add_collect_observations(
+        frame, observations_, records, inputs, settings_.observe, depth_camera, color_camera, frame_index);
+    add_refine_reflectance(frame, models(), voxels, records, collected.changed, access_, settings_.refine);
+    ObservationMap::keep(frame, records);
+}
+
+void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels) {
+    ObservationMapIds records = observations_.import(frame);
+    add_refine_all_reflectance(frame, models(), voxels, records, access_, settings_.refine);
+    ObservationMap::keep(frame, records);
+}
+
+PredictedImages ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapIds& voxels,
+                                              const VisibleBlocks& visible, const RaycastImages& cast) {
+    PredictRadianceInputs inputs;
+    inputs.position_m = cast.position_m;
+    inputs.normal = cast.normal;
+    inputs.view = visible.view;
+    inputs.view_grid = visible.grid;
+    inputs.lights = lights_.upload(frame);
+    inputs.materials = materials_.import(frame);
+    inputs.material_count = materials_.capacity();
+    inputs.shadows = settings_.refine.shadows;
+    return add_predict_radiance(frame, map_, voxels, observations_, observations_.import(frame), state_.import(frame),
+                                inputs);
+}
+
+}  // namespace patina

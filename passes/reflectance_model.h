@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "passes/fusion/raycast.h"
+#include "passes/observation/observation.h"
+#include "passes/reflectance/reflectance.h"
+#include "passes/shading/predict_radiance.h"
+
+namespace patina {
+
+/// Size and settings of the reflectance beside the geometry.
+struct ReflectanceModelSettings {
+    float voxel_m = 0.02f;  ///< of observations: half or a quarter of a voxel block
+    uint32_t capacity_blocks = 65536;
+    uint32_t capacity_records = 262144;
+    ObservationSettings observe;
+    ReflectanceSettings refine;
+    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included
+};
+
+/// What a surface reflects, beside the voxel map that says where it is: observations by voxel, the lights, materials by
+/// label, and kd refined from them (paper, Sections 3.4 and 3.7). Lives as long as the map.
+class ReflectanceModel {
+  public:
+    /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the model.
+    ReflectanceModel(vulkan::Device& device, const VoxelMap& map, const ReflectanceModelSettings& settings);
+
+    /// Replaces all lights; see Lights::set.
+    void set_lights(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    /// Sets the specular material of a label; see SegmentMaterials::set.
+    void set_material(uint32_t label, glm::vec3 ks, float alpha);
+
+    /// Empties the model, placing it around the map's centre; the first thing done with it.
+    void reset(graph::Frame& frame, glm::dvec3 center_m);
+
+    /// Collects a frame's observations and refines what they change.
+    void add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+             const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index);
+
+    /// Brings every record up to date.
+    void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);
+
+    /// What a camera sees that was cast into the model.
+    PredictedImages add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                                const RaycastImages& cast);
+
+    std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
+    const ReflectanceModelSettings& settings() const { return settings_; }
+    const Lights& lights() const { return lights_; }
+
+  private:
+    ReflectanceModels models() { return {map_, observations_, lights_, materials_, state_}; }
+
+    const VoxelMap& map_;
+    ReflectanceModelSettings settings_;
+    ObservationMap observations_;
+    Lights lights_;
+    SegmentMaterials materials_;
+    ReflectanceState state_;
+    ReflectanceAccess access_;
+};
+
+}  // namespace patina

@@ -1,0 +1,24 @@
+#include "tools/run_truth.h"
+
+#include <utility>
+
+#include "sensor/picture_file.h"
+
+namespace patina::tools {
+
+RunTruth::RunTruth(std::filesystem::path sequence, const sensor::SyntheticSource* rendered)
+    : folder_(std::move(sequence) / "truth"), rendered_(rendered) {}
+
+Image<uint16_t> RunTruth::labels(uint32_t frame, Extent2D extent) const {
+    if (rendered_) return rendered_->truth().labels;
+    const auto file = folder_ / "labels" / (sensor::picture_stem(frame) + ".png");
+    sensor::DepthImage labels = sensor::read_depth(file, extent);
+    if (auto* ids = std::get_if<Image<uint16_t>>(&labels)) return std::move(*ids);
+    throw Error(file.string(), " holds floats, labels are 16-bit integers");
+}
+
+std::vector<sensor::Material> RunTruth::materials() const {
+    return rendered_ ? sensor::materials_of(rendered_->scene()) : sensor::read_materials(folder_ / "materials.json");
+}
+
+}  // namespace patina::tools

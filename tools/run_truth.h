@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/core/image.h"
+#include "sensor/source.h"
+#include "sensor/synthetic/synthetic_source.h"
+#include "sensor/truth.h"
+
+namespace patina::tools {
+
+/// What a synthetic sequence knows of itself: from the folder truth/ beside its frames, or from the scene that is
+/// rendered.
+class RunTruth {
+  public:
+    /// `rendered` is null for a recording, whose folder is `sequence`; else it must outlive this.
+    RunTruth(std::filesystem::path sequence, const sensor::SyntheticSource* rendered);
+
+    /// The object at each pixel of the depth camera in the frame that the source gave last. Throws Error when the file
+    /// is missing, damaged or not of this extent.
+    Image<uint16_t> labels(uint32_t frame, Extent2D extent) const;
+
+    /// All materials. Throws Error when the file is missing or wrong.
+    std::vector<sensor::Material> materials() const;
+
+  private:
+    std::filesystem::path folder_;
+    const sensor::SyntheticSource* rendered_;
+};
+
+}  // namespace patina::tools
