@@ -8,9 +8,9 @@ namespace patina {
 
 /// How much of the reflectance is brought up to date in a frame.
 struct ReflectanceSettings {
-    bool shadows = true;                ///< false: every light reaches every surface, as in the paper
-    uint32_t marched_records = 2048;    ///< changed records whose lights are marched in a frame at most, about
-    uint32_t refreshed_records = 2048;  ///< and others, looked at again in turn, about
+    bool shadows = true;               ///< false: every light reaches every surface, as in the paper
+    uint32_t marched_records = 1024;   ///< changed records whose lights are marched in a frame at most, about
+    uint32_t refreshed_records = 512;  ///< and others, looked at again in turn, about
 };
 
 /// The fastest on this device.

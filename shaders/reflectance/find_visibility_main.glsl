@@ -34,14 +34,17 @@ const float kMostLampShare = 0.3;   // of the way to it
 const float kGrazingCosine = 0.12;  // 7 degrees above the surface, about what its normal may be off
 const float kBackCosine = -0.2;     // lights behind the surface by more do not reach it
 
+// A copy of the voxel map's, whose loads software devices do not hoist out of loops.
+VoxelGrid grid;
+
 // The voxel at voxel coordinates; `block` is its block.
 uint load_voxel(uint block, ivec3 coordinates) {
     const ivec3 within = coordinates & 7;
-    const uint index = index_in_chunk(params.voxels.chunk_shift, block) * kBlockVoxels +
-                       uint(within.z << 6 | within.y << 3 | within.x);
+    const uint index =
+        index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
-    WITH_CHUNK(params.voxels.chunk_shift, block, LOAD_VOXEL)
+    WITH_CHUNK(grid.chunk_shift, block, LOAD_VOXEL)
     return voxel;
 }
 
@@ -64,9 +67,10 @@ Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, 
     for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
         const vec3 at = start + direction * gone;
         const ivec3 voxel = ivec3(floor(at));
-        const uint block = find_block(params.voxels, voxel >> 3);
+        const uint block = find_block(grid, voxel >> 3);
         const bool have = block != kNoBlock;
-        const uint found = have ? load_voxel(block, voxel) : 0u;
+        const uint loaded = load_voxel(have ? block : 0u, voxel);
+        const uint found = have ? loaded : 0u;
         const bool seen = voxel_weight(found) > 0u;
         const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
         deepest = min(deepest, here);
@@ -80,7 +84,7 @@ Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, 
 }
 
 Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
-    const float inverse_voxel = 1.0 / params.voxels.voxel_m;
+    const float inverse_voxel = 1.0 / grid.voxel_m;
     const vec3 offset_vox = (light.position_m.xyz - point_m) * inverse_voxel;
     const float distance_vox = max(length(offset_vox), 1e-6);
     const vec3 direction = offset_vox / distance_vox;
@@ -121,6 +125,7 @@ void main() {
     if (item >= listed[0]) return;
     const uint record = listed[1u + item];
     const VoxelRecord known = records[record];
+    grid = params.voxels;
     const vec3 normal = surface_normal(known);
     const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
     const Reached reached = find_lights(point_m, normal);

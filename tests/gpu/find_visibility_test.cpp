@@ -63,8 +63,8 @@ class FindVisibilityTest : public GpuTest {
     static constexpr int kFrames = 6;
 
     struct Model {
-        Model(vulkan::Device& device, graph::Runner& runner)
-            : observations(device, runner, {.capacity_records = 32768}),
+        Model(vulkan::Device& device, graph::Runner& runner, float voxel_m = 0.02f)
+            : observations(device, runner, {.voxel_m = voxel_m, .capacity_records = 131072}),
               reflectance(device, runner, observations.fusion().map(), observations.map()) {
             reflectance.lights.set(kLights);
         }
@@ -81,8 +81,8 @@ class FindVisibilityTest : public GpuTest {
         return all;
     }
 
-    std::unique_ptr<Model> make_model() {
-        auto model = std::make_unique<Model>(device(), runner());
+    std::unique_ptr<Model> make_model(float voxel_m = 0.02f) {
+        auto model = std::make_unique<Model>(device(), runner(), voxel_m);
         for (const RigFrame& frame : frames()) {
             model->observations.fuse(frame);
             model->observations.collect(frame);
@@ -146,14 +146,20 @@ TEST_F(FindVisibilityTest, BitsAgreeWithTheReferenceOnEverySurface) {
 }
 
 TEST_F(FindVisibilityTest, WithoutShadowsEveryLightReachesEveryRecord) {
-    const auto model = make_model();
-    ReflectanceSettings settings;
-    settings.shadows = false;
-    model->reflectance.update_all(settings);
-    for (const RefinedRecord& record : model->reflectance.records()) {
-        if (record.observations == 0) continue;
-        EXPECT_EQ(record.visible, UINT64_MAX);
-        EXPECT_EQ(record.uncertain, 0u);
+    for (const float voxel_m : {0.01f, 0.02f}) {
+        const auto model = make_model(voxel_m);
+        ReflectanceSettings settings;
+        settings.shadows = false;
+        const auto counts = model->reflectance.update_all(settings);
+        uint32_t observed = 0;
+        for (const RefinedRecord& record : model->reflectance.records()) {
+            if (record.observations == 0) continue;
+            ++observed;
+            EXPECT_EQ(record.visible, UINT64_MAX);
+            EXPECT_EQ(record.uncertain, 0u);
+        }
+        EXPECT_EQ(counts.marched, observed);
+        EXPECT_EQ(counts.refined, observed);
     }
 }
 

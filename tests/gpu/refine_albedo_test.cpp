@@ -99,7 +99,9 @@ class RefineAlbedoTest : public GpuTest {
     std::mt19937 random_{1};
     glm::vec3 ambient_{0.05f, 0.04f, 0.03f};
     VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
-    ObservationMap map_{device(), {.capacity_blocks = 64, .capacity_records = 4096}};
+    // Several chunks of 256 records.
+    ObservationMap map_{device(),
+                        {.capacity_blocks = 64, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
     ReflectanceRig rig_{device(), runner(), voxel_map_, map_};
 };
 
