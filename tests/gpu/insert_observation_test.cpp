@@ -1,7 +1,7 @@
 #include <random>
 
 #include "passes/model/observation_map.h"
-#include "passes/observation/record_list.h"
+#include "passes/model/record_list.h"
 #include "shared/test_observations.h"
 #include "spirv/shaders.h"
 #include "tests/gpu/gpu_test.h"
