@@ -149,7 +149,7 @@ class Bench {
             const PredictedImages predicted =
                 add_predict_radiance(frame, map(), voxels, records_, records_.import(frame), state_.import(frame),
                                      {model.position_m, model.normal, blocks.view, blocks.grid, lights_.upload(frame),
-                                      materials_.import(frame), materials_.capacity()});
+                                      materials_.import(frame), materials_.capacity(), true, access()});
             for (const graph::ImageId image : {predicted.kd, predicted.label, predicted.ks_alpha, predicted.rgb})
                 frame.keep(image);
             known_ = frame.read_back(predicted.rgb);
