@@ -38,7 +38,9 @@ PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_
                                      const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
     const Extent2D extent = frame.common_extent({inputs.position_m, inputs.normal});
     const PackedRecords packed = add_pack_records(frame, voxel_map, voxels, map, records, state, inputs);
-    auto pass = frame.compute("shading.predict_radiance", spirv::predict_radiance);
+    const bool texel = inputs.access == MapAccess::kTexel;
+    auto pass =
+        frame.compute("shading.predict_radiance", texel ? spirv::predict_radiance_texel : spirv::predict_radiance);
     pass.read("position_m", inputs.position_m).read("normal", inputs.normal).read("View", inputs.view);
     pass.read("ViewGrid", inputs.view_grid).read("Entries", packed.entries).read("Packed", packed.content);
     pass.read("Records", records.records).read("Visibility", records.visibility);

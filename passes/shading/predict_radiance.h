@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/graph/frame.h"
+#include "passes/model/map_access.h"
 #include "passes/model/observation_map.h"
 #include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
@@ -18,6 +19,7 @@ struct PredictRadianceInputs {
     graph::BufferId materials;  ///< gpu::SegmentMaterial[material_count]
     uint32_t material_count = 0;
     bool shadows = true;  ///< false: every light reaches every surface, as in the paper
+    MapAccess access = MapAccess::kStorage;
 };
 
 /// What the model looks like. All zero where nothing was hit.

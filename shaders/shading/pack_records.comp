@@ -25,8 +25,7 @@ layout(std430, binding = 12) writeonly buffer Packed { uvec4 packed_records[]; }
 layout(push_constant) uniform Push { PackRecordsParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
-#define RECORD(entry) record_table[entry]
-#include "lib/find_record.glsl"
+#include "lib/block_lookup.glsl"
 
 void main() {
     const uint block = gl_GlobalInvocationID.x;
@@ -38,9 +37,10 @@ void main() {
     if (cell == kOutsideGrid || view_grid[cell] != block) return;
 
     const uint voxels = 1u << 3u * params.edge_shift;
+    const uint observed = find_block(params.records, coordinates);
     for (uint i = 0u; i < voxels; ++i) {
-        const uint record =
-            find_record(params.records, params.edge_shift, voxel_of_record(coordinates, i, params.edge_shift));
+        const uint found = observed == kNoBlock ? kNoRecord : record_table[observed * voxels + i];
+        const uint record = found < kNewRecord ? found : kNoRecord;
         entries[block * voxels + i] = record;
         if (record == kNoRecord) continue;
         packed_records[record] =

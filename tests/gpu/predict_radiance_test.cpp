@@ -16,8 +16,7 @@ using reference::ShadedRecord;
 using reference::Ward;
 
 constexpr double kWallM = 1.003;
-constexpr double kHalf = 1.0 / 1024;    // rgba16f rounds at 2^-11; twice that for what was computed from it
-constexpr double kPacking = 1.0 / 512;  // of kd: a shared exponent keeps 9 bits
+constexpr double kHalf = 1.0 / 1024;  // rgba16f rounds at 2^-11; twice that for what was computed from it
 constexpr uint64_t kAllLights = ~uint64_t{0};
 const RigidTransform kPose{1.0};
 const glm::dvec3 kAmbient(0.05, 0.04, 0.03);
@@ -54,7 +53,7 @@ class PredictRadiance : public GpuTest {
         size_t hits = 0;
         for (uint32_t y = margin; y + margin < extent.height; ++y) {
             for (uint32_t x = margin; x + margin < extent.width; ++x) {
-                if (view.position_m.at(x, y).w == 0) continue;
+                if (view.position_m.at(x, y).w == 0 || HasFailure()) continue;
                 check(x, y);
                 ++hits;
             }
@@ -72,17 +71,20 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
         const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
         double brightest = 0;
         const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
-            const glm::dvec3 point(view.position_m.at(x, y)), normal(view.normal.at(x, y));
+            const glm::dvec3 point(view.position_m.at(x, y));
+            // At the image's border the model has no normal: the records' does, which is kept with 8 bits.
+            const bool known = view.normal.at(x, y) != glm::vec4(0);
+            const glm::dvec3 normal = known ? glm::normalize(glm::dvec3(view.normal.at(x, y))) : glm::dvec3(0, 0, -1);
             const glm::dvec3 offset = glm::dvec3(kLamp.position_m) - point, to_light = glm::normalize(offset);
             const glm::dvec3 received =
                 glm::dvec3(kLamp.intensity) * std::max(glm::dot(normal, to_light), 0.0) / glm::dot(offset, offset);
             const glm::dvec3 diffuse = gloss.kd * (kAmbient + received / std::numbers::pi);
             const glm::dvec3 expected =
-                gloss.kd * kAmbient +
-                received * reference::ward(gloss, glm::normalize(normal), to_light, glm::normalize(-point));
-            ASSERT_EQ(view.kd.at(x, y), glm::vec4(gloss.kd, 1)) << x << ' ' << y;
+                gloss.kd * kAmbient + received * reference::ward(gloss, normal, to_light, glm::normalize(-point));
+            ASSERT_EQ(view.kd.at(x, y).a, 1);
+            ASSERT_LT(off(view.kd.at(x, y), gloss.kd), kHalf) << x << ' ' << y;
             ASSERT_EQ(view.rgb.at(x, y).a, 1);
-            ASSERT_LT(off(view.rgb.at(x, y), expected), kHalf * max_of(expected)) << x << ' ' << y;
+            ASSERT_LT(off(view.rgb.at(x, y), expected), (known ? kHalf : 0.05) * max_of(expected)) << x << ' ' << y;
             ASSERT_EQ(view.ks_alpha.at(x, y), glm::vec4(gloss.ks, gloss.alpha));
             ASSERT_EQ(view.label.at(x, y), 3u);
             brightest = std::max(brightest, max_of(expected / diffuse));
@@ -101,6 +103,7 @@ TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {
     const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
     for_each_hit(view, 8, [&](uint32_t x, uint32_t y) {
         const glm::dvec3 expected = ramp(glm::dvec3(view.position_m.at(x, y)));
+        // A shared exponent keeps 9 bits.
         ASSERT_LT(off(view.kd.at(x, y), expected), 1.0 / 1024 + kHalf) << x << ' ' << y;
     });
 }
@@ -116,7 +119,8 @@ TEST_F(PredictRadiance, SurfacesBackToBackDoNotMix) {
         const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
             const glm::vec4 at = view.position_m.at(x, y);
             if (std::max(std::abs(at.x), std::abs(at.y)) > 0.27f) return;
-            ASSERT_EQ(view.kd.at(x, y), glm::vec4(is_behind ? back : front, 1)) << x << ' ' << y;
+            ASSERT_EQ(view.kd.at(x, y).a, 1);
+            ASSERT_LT(off(view.kd.at(x, y), is_behind ? back : front), kHalf) << x << ' ' << y;
             ASSERT_EQ(view.label.at(x, y), is_behind ? 2u : 1u);
         });
         EXPECT_GT(hits, 5000u);
@@ -145,7 +149,8 @@ TEST_F(PredictRadiance, WhatIsUnknownIsFilledFromAVoxelAway) {
         const double voxels = double{view.position_m.at(x, y).x} / 0.02 - kFirstKnown;
         if (std::abs(voxels + 1.5) < 0.01) return;
         const bool known = voxels > -1.5;
-        ASSERT_EQ(view.kd.at(x, y), known ? glm::vec4(kd, 1) : glm::vec4(0)) << x << ' ' << y;
+        ASSERT_EQ(view.kd.at(x, y).a, known ? 1 : 0) << x << ' ' << y;
+        ASSERT_LT(off(view.kd.at(x, y), known ? kd : glm::dvec3(0)), kHalf) << x << ' ' << y;
         ASSERT_EQ(view.rgb.at(x, y).a, known ? 1 : 0);
         ASSERT_EQ(view.rgb.at(x, y).g > 0, known);
         filled += known && voxels < -0.5;

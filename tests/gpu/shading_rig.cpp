@@ -135,7 +135,8 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     const RaycastImages model = add_raycast(frame, map, voxels, visible, MapAccess::kStorage);
     const PredictRadianceInputs inputs{
         model.position_m,        model.normal,         visible.view, visible.grid, lights.upload(frame),
-        materials.import(frame), materials.capacity(), shadows};
+        materials.import(frame), materials.capacity(), shadows,
+                                       preferred_map_access(runner_.device().caps(), map)};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
