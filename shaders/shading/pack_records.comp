@@ -14,7 +14,7 @@ layout(std430, binding = 3) readonly buffer Counters { MapCounters counters; };
 layout(std430, binding = 4) readonly buffer Keys { uvec4 keys[]; };
 layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 6) readonly buffer RecordTable { uint record_table[]; };
-layout(std430, binding = 7) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 7) readonly buffer Records { uvec4 records[]; };  // VoxelRecord: one load
 layout(std430, binding = 8) readonly buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 9) readonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 10) readonly buffer Status { RecordStatus status[]; };
@@ -43,7 +43,8 @@ void main() {
         const uint record = found < kNewRecord ? found : kNoRecord;
         entries[block * voxels + i] = record;
         if (record == kNoRecord) continue;
+        const uvec4 known = records[record];
         packed_records[record] =
-            pack_record(records[record], albedo[record], status[record].marched != 0u, visibility[record].x);
+            pack_record(VoxelRecord(known.x, known.y, known.z, known.w), albedo[record], status[record].marched != 0u, visibility[record].x);
     }
 }
