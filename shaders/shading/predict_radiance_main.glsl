@@ -95,8 +95,7 @@ Reflectance interpolate(SurfacePoint point) {
         const uvec3 cell = mix(low_cell, high_cell, high);
         const uvec3 voxel = mix(low_voxel, high_voxel, high);
         const bool inside = all(mix(low_inside, high_inside, high));
-        const uint record =
-            find_record(inside ? cell.x + cell.y + cell.z : kOutsideGrid, voxel.x | voxel.y | voxel.z);
+        const uint record = find_record(inside ? cell.x + cell.y + cell.z : kOutsideGrid, voxel.x | voxel.y | voxel.z);
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
