@@ -2,27 +2,27 @@
 // bindings.
 //   x  kd, shared exponent
 //   y  its certainty, 3 x 10 bits | lights were marched from it << 30 | it has a label << 31
-//   z  normal octahedral snorm 8 + 8 | offset snorm 8 along it from the voxel's centre, in voxels
+//   z  normal snorm 8 + 8 + 8, without need to decode octahedra | offset snorm 8 along it from the voxel's centre, in
+//      voxels
 //   w  the first 32 lights that reach it, a bit each
 #ifndef PATINA_LIB_PACKED_RECORDS_GLSL
 #define PATINA_LIB_PACKED_RECORDS_GLSL
 #include "lib/reflectance.glsl"
 
 uvec4 pack_record(VoxelRecord record, uvec2 albedo, bool marched, uint visibility) {
-    const ivec2 normal = ivec2(round(to_octahedral(surface_normal(record)) * 127.0));
-    const int offset = int(round(surface_offset_vox(record) * 127.0));
     const uint flags = (marched ? 1u << 30 : 0u) | (record_label(record) != 0u ? 1u << 31 : 0u);
-    const uint surface = (uint(normal.x) & 0xffu) | (uint(normal.y) & 0xffu) << 8 | (uint(offset) & 0xffu) << 16;
-    return uvec4(albedo.x, albedo.y | flags, surface, visibility);
+    const vec4 surface = vec4(surface_normal(record), surface_offset_vox(record));
+    return uvec4(albedo.x, albedo.y | flags, packSnorm4x8(surface), visibility);
 }
 
 vec3 packed_kd(uvec4 packed) { return albedo_kd(packed.xy); }
 vec3 packed_certainty(uvec4 packed) { return albedo_certainty(packed.xy); }
 bool packed_marched(uvec4 packed) { return (packed.y & 1u << 30) != 0u; }
 bool packed_has_label(uvec4 packed) { return (packed.y & 1u << 31) != 0u; }
-vec3 packed_normal(uvec4 packed) {
-    return from_octahedral(vec2(int(packed.z << 24) >> 24, int(packed.z << 16) >> 24) * (1.0 / 127.0));
+// xyz: the normal, of unit length but for rounding; w: the offset.
+vec4 packed_surface(uvec4 packed) {
+    return vec4(int(packed.z << 24) >> 24, int(packed.z << 16) >> 24, int(packed.z << 8) >> 24, int(packed.z) >> 24) *
+           (1.0 / 127.0);
 }
-float packed_offset_vox(uvec4 packed) { return float(int(packed.z << 8) >> 24) * (1.0 / 127.0); }
 
 #endif

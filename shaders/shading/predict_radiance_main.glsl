@@ -46,20 +46,18 @@ struct SurfacePoint {
     vec3 to_viewer;
 };
 
-uint find_record(ivec3 voxel) {
-    const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
+uint find_record(uint cell, uint voxel) {
     const uint block = CELL(cell == kOutsideGrid ? 0u : cell);
     if (cell == kOutsideGrid || block == kNoBlock) return kNoRecord;
-    return ENTRY(block << 3u * params.edge_shift | voxel_number(voxel, params.edge_shift));
+    return ENTRY(block << 3u * params.edge_shift | voxel);
 }
 
-// How much the surface of the record of a voxel is that of the point, 0 to 1.
-float same_surface(SurfacePoint point, ivec3 voxel, uvec4 content) {
-    const vec3 its_normal = packed_normal(content);
+// How much the surface of a record is that of the point, 0 to 1; `surface` is packed_surface.
+float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
     const bool known = point.normal != vec3(0.0);
     // Where the model has no normal, all that faces the viewer will do.
-    const float cosine = known ? dot(point.normal, its_normal) : dot(point.to_viewer, its_normal) > 0.0 ? 1.0 : 0.0;
-    const float off = abs(dot(its_normal, point.at_vox - vec3(voxel)) - packed_offset_vox(content));
+    const float cosine = known ? dot(point.normal, surface.xyz) : dot(point.to_viewer, surface.xyz) > 0.0 ? 1.0 : 0.0;
+    const float off = abs(dot(surface.xyz, away_vox) - surface.w);
     return clamp((cosine - kOtherCosine) / (kAgreeingCosine - kOtherCosine), 0.0, 1.0) *
            clamp((kOffPlaneVox - off) / (kOffPlaneVox - kOnPlaneVox), 0.0, 1.0);
 }
@@ -82,20 +80,34 @@ Reflectance interpolate(SurfacePoint point) {
     vec3 sum = vec3(0.0), weights = vec3(0.0), normals = vec3(0.0);
     float nearest = 1e9;
     uint labelled = kNoRecord;
+    // What addresses of the corners have in common is computed once per axis.
+    const uvec3 mask = uvec3((1u << params.edge_shift) - 1u);
+    const uvec3 strides = uvec3(1u, grid_size.x, grid_size.x * grid_size.y);
+    const uvec3 shifts = uvec3(0u, params.edge_shift, 2u * params.edge_shift);
+    const uvec3 low_block = uvec3((low >> int(params.edge_shift)) - grid_low);
+    const uvec3 high_block = uvec3((low + 1 >> int(params.edge_shift)) - grid_low);
+    const bvec3 low_inside = lessThan(low_block, grid_size), high_inside = lessThan(high_block, grid_size);
+    const uvec3 low_cell = low_block * strides, high_cell = high_block * strides;
+    const uvec3 low_voxel = (uvec3(low) & mask) << shifts, high_voxel = (uvec3(low + 1) & mask) << shifts;
     [[unroll]] for (int i = 0; i < 8; ++i) {
         const ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2);
-        const uint record = find_record(low + corner);
+        const bvec3 high = notEqual(corner, ivec3(0));
+        const uvec3 cell = mix(low_cell, high_cell, high);
+        const uvec3 voxel = mix(low_voxel, high_voxel, high);
+        const bool inside = all(mix(low_inside, high_inside, high));
+        const uint record = find_record(inside ? cell.x + cell.y + cell.z : kOutsideGrid, voxel.x | voxel.y | voxel.z);
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
-        const float same = have ? same_surface(point, low + corner, content) : 0.0;
+        const vec4 surface = packed_surface(content);
+        const vec3 away = t - vec3(corner);
+        const float same = have ? same_surface(point, away, surface) : 0.0;
         const float weight = same * max(share.x * share.y * share.z, kLeastWeight);
         const vec3 certain = weight * packed_certainty(content);
         sum += certain * packed_kd(content);
         weights += certain;
-        normals += weight * packed_normal(content);
-        const vec3 apart = vec3(corner) - t;
-        const float distance2 = same > 0.0 && packed_has_label(content) ? dot(apart, apart) : 1e9;
+        normals += weight * surface.xyz;
+        const float distance2 = same > 0.0 && packed_has_label(content) ? dot(away, away) : 1e9;
         labelled = distance2 < nearest ? record : labelled;
         nearest = min(distance2, nearest);
         near_record[i] = have ? record : 0u;
@@ -114,11 +126,12 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
     uint chosen = kNoRecord;
     for (int i = 0; i < 64; ++i) {
         const ivec3 voxel = low + ivec3(i & 3, i >> 2 & 3, i >> 4);
-        const uint record = find_record(voxel);
+        const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
+        const uint record = find_record(cell, voxel_number(voxel, params.edge_shift));
         if (record == kNoRecord) continue;
         const uvec4 its = PACKED(record);
-        const vec3 apart = vec3(voxel) - point.at_vox;
-        const float distance2 = same_surface(point, voxel, its) > 0.0 ? dot(apart, apart) : 1e9;
+        const vec3 away = point.at_vox - vec3(voxel);
+        const float distance2 = same_surface(point, away, packed_surface(its)) > 0.0 ? dot(away, away) : 1e9;
         if (distance2 < nearest && packed_certainty(its) != vec3(0.0)) {
             nearest = distance2;
             content = its;
@@ -137,18 +150,24 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
         share_of[0] = 1.0;
         visible_from[0] = uvec2(content.w, 0u);
     }
-    return Reflectance(packed_kd(content), true, packed_normal(content), found.labelled);
+    return Reflectance(packed_kd(content), true, packed_surface(content).xyz, found.labelled);
+}
+
+// Makes the shares sum to 1.
+void normalise_shares() {
+    float all = 1e-20;
+    [[unroll]] for (int i = 0; i < 8; ++i) all += share_of[i];
+    [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] /= all;
 }
 
 // The share of the surface around the point that a light reaches.
 float share_lit(uint light) {
-    float lit = 0.0, all = 1e-20;
+    float lit = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) {
         const uint bits = light < 32u ? visible_from[i].x : visible_from[i].y;
         lit += (bits >> (light & 31u) & 1u) != 0u ? share_of[i] : 0.0;
-        all += share_of[i];
     }
-    return params.shadows == 0u ? 1.0 : lit / all;
+    return params.shadows == 0u ? 1.0 : lit;
 }
 
 void load_further_visibility() {
@@ -182,6 +201,7 @@ void main() {
         gloss = segment != 0u && segment < params.materials ? materials[segment].ks_alpha : vec4(0.0);
         if (found.known) {
             if (header.count > 32u) load_further_visibility();
+            normalise_shares();
             const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
             known_kd = vec4(found.kd, 1.0);
             shaded = vec4(radiance(hit.xyz, facing, point.to_viewer, found.kd, gloss), 1.0);

@@ -109,7 +109,8 @@ TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {
 }
 
 TEST_F(PredictRadiance, SurfacesBackToBackDoNotMix) {
-    const auto plate = reference::box({0, 0, 1}, {0.3, 0.3, 0.01});
+    // Its sides lie in voxels next to each other, so that either is among the eight around the other.
+    const auto plate = reference::box({0, 0, 1.006}, {0.3, 0.3, 0.01});
     const RigidTransform behind = reference::look_at({0, 0, 2}, {0, 0, 1});
     ShadingRig rig = this->rig(plate, 0.02f, {kPose, behind});
     const glm::dvec3 front(0.75, 0.125, 0.125), back(0.125, 0.125, 0.75);

@@ -133,9 +133,14 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     const VisibleBlocks visible =
         add_visible_blocks(frame, map, voxels, make_camera(camera, world_from_camera), 0.1f, 5.0f);
     const RaycastImages model = add_raycast(frame, map, voxels, visible, MapAccess::kStorage);
-    const PredictRadianceInputs inputs{
-        model.position_m,        model.normal,         visible.view, visible.grid, lights.upload(frame),
-        materials.import(frame), materials.capacity(), shadows,
+    const PredictRadianceInputs inputs{model.position_m,
+                                       model.normal,
+                                       visible.view,
+                                       visible.grid,
+                                       lights.upload(frame),
+                                       materials.import(frame),
+                                       materials.capacity(),
+                                       shadows,
                                        preferred_map_access(runner_.device().caps(), map)};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);

@@ -1,4 +1,5 @@
 // patina_shade_bench: how long re-rendering takes, on the model of a recording. See docs/benchmarks.md.
+#include <cstdio>
 #include <ctime>
 #include <exception>
 
@@ -24,13 +25,12 @@ struct Options {
     tools::DeviceArguments device;
     std::string sequence = "synthetic:office";
     float voxel_m = 0.02f;
+    std::string extent = "512x424";
     uint32_t lights = 4;
     uint32_t model_frames = 8;
     uint32_t frames = 20;
     uint32_t warmup = 4;
 };
-
-constexpr Extent2D kExtent{512, 424};
 
 /// Processor time of this process, all threads together.
 double processor_ms() {
@@ -63,6 +63,15 @@ class Bench {
             collect();
         }
         refine();
+    }
+
+    /// How many pixels of a view have a known kd.
+    size_t known_pixels() {
+        const graph::Readback rgb = cast(true, true);
+        runner().wait();
+        size_t known = 0;
+        for (const uint64_t pixel : rgb.as<uint64_t>()) known += pixel >> 48 != 0;
+        return known;
     }
 
     /// Processor time of each of `frames` casts, with or without the shading.
@@ -138,7 +147,8 @@ class Bench {
         runner().submit(std::move(frame));
     }
 
-    void cast(bool shade) {
+    graph::Readback cast(bool shade, bool read_back = false) {
+        graph::Readback rgb;
         graph::Frame frame = runner().begin();
         const VoxelMapIds voxels = map().import(frame);
         const VisibleBlocks blocks = visible(frame, voxels);
@@ -152,9 +162,10 @@ class Bench {
                                       materials_.import(frame), materials_.capacity(), true, access()});
             for (const graph::ImageId image : {predicted.kd, predicted.label, predicted.ks_alpha, predicted.rgb})
                 frame.keep(image);
-            known_ = frame.read_back(predicted.rgb);
+            if (read_back) rgb = frame.read_back(predicted.rgb);
         }
         runner().submit(std::move(frame));
+        return rgb;
     }
 
     vulkan::Device& device_;
@@ -165,32 +176,36 @@ class Bench {
     ReflectanceState state_;
     RgbdFrame last_;
     uint32_t collected_ = 0;
-
-  public:
-    graph::Readback known_;
 };
 
 void print(const std::string& name, const Distribution& d) {
     fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
 }
 
+Extent2D parse_extent(const std::string& text) {
+    Extent2D extent;
+    if (std::sscanf(text.c_str(), "%ux%u", &extent.width, &extent.height) != 2) {
+        throw Error("--extent takes WIDTHxHEIGHT, such as 512x424, not '", text, "'");
+    }
+    return extent;
+}
+
 void run(const Options& options) {
+    const Extent2D extent = parse_extent(options.extent);
     const vulkan::DeviceOptions device_options = options.device.options();
-    const Recording recording =
-        load({options.sequence, {}, kExtent, options.model_frames}, device_options);
+    const Recording recording = load({options.sequence, {}, extent, options.model_frames}, device_options);
     vulkan::Device device(device_options);
     Bench bench(device, options, recording);
+    const size_t known = bench.known_pixels();
     bench.measure(options.warmup, true);
-    size_t known = 0;
-    for (const uint64_t pixel : bench.known_.as<uint64_t>()) known += pixel >> 48 != 0;
     bench.measure(1, false);
     bench.runner().clear_timings();
     const Distribution with = distribution(bench.measure(options.frames, true));
     const auto timings = bench.runner().pass_timings();
     const Distribution without = distribution(bench.measure(options.frames, false));
-    fmt::print("{}, {}\n{} at {}, {} m, {} lights, {} frames; kd known at {:.1f} % of the pixels\n\n", device.caps().name,
-               device.caps().driver, options.sequence, "512x424", options.voxel_m, options.lights, options.frames,
-               100.0 * static_cast<double>(known) / static_cast<double>(kExtent.area()));
+    fmt::print("{}, {}\n{} at {}, {} m, {} lights, {} frames; kd known at {:.1f} % of the pixels\n\n",
+               device.caps().name, device.caps().driver, options.sequence, options.extent, options.voxel_m,
+               options.lights, options.frames, 100.0 * static_cast<double>(known) / static_cast<double>(extent.area()));
     fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
     for (const graph::Timing& timing : timings) {
         if (timing.name.starts_with("shading.")) print(timing.name, distribution(timing.samples_ms));
@@ -210,6 +225,7 @@ int main(int argc, char** argv) {
     CLI::App app("Measures how long re-rendering takes", "patina_shade_bench");
     bench::Options options;
     app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
+    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--voxel", options.voxel_m, "Size of the observations' voxels, 0.02 or 0.01 m")
         ->capture_default_str();
     app.add_option("--lights", options.lights, "Point lights")
