@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     tools::add_synth(app);
     tools::add_run(app);
     tools::add_eval(app);
+    tools::add_lights(app);
     try {
         app.parse(argc, argv);
         return 0;

@@ -25,5 +25,6 @@ void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_run(CLI::App& app);
 void add_eval(CLI::App& app);
+void add_lights(CLI::App& app);
 
 }  // namespace patina::tools
