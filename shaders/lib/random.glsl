@@ -37,8 +37,8 @@ vec4 random_numbers(uvec2 stream, uint index, uint dimension) {
     return unit_interval(random_words(stream, index, dimension));
 }
 
-// Words as those of random_words(), but xy are point `index` of a sequence that fills the unit square evenly, shifted at
-// random for each stream and dimension (Cranley and Patterson, 1976). Each point alone is uniform. Points of two
+// Words as those of random_words(), but xy are point `index` of a sequence that fills the unit square evenly, shifted
+// at random for each stream and dimension (Cranley and Patterson, 1976). Each point alone is uniform. Points of two
 // dimensions of one stream move together: what depends on both needs random_words() for one of them.
 uvec4 stratified_words(uvec2 stream, uint index, uint dimension) {
     const uvec2 shift = random_words(stream, kEverySample, dimension).xy;
