@@ -7,27 +7,34 @@ namespace patina {
 
 namespace {
 
-/// The records that a view can show, found and packed once.
+/// The records, with those that a view can show by voxel.
 struct PackedRecords {
     graph::BufferId entries;  ///< u32 per observation voxel of each block of the voxel map: record id, or kNoRecord
     graph::BufferId content;  ///< uvec4 per record: lib/packed_records.glsl
 };
 
-PackedRecords add_pack_records(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
-                               const ObservationMap& map, const ObservationMapIds& records,
-                               const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
-    auto pass = frame.compute("shading.pack_records", spirv::pack_records);
+graph::BufferId add_index_records(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+                                  const ObservationMap& map, const ObservationMapIds& records,
+                                  const PredictRadianceInputs& inputs) {
+    auto pass = frame.compute("shading.index_records", spirv::index_records);
     pass.read("View", inputs.view).read("ViewGrid", inputs.view_grid);
     pass.read("BlockKeys", voxels.block_keys).read("Counters", voxels.counters);
     pass.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
-    pass.read("Records", records.records).read("Albedo", records.albedo).read("Visibility", records.visibility);
-    pass.read("Status", state.status);
-    const uint64_t entries = uint64_t{voxel_map.settings().capacity_blocks} << 3 * map.edge_shift();
-    PackedRecords packed;
-    packed.entries = pass.create("Entries", entries * sizeof(uint32_t));
-    packed.content = pass.create("Packed", uint64_t{map.settings().capacity_records} * sizeof(glm::uvec4));
-    pass.push(gpu::PackRecordsParams{voxel_map.grid(), map.grid(), map.edge_shift(), 0, 0, 0});
+    const uint64_t count = uint64_t{voxel_map.settings().capacity_blocks} << 3 * map.edge_shift();
+    const graph::BufferId entries = pass.create("Entries", count * sizeof(uint32_t));
+    pass.push(gpu::IndexRecordsParams{voxel_map.grid(), map.grid(), map.edge_shift(), 0, 0, 0});
     pass.dispatch_indirect(voxels.block_arguments);
+    return entries;
+}
+
+graph::BufferId add_pack_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+                                 const ReflectanceStateIds& state) {
+    const uint32_t capacity = map.settings().capacity_records;
+    auto pass = frame.compute("shading.pack_records", spirv::pack_records);
+    pass.read("RecordCounters", records.record_counters).read("Status", state.status);
+    pass.read("Records", records.records).read("Albedo", records.albedo).read("Visibility", records.visibility);
+    const graph::BufferId packed = pass.create("Packed", uint64_t{capacity} * sizeof(glm::uvec4));
+    pass.dispatch_covering(capacity);
     return packed;
 }
 
@@ -37,7 +44,8 @@ PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_
                                      const ObservationMap& map, const ObservationMapIds& records,
                                      const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
     const Extent2D extent = frame.common_extent({inputs.position_m, inputs.normal});
-    const PackedRecords packed = add_pack_records(frame, voxel_map, voxels, map, records, state, inputs);
+    const PackedRecords packed{add_index_records(frame, voxel_map, voxels, map, records, inputs),
+                               add_pack_records(frame, map, records, state)};
     const bool texel = inputs.access == MapAccess::kTexel;
     auto pass =
         frame.compute("shading.predict_radiance", texel ? spirv::predict_radiance_texel : spirv::predict_radiance);

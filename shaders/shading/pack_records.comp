@@ -1,56 +1,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-// Finds the records in the blocks that a view's grid holds, once per block instead of for each pixel, and packs what
-// shading needs of them. One invocation per block of the voxel map.
+// Packs what shading needs of each record.
 #include "lib/packed_records.glsl"
-#include "lib/view_grid.glsl"
 #include "shared/predict_radiance.h"
 
-layout(local_size_x = kVisibleGroup) in;
-layout(std140, binding = 0) uniform View { ViewParams view; };
-layout(std430, binding = 1) readonly buffer ViewGrid { uint view_grid[]; };
-layout(std430, binding = 2) readonly buffer BlockKeys { uint block_keys[]; };
-layout(std430, binding = 3) readonly buffer Counters { MapCounters counters; };
-layout(std430, binding = 4) readonly buffer Keys { uvec4 keys[]; };
-layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
-layout(std430, binding = 6) readonly buffer RecordTable { uvec4 record_table[]; };
-layout(std430, binding = 7) readonly buffer Records { uvec4 records[]; };  // VoxelRecord: one load
-layout(std430, binding = 8) readonly buffer Albedo { uvec2 albedo[]; };
-layout(std430, binding = 9) readonly buffer Visibility { uvec2 visibility[]; };
-layout(std430, binding = 10) readonly buffer Status { RecordStatus status[]; };
-layout(std430, binding = 11) writeonly buffer Entries {
-    uvec4 entries[];
-};  // per voxel of each block: record id, kNoRecord
-layout(std430, binding = 12) writeonly buffer Packed { uvec4 packed_records[]; };
-layout(push_constant) uniform Push { PackRecordsParams params; };
-#define KEYS(bucket) keys[bucket]
-#define BLOCK(slot) blocks[slot]
-#include "lib/block_lookup.glsl"
-
-void pack(uint record) {
-    const uvec4 known = records[record];
-    packed_records[record] = pack_record(VoxelRecord(known.x, known.y, known.z, known.w), albedo[record],
-                                         status[record].marched != 0u, visibility[record].x);
-}
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
+layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 2) readonly buffer Albedo { uvec2 albedo[]; };
+layout(std430, binding = 3) readonly buffer Visibility { uvec2 visibility[]; };
+layout(std430, binding = 4) readonly buffer Status { RecordStatus status[]; };
+layout(std430, binding = 5) writeonly buffer Packed { uvec4 packed_records[]; };
 
 void main() {
-    const uint block = gl_GlobalInvocationID.x;
-    if (block >= counters.high_water) return;
-    const uint key = block_keys[block];
-    if (key == kEmptyKey) return;
-    const ivec3 coordinates = block_of_key(params.voxels, key);
-    const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates);
-    if (cell == kOutsideGrid || view_grid[cell] != block) return;
-
-    const uint quads = 1u << 3u * params.edge_shift >> 2u;
-    const uint observed = find_block(params.records, coordinates);
-    for (uint i = 0u; i < quads; ++i) {
-        uvec4 quad = observed == kNoBlock ? uvec4(kNoRecord) : record_table[observed * quads + i];
-        quad = mix(uvec4(kNoRecord), quad, lessThan(quad, uvec4(kNewRecord)));
-        entries[block * quads + i] = quad;
-        [[unroll]] for (uint k = 0u; k < 4u; ++k) {
-            if (quad[k] != kNoRecord) pack(quad[k]);
-        }
-    }
+    const uint record = gl_GlobalInvocationID.x;
+    if (record >= counters.high_water) return;
+    packed_records[record] =
+        pack_record(records[record], albedo[record], status[record].marched != 0u, visibility[record].x);
 }

@@ -7,7 +7,7 @@ INTEROP_BEGIN
 INTEROP_CONST uint kPredictGroupX = 32u;
 INTEROP_CONST uint kPredictGroupY = 4u;
 
-struct PackRecordsParams {
+struct IndexRecordsParams {
     VoxelGrid voxels;   // the voxel map's grid
     VoxelGrid records;  // the observation map's
     uint edge_shift;    // of the observation map
