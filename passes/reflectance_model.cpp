@@ -62,6 +62,7 @@ PredictedImages ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMa
     inputs.materials = materials_.import(frame);
     inputs.material_count = materials_.capacity();
     inputs.shadows = settings_.refine.shadows;
+    inputs.access = access_.voxels;
     return add_predict_radiance(frame, map_, voxels, observations_, observations_.import(frame), state_.import(frame),
                                 inputs);
 }
