@@ -123,6 +123,34 @@ TEST_F(BadInput, SynthOfWhatIsNotThere) {
     EXPECT_THAT(expect_failure(patina({"synth", "cubes", "--out", sequence()})), HasSubstr("exists and is not empty"));
 }
 
+TEST_F(BadInput, ReflectanceWithoutLights) {
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--labels", "truth", "--out", out(), "--quiet"})),
+                HasSubstr("reflectance needs lights: give --lights FILE or --lighting SEQUENCE"));
+}
+
+TEST_F(BadInput, LightsFileThatIsMissingOrWrong) {
+    const auto run_with = [&](const fs::path& lights) {
+        return expect_failure(patina({"run", sequence(), "--lights", lights, "--out", out(), "--quiet"}));
+    };
+    EXPECT_THAT(run_with(beside("none.json")), HasSubstr("none.json"));
+    write_text(beside("dark.json"), R"({"lights": [{"position": [0, 0, 0], "intensity": [1, -1, 1]}]})");
+    EXPECT_THAT(run_with(beside("dark.json")), AllOf(HasSubstr("lights[0].intensity"), HasSubstr("-1")));
+}
+
+TEST_F(BadInput, TruthThatIsNotThere) {
+    write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--lights", beside("l.json"), "--materials", "truth", "--out",
+                                       out(), "--quiet"})),
+                HasSubstr("materials.json"));
+}
+
+TEST_F(BadInput, LightingSequenceThatIsMissingOrDark) {
+    EXPECT_THAT(expect_failure(patina({"lights", beside("nothing"), "--quiet"})), HasSubstr("nothing does not exist"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--lighting", sequence(), "--set", "map.voxel_m=0.03",
+                                       "--out", out(), "--quiet"})),
+                HasSubstr("no lamp was found"));
+}
+
 TEST_F(BadInput, InfoOfNothing) {
     EXPECT_THAT(expect_failure(patina({"info", beside("nowhere")})), HasSubstr("nowhere"));
 }

@@ -137,5 +137,20 @@ TEST_F(FromSceneToScores, GeometryIsReconstructed) {
     EXPECT_LT(json["object_means"]["rgb"]["filled"]["mad"], 0.1);
 }
 
+TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
+    const fs::path recording = beside("cubes");
+    const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "3", "--extent", "192x160",
+                                  "--quiet", "--out", recording});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    run_quietly(recording, {"--lighting", recording, "--labels", "truth", "--materials", "truth", "--dump-every", "3",
+                            "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
+    const Outcome outcome = patina({"eval", recording, out(), "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
+    EXPECT_LT(json["object_means"]["kd"]["filled"]["mad"], 0.1);
+    EXPECT_TRUE(json["lights"]["missed"].empty());
+    EXPECT_TRUE(json["lights"]["invented"].empty());
+}
+
 }  // namespace
 }  // namespace patina::testing

@@ -67,6 +67,97 @@ TEST_F(ReconstructionTest, EveryFrameShapeIsOrderedByBarriersThatAreAllNeeded) {
     }
 }
 
+/// The built-in scene with what each pixel shows, and the lights and materials that are true.
+struct LabelledCubes {
+    explicit LabelledCubes(vulkan::Device& device, uint32_t count) {
+        sensor::Scene scene = sensor::load_scene("cubes");
+        scene.camera = scaled_to(scene.camera, {256, 212});
+        sensor::SyntheticSource source(device, std::move(scene), {.frames = count, .truth_every = count - 1});
+        info = source.info();
+        while (auto reading = source.next()) {
+            frames.push_back(std::get<sensor::Frame>(std::move(*reading)));
+            labels.push_back(source.truth().labels);
+            if (source.truth().seen) seen = *source.truth().seen;  // of the last frame in the end
+        }
+        for (const sensor::PointLight& light : source.scene().lights)
+            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), float(light.radius_m)});
+        materials = sensor::materials_of(source.scene());
+    }
+
+    void prepare(ReflectanceModel& reflectance) const {
+        reflectance.set_lights(lights);
+        for (const sensor::Material& m : materials) reflectance.set_material(m.id, glm::vec3(m.ks), float(m.alpha));
+    }
+
+    RgbdFrame frame(uint32_t index) const {
+        RgbdFrame rgbd = tools::to_rgbd(info, frames[index]);
+        rgbd.labels = labels[index].pixels();
+        return rgbd;
+    }
+
+    sensor::SequenceInfo info;
+    std::vector<sensor::Frame> frames;
+    std::vector<Image<uint16_t>> labels;
+    sensor::FrameTruth::Seen seen;
+    std::vector<PointLight> lights;
+    std::vector<sensor::Material> materials;
+};
+
+/// Coarse geometry with blocks of 8 cm, so that observations have voxels of 4 cm.
+ReconstructionSettings small_settings_with_reflectance() {
+    ReconstructionSettings settings = small_settings();
+    settings.map.voxel_m = 0.01f;
+    settings.map.capacity_blocks = 16384;
+    settings.fusion.truncation_m = 0.03f;
+    settings.reflectance.emplace();
+    settings.reflectance->voxel_m = 0.04f;
+    settings.reflectance->capacity_blocks = 16384;
+    settings.reflectance->capacity_records = 65536;
+    return settings;
+}
+
+TEST_F(ReconstructionTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
+    constexpr uint32_t kFrames = 8;
+    const LabelledCubes cubes(device(), kFrames);
+    Reconstruction reconstruction(device(), small_settings_with_reflectance());
+    cubes.prepare(*reconstruction.reflectance());
+    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
+    expect_sound(reconstruction, "a frame with reflectance");
+    reconstruction.refine_all();
+    expect_sound(reconstruction, "refinement of all");
+    const PendingView pending = reconstruction.view(cubes.info.color, *cubes.frames.back().world_from_camera);
+    expect_sound(reconstruction, "a view with reflectance");
+    reconstruction.wait();
+    const ModelView view = pending.get();
+    ASSERT_TRUE(view.reflectance);
+    std::vector<double> kd_errors, rgb_errors;
+    size_t labelled = 0;
+    for (size_t i = 0; i < view.reflectance->kd.pixels().size(); ++i) {
+        if (cubes.seen.object_id.pixels()[i] == 0) continue;
+        labelled += view.reflectance->label.pixels()[i] == cubes.seen.object_id.pixels()[i];
+        const glm::vec4 kd = view.reflectance->kd.pixels()[i], rgb = view.reflectance->rgb.pixels()[i];
+        if (kd.a == 0) continue;
+        kd_errors.push_back(glm::length(glm::vec3(kd) - glm::vec3(cubes.seen.kd.pixels()[i])));
+        rgb_errors.push_back(glm::length(glm::vec3(rgb) - glm::vec3(cubes.seen.radiance.pixels()[i])));
+    }
+    ASSERT_GT(kd_errors.size(), 20000u);
+    std::sort(kd_errors.begin(), kd_errors.end());
+    std::sort(rgb_errors.begin(), rgb_errors.end());
+    EXPECT_GT(labelled, kd_errors.size() * 9 / 10);
+    EXPECT_LT(kd_errors[kd_errors.size() / 2], 0.02);
+    EXPECT_LT(kd_errors[kd_errors.size() * 8 / 10], 0.08) << "4 cm voxels do not follow the shadows' borders";
+    EXPECT_LT(rgb_errors[rgb_errors.size() / 2], 0.02);
+    EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
+}
+
+TEST_F(ReconstructionTest, LabelsOfAnotherSizeAreRefused) {
+    Reconstruction reconstruction(device(), small_settings_with_reflectance());
+    RgbdFrame frame = tools::to_rgbd(cubes_.info, cubes_.frames[0]);
+    const std::vector<uint16_t> labels(7);
+    frame.labels = labels;
+    EXPECT_THROW(reconstruction.add(frame), Error);
+}
+
 TEST_F(ReconstructionTest, AFrameOfAKnownShapeIsNotCompiledAgain) {
     ReconstructionSettings settings = small_settings();
     settings.remove_every = 0;
