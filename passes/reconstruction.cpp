@@ -49,8 +49,13 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 ModelView PendingView::get() const {
     ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
     if (reflectance_) {
-        view.reflectance = {widened(reflectance_->kd), widened(reflectance_->ks_alpha),
-                            reflectance_->label.image<uint32_t>(), widened(reflectance_->rgb)};
+        view.reflectance = {widened(reflectance_->kd),
+                            widened(reflectance_->ks_alpha),
+                            reflectance_->label.image<uint32_t>(),
+                            widened(reflectance_->rgb),
+                            {}};
+        for (const auto& segment : reflectance_->segments.as<gpu::SegmentAlbedo>())
+            view.reflectance->segment_kd.push_back(kd_of(segment));
     }
     return view;
 }
@@ -154,9 +159,9 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
     if (reflectance_) {
-        const PredictedImages seen = reflectance_->add_predict(graph, ids, visible, model);
+        const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
-                                graph.read_back(seen.rgb)};
+                                graph.read_back(seen.rgb), graph.read_back(segments)};
     }
     runner_.submit(std::move(graph));
     return pending;

@@ -48,10 +48,11 @@ struct ModelView {
 
     /// What the model reflects, where it has reflectance (shading/predict_radiance.h).
     struct Reflectance {
-        Image<glm::vec4> kd;        ///< diffuse albedo; a = 1 where it is known
-        Image<glm::vec4> ks_alpha;  ///< of the segment
-        Image<uint32_t> label;      ///< 0: none
-        Image<glm::vec4> rgb;       ///< linear re-rendering; a = 1 where kd is known
+        Image<glm::vec4> kd;                               ///< diffuse albedo; a = 1 where it is known
+        Image<glm::vec4> ks_alpha;                         ///< of the segment
+        Image<uint32_t> label;                             ///< 0: none
+        Image<glm::vec4> rgb;                              ///< linear re-rendering; a = 1 where kd is known
+        std::vector<std::optional<glm::vec3>> segment_kd;  ///< by label: the mean albedo of the whole segment
     };
     std::optional<Reflectance> reflectance{};
 };
@@ -66,7 +67,7 @@ class PendingView {
   private:
     friend class Reconstruction;
     struct Reflectance {
-        graph::Readback kd, ks_alpha, label, rgb;
+        graph::Readback kd, ks_alpha, label, rgb, segments;
     };
     graph::Readback position_m_, normal_, color_;
     std::optional<Reflectance> reflectance_;

@@ -51,8 +51,8 @@ void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels
     ObservationMap::keep(frame, records);
 }
 
-PredictedImages ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapIds& voxels,
-                                              const VisibleBlocks& visible, const RaycastImages& cast) {
+PredictedView ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapIds& voxels,
+                                            const VisibleBlocks& visible, const RaycastImages& cast) {
     PredictRadianceInputs inputs;
     inputs.position_m = cast.position_m;
     inputs.normal = cast.normal;
@@ -61,10 +61,12 @@ PredictedImages ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMa
     inputs.lights = lights_.upload(frame);
     inputs.materials = materials_.import(frame);
     inputs.material_count = materials_.capacity();
+    const ObservationMapIds records = observations_.import(frame);
+    inputs.segments = add_average_segments(frame, observations_, records, materials_.capacity());
     inputs.shadows = settings_.refine.shadows;
     inputs.access = access_.voxels;
-    return add_predict_radiance(frame, map_, voxels, observations_, observations_.import(frame), state_.import(frame),
-                                inputs);
+    return {add_predict_radiance(frame, map_, voxels, observations_, records, state_.import(frame), inputs),
+            inputs.segments};
 }
 
 }  // namespace patina

@@ -6,6 +6,7 @@
 
 #include "passes/fusion/raycast.h"
 #include "passes/observation/observation.h"
+#include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 
@@ -19,6 +20,12 @@ struct ReflectanceModelSettings {
     ObservationSettings observe;
     ReflectanceSettings refine;
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included
+};
+
+/// What a camera sees of the reflectance.
+struct PredictedView {
+    PredictedImages images;
+    graph::BufferId segments;  ///< gpu::SegmentAlbedo per label
 };
 
 /// What a surface reflects, beside the voxel map that says where it is: observations by voxel, the lights, materials by
@@ -44,8 +51,8 @@ class ReflectanceModel {
     void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);
 
     /// What a camera sees that was cast into the model.
-    PredictedImages add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                                const RaycastImages& cast);
+    PredictedView add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                              const RaycastImages& cast);
 
     std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
     const ReflectanceModelSettings& settings() const { return settings_; }

@@ -27,9 +27,13 @@ void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance)
     dump.rgb = rgb_of(reflectance.rgb);
     dump.alpha = Image<float>(dump.kd.extent());
     dump.label = Image<float>(dump.kd.extent());
+    dump.kd_segment = Image<glm::vec3>(dump.kd.extent());
     for (size_t i = 0; i < dump.kd.extent().area(); ++i) {
         dump.alpha.pixels()[i] = reflectance.ks_alpha.pixels()[i].a;
-        dump.label.pixels()[i] = static_cast<float>(reflectance.label.pixels()[i]);
+        const uint32_t label = reflectance.label.pixels()[i];
+        dump.label.pixels()[i] = static_cast<float>(label);
+        if (label < reflectance.segment_kd.size())
+            dump.kd_segment.pixels()[i] = reflectance.segment_kd[label].value_or(glm::vec3(0));
     }
 }
 

@@ -53,6 +53,7 @@ PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_
     pass.read("ViewGrid", inputs.view_grid).read("Entries", packed.entries).read("Packed", packed.content);
     pass.read("Records", records.records).read("Visibility", records.visibility);
     pass.read("Lights", inputs.lights).read("Materials", inputs.materials);
+    pass.read("Segments", inputs.segments);
     PredictedImages out;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});

@@ -40,7 +40,7 @@ void add_gather_light(graph::Frame& frame, const SceneModel& scene, const Intrin
         images.radiance = pass.modify("radiance", images.radiance);
         pass.specialise("kShadows", settings.shadows ? 1 : 0).specialise("kDirect", direct ? 1 : 0);
         pass.specialise("kEnvironment", scene.has_environment() ? 1 : 0);
-        pass.push(params).dispatch_covering(bundles_of(camera.extent));
+        pass.push(params).dispatch_covering(camera.extent);
     }
 }
 

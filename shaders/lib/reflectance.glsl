@@ -46,4 +46,11 @@ vec3 albedo_certainty(uvec2 albedo) {
 }
 vec3 albedo_kd(uvec2 albedo) { return unpack_shared_exponent(albedo.x); }
 
+// A segment's kd; a is 0 where too few of its records know it.
+vec4 segment_kd(SegmentAlbedo segment) {
+    const vec3 weight = vec3(segment.weight.rgb);
+    const bool known = min(min(weight.r, weight.g), weight.b) >= kLeastSegmentWeight * kCertaintySteps;
+    return known ? vec4(vec3(segment.kd.rgb) / (weight * kAlbedoSteps), 1.0) : vec4(0.0);
+}
+
 #endif

@@ -24,7 +24,8 @@ layout(std430, binding = 9) readonly buffer Materials { SegmentMaterial material
 layout(binding = 10, rgba16f) uniform writeonly image2D kd;        // a = 1 where known
 layout(binding = 11, r32ui) uniform writeonly uimage2D label;      // 0: none
 layout(binding = 12, rgba16f) uniform writeonly image2D ks_alpha;  // rgb, Ward roughness
-layout(binding = 13, rgba16f) uniform writeonly image2D rgb;       // linear pixel value; a = 1 where kd is known
+layout(std430, binding = 14) readonly buffer Segments { SegmentAlbedo segments[]; };
+layout(binding = 13, rgba16f) uniform writeonly image2D rgb;  // linear pixel value; a = 1 where kd is known
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 // A record belongs to the surface point's own surface where their normals agree and its tangent plane passes near the
@@ -68,6 +69,7 @@ uvec2 visible_from[8];  // a bit per light
 
 struct Reflectance {
     vec3 kd;
+    vec3 weights;  // of kd's channels, 1 where all records are certain
     bool known;
     vec3 normal;    // of the records
     uint labelled;  // the nearest record with a label, or kNoRecord
@@ -115,7 +117,7 @@ Reflectance interpolate(SurfacePoint point) {
         visible_from[i] = uvec2(content.w, 0u);
     }
     const bool known = max(max(weights.r, weights.g), weights.b) > 0.0;
-    return Reflectance(sum / max(weights, 1e-20), known, normals, labelled);
+    return Reflectance(sum / max(weights, 1e-20), weights, known, normals, labelled);
 }
 
 // Where none of the eight is known: what the nearest known record of the same surface within one voxel more has.
@@ -150,7 +152,16 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
         share_of[0] = 1.0;
         visible_from[0] = uvec2(content.w, 0u);
     }
-    return Reflectance(packed_kd(content), true, packed_surface(content).xyz, found.labelled);
+    return Reflectance(packed_kd(content), packed_certainty(content), true, packed_surface(content).xyz,
+                       found.labelled);
+}
+
+// What the records do not know, or not surely, is what the rest of their segment has.
+Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
+    const float weight = segment.a * kSegmentWeight;
+    const vec3 kd = (found.weights * found.kd + weight * segment.rgb) / max(found.weights + weight, 1e-20);
+    return Reflectance(kd, found.weights, found.known || segment.a > 0.0, found.known ? found.normal : normal,
+                       found.labelled);
 }
 
 // Makes the shares sum to 1.
@@ -198,7 +209,9 @@ void main() {
         Reflectance found = interpolate(point);
         if (!found.known) found = fill(point, found);
         segment = found.labelled == kNoRecord ? 0u : record_label(records[found.labelled]);
-        gloss = segment != 0u && segment < params.materials ? materials[segment].ks_alpha : vec4(0.0);
+        const bool has_entry = segment != 0u && segment < params.materials;
+        gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
+        found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
         if (found.known) {
             if (header.count > 32u) load_further_visibility();
             normalise_shares();

@@ -17,6 +17,16 @@ struct SegmentMaterial {
     uint pad2;
 };
 
+// A segment's albedo: sums over its records, whole numbers, so that the order of arrival does not matter.
+struct SegmentAlbedo {
+    uvec4 kd;      // rgb: certainty times kd (up to 1), in steps of 1 / (kCertaintySteps kAlbedoSteps); w: records
+    uvec4 weight;  // rgb: certainty, in steps of 1 / kCertaintySteps; w unused
+};
+INTEROP_CONST float kAlbedoSteps = 1023.0f;  // 32 bits hold the sums of 1.3 M records
+INTEROP_CONST float kCertaintySteps = 3.0f;
+INTEROP_CONST float kSegmentWeight = 0.02f;      // of a segment's albedo beside that of a record which is certain
+INTEROP_CONST float kLeastSegmentWeight = 3.0f;  // records, certain ones, that a segment's albedo takes
+
 // What a record's visibility and albedo were computed from.
 struct RecordStatus {
     uint marched;       // surface and version of the lights' positions, lib/reflectance.glsl; 0: never

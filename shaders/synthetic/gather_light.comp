@@ -1,6 +1,9 @@
 // Light that reaches a camera by random samples; see sensor/synthetic/gather_light.h.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+// Paths soon go their own ways, so that a bundle has little to share; and SwiftShader takes many minutes to compile
+// this shader for four of them.
+#define BUNDLE_RAYS 1u
 #include "lib/camera.glsl"
 #include "lib/random.glsl"
 #include "lib/sampling.glsl"
@@ -122,13 +125,13 @@ Way way_to_far_light(Vertex v, uvec4 words) {
 }
 
 // The light that vertices see on straight ways: from all lamps at the first one, from one lamp at others; from afar.
-void add_light(Vertex vertices[kBundleRays], uvec2 streams[kBundleRays], uint index, uint depth,
-               inout vec3 sums[kBundleRays]) {
+void add_light(Vertex vertices[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], uint index, uint depth,
+               inout vec3 sums[BUNDLE_RAYS]) {
     const uint lamp_ways = depth == 0u ? (kDirect != 0u ? scene.light_count : 0u) : min(scene.light_count, 1u);
     for (uint i = 0u; i < lamp_ways + kEnvironment; ++i) {
-        Way ways[kBundleRays];
-        Ray rays[kBundleRays];
-        bool blocked[kBundleRays];
+        Way ways[BUNDLE_RAYS];
+        Ray rays[BUNDLE_RAYS];
+        bool blocked[BUNDLE_RAYS];
         EACH_RAY {
             const uvec4 words = words_for(streams[k], index, depth, i);
             const vec4 u = unit_interval(words);
@@ -147,11 +150,11 @@ void add_light(Vertex vertices[kBundleRays], uvec2 streams[kBundleRays], uint in
 }
 
 // Follows each path to its next vertex, or out of the scene, where it may find light from afar.
-void go_on(inout Vertex vertices[kBundleRays], uvec2 streams[kBundleRays], uint index, uint depth,
-           inout vec3 sums[kBundleRays]) {
-    Ray rays[kBundleRays];
-    Hit hits[kBundleRays];
-    float densities[kBundleRays];
+void go_on(inout Vertex vertices[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], uint index, uint depth,
+           inout vec3 sums[BUNDLE_RAYS]) {
+    Ray rays[BUNDLE_RAYS];
+    Hit hits[BUNDLE_RAYS];
+    float densities[BUNDLE_RAYS];
     EACH_RAY {
         const vec4 u = unit_interval(words_for(streams[k], index, depth, kBounceWay));
         rays[k] = Ray(vertices[k].surface.lifted_m, draw_bounce(vertices[k], u.xy));
@@ -174,11 +177,11 @@ void go_on(inout Vertex vertices[kBundleRays], uvec2 streams[kBundleRays], uint 
 }
 
 // The mean of this dispatch's samples, times its share of all samples.
-void gather(Vertex first[kBundleRays], uvec2 streams[kBundleRays], out vec3 shares[kBundleRays]) {
-    vec3 sums[kBundleRays];
+void gather(Vertex first[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], out vec3 shares[BUNDLE_RAYS]) {
+    vec3 sums[BUNDLE_RAYS];
     EACH_RAY sums[k] = vec3(0.0);
     for (uint index = params.first_sample; index < params.first_sample + params.sample_count; ++index) {
-        Vertex vertices[kBundleRays] = first;
+        Vertex vertices[BUNDLE_RAYS] = first;
         for (uint depth = 0u; depth <= params.bounces; ++depth) {
             add_light(vertices, streams, index, depth, sums);
             if (depth < params.bounces || kEnvironment != 0u) go_on(vertices, streams, index, depth, sums);
@@ -207,12 +210,12 @@ void store(ivec2 pixel, vec3 gathered, vec3 to_viewer) {
 }
 
 void main() {
-    const uvec2 corner = gl_GlobalInvocationID.xy * uvec2(1u, kBundleRays);
+    const uvec2 corner = gl_GlobalInvocationID.xy * uvec2(1u, BUNDLE_RAYS);
     if (any(greaterThanEqual(corner, params.camera.extent))) return;
     const vec3 center_m = camera_center_m(params.camera);
-    Vertex first[kBundleRays];
-    uvec2 streams[kBundleRays];
-    vec3 shares[kBundleRays];
+    Vertex first[BUNDLE_RAYS];
+    uvec2 streams[BUNDLE_RAYS];
+    vec3 shares[BUNDLE_RAYS];
     EACH_RAY {
         const uvec2 pixel = corner + uvec2(0u, k);
         const vec3 direction = to_world_direction(params.camera, unproject(params.camera, vec2(pixel)));

@@ -3,7 +3,8 @@
 //   trace(rays, hits)             the first hit of each ray of a bundle
 //   find_occluded(rays, blocked)  whether something stands between the two ends of each ray
 //
-// A bundle is kBundleRays rays that one invocation traces together, so that they share the loads of nodes and shapes;
+// A bundle is BUNDLE_RAYS rays (kBundleRays, unless the includer defines another number before) that one invocation
+// traces together, so that they share the loads of nodes and shapes;
 // EACH_RAY runs over it. Bundles are fast where their rays are near one another, and faster still where all start in
 // one and the same point (pass the same variable: the arithmetic that depends on it alone is then done once).
 // Lamps are no part of the geometry: they never block light; see hit_lamps().
@@ -21,6 +22,10 @@ layout(rgba32f, binding = 2) uniform readonly image2D triangles;  // kTriangleTe
 layout(rgba32f, binding = 3) uniform readonly image2D parts;      // ScenePart
 layout(std430, binding = 4) readonly buffer Lights { SceneLight lights[]; };
 
+#ifndef BUNDLE_RAYS
+#define BUNDLE_RAYS kBundleRays
+#endif
+
 const float kMiss = 1e30;
 // By how much of its size a triangle is taken larger, so that no ray passes between two that share an edge or a corner;
 // a few roundings of fp32.
@@ -28,7 +33,7 @@ const float kEdgeTolerance = 1e-6;
 // By how much the far side of a box is moved away: three roundings (Ize, Robust BVH Ray Traversal, 2013).
 const float kFarMargin = 1.0000004;
 
-#define EACH_RAY [[unroll]] for (uint k = 0u; k < kBundleRays; ++k)
+#define EACH_RAY [[unroll]] for (uint k = 0u; k < BUNDLE_RAYS; ++k)
 
 struct Ray {
     vec3 origin_m;
@@ -131,8 +136,8 @@ void keep(inout Hit hit, float t, uint primitive, bool any_hit) {
 // Replaces what is farther than the scene's geometry in `hits`. Both trees are walked without a stack: the list holds
 // their nodes depth-first, near children first for each octant of directions, and a missed box names the node to go on
 // with (Torres et al., Ray Casting using a Roped BVH with CUDA, 2009). Any order finds the same hits.
-void traverse(Ray rays[kBundleRays], bool any_hit, inout Hit hits[kBundleRays]) {
-    vec3 inverse[kBundleRays];
+void traverse(Ray rays[BUNDLE_RAYS], bool any_hit, inout Hit hits[BUNDLE_RAYS]) {
+    vec3 inverse[BUNDLE_RAYS];
     vec3 mean = vec3(0.0);
     EACH_RAY {
         inverse[k] = 1.0 / away_from_zero(rays[k].direction);
@@ -174,15 +179,15 @@ void traverse(Ray rays[kBundleRays], bool any_hit, inout Hit hits[kBundleRays]) 
 }
 
 // What each ray hits first.
-void trace(Ray rays[kBundleRays], out Hit hits[kBundleRays]) {
+void trace(Ray rays[BUNDLE_RAYS], out Hit hits[BUNDLE_RAYS]) {
     EACH_RAY hits[k] = Hit(kMiss, kNothingHit);
     traverse(rays, false, hits);
 }
 
 // Whether something stands between each ray's origin and origin_m + direction. Both ends must be clear of the surfaces
 // that they belong to (see Surface.lifted_m). Rays blocked before are not followed.
-void find_occluded(Ray rays[kBundleRays], inout bool blocked[kBundleRays]) {
-    Hit hits[kBundleRays];
+void find_occluded(Ray rays[BUNDLE_RAYS], inout bool blocked[BUNDLE_RAYS]) {
+    Hit hits[BUNDLE_RAYS];
     EACH_RAY hits[k] = Hit(blocked[k] ? 0.0 : 1.0, kNothingHit);
     traverse(rays, true, hits);
     EACH_RAY blocked[k] = hits[k].t == 0.0;
@@ -190,7 +195,7 @@ void find_occluded(Ray rays[kBundleRays], inout bool blocked[kBundleRays]) {
 
 // What lamps the rays of a bundle meet nearer than `hits`: gives their distances to it, and the lamps' indices, or
 // kNothingHit. A lamp is not seen from inside.
-void hit_lamps(Ray rays[kBundleRays], inout Hit hits[kBundleRays], out uint lamps[kBundleRays]) {
+void hit_lamps(Ray rays[BUNDLE_RAYS], inout Hit hits[BUNDLE_RAYS], out uint lamps[BUNDLE_RAYS]) {
     EACH_RAY lamps[k] = kNothingHit;
     const uint end = scene.has_lamps != 0u ? scene.light_count : 0u;
     for (uint i = 0u; i < end; ++i) {

@@ -161,6 +161,28 @@ TEST_F(PredictRadiance, WhatIsUnknownIsFilledFromAVoxelAway) {
     EXPECT_GT(unknown, 4000u);
 }
 
+TEST_F(PredictRadiance, WhatNoRecordKnowsIsWhatTheRestOfTheSegmentHas) {
+    ShadingRig rig = this->rig(wall_);
+    const glm::dvec3 left(0.25, 0.5, 0.75), right(0.75, 0.5, 0.125);
+    rig.paint([&](const RecordPlace& place) {
+        const bool is_left = place.voxel[0] < 0;
+        ShadedRecord record = painted(is_left ? left : right, is_left ? 1 : 2);
+        if (place.voxel[1] < 0) record = painted({0.9, 0.9, 0.1}, record.label);
+        if (place.voxel[1] < 0) record.certainty = glm::dvec3(0);
+        return record;
+    });
+    const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+    size_t unknown = 0;
+    for_each_hit(view, 8, [&](uint32_t x, uint32_t y) {
+        const glm::vec4 at = view.position_m.at(x, y);
+        if (std::abs(at.x) < 0.03f) return;
+        ASSERT_EQ(view.kd.at(x, y).a, 1);
+        ASSERT_LT(off(view.kd.at(x, y), at.x < 0 ? left : right), 2 * kHalf) << x << ' ' << y;
+        unknown += at.y < -0.06f;
+    });
+    EXPECT_GT(unknown, 4000u);
+}
+
 TEST_F(PredictRadiance, AChannelCountsByItsOwnCertainty) {
     ShadingRig rig = this->rig(wall_);
     rig.paint([&](const RecordPlace& place) {

@@ -3,6 +3,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/shader_camera.h"
+#include "passes/reflectance/average_segments.h"
 #include "passes/shading/predict_radiance.h"
 
 namespace patina {
@@ -133,15 +134,17 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     const VisibleBlocks visible =
         add_visible_blocks(frame, map, voxels, make_camera(camera, world_from_camera), 0.1f, 5.0f);
     const RaycastImages model = add_raycast(frame, map, voxels, visible, MapAccess::kStorage);
-    const PredictRadianceInputs inputs{model.position_m,
-                                       model.normal,
-                                       visible.view,
-                                       visible.grid,
-                                       lights.upload(frame),
-                                       materials.import(frame),
-                                       materials.capacity(),
-                                       shadows,
-                                       preferred_map_access(runner_.device().caps(), map)};
+    const PredictRadianceInputs inputs{
+        model.position_m,
+        model.normal,
+        visible.view,
+        visible.grid,
+        lights.upload(frame),
+        materials.import(frame),
+        add_average_segments(frame, observations_.map(), observations_.map().import(frame), materials.capacity()),
+        materials.capacity(),
+        shadows,
+        preferred_map_access(runner_.device().caps(), map)};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
@@ -157,6 +160,7 @@ reference::ShadedScene ShadingRig::scene() const {
     reference::ShadedScene scene;
     scene.voxel_m = voxel_m_;
     scene.records = painted_;
+    scene.segment_kd = reference::average_segments(painted_);
     for (const PointLight& light : lights.point_lights()) {
         scene.lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
     }

@@ -58,14 +58,20 @@ const ShadedRecord* nearest(const std::vector<Neighbour>& all, const Wanted& wan
     return best;
 }
 
-glm::dvec3 mean_kd(const std::vector<Neighbour>& around) {
+/// kd and how sure it is, by channel.
+struct Albedo {
+    glm::dvec3 kd{0};
+    glm::dvec3 weight{0};
+};
+
+Albedo mean_kd(const std::vector<Neighbour>& around) {
     glm::dvec3 sum(0), weights(0);
     for (const Neighbour& neighbour : around) {
         const glm::dvec3 weight = neighbour.weight * neighbour.share * neighbour.record->certainty;
         sum += weight * neighbour.record->kd;
         weights += weight;
     }
-    return sum / glm::max(weights, 1e-20);
+    return {sum / glm::max(weights, 1e-20), weights};
 }
 
 /// The share of the surface around the point that light i reaches; nothing where no record knows.
@@ -82,6 +88,21 @@ std::optional<double> share_lit(const std::vector<Neighbour>& around, size_t i) 
 
 }  // namespace
 
+std::map<uint32_t, glm::dvec3> average_segments(const std::map<std::array<int, 3>, ShadedRecord>& records) {
+    std::map<uint32_t, Albedo> sums;
+    for (const auto& [voxel, record] : records) {
+        if (record.label == 0) continue;
+        const glm::dvec3 weight = glm::round(record.certainty * 3.0) / 3.0;
+        sums[record.label].kd += weight * record.kd;
+        sums[record.label].weight += weight;
+    }
+    std::map<uint32_t, glm::dvec3> means;
+    for (const auto& [label, sum] : sums) {
+        if (std::min({sum.weight.r, sum.weight.g, sum.weight.b}) >= 3) means[label] = sum.kd / sum.weight;
+    }
+    return means;
+}
+
 ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 viewer_m) {
     const std::vector<Neighbour> around = neighbours(scene, point_m, normal, 0),
                                  farther = neighbours(scene, point_m, normal, 1);
@@ -95,9 +116,16 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
     ShadedPoint result;
     if (segment) result.label = segment->label;
     if (scene.materials.count(result.label)) result.gloss = scene.materials.at(result.label);
-    if (filled && !fill) return result;
+    const auto whole = scene.segment_kd.find(result.label);
+    const bool has_segment = whole != scene.segment_kd.end();
+    if (filled && !fill && !has_segment) return result;
     result.known = true;
-    result.kd = fill ? fill->kd : mean_kd(around);
+    const Albedo own = fill ? Albedo{fill->kd, fill->certainty} : mean_kd(around);
+    constexpr double kSegmentWeight = 0.02;
+    result.kd = own.kd;
+    if (has_segment) {
+        result.kd = (own.weight * own.kd + kSegmentWeight * whole->second) / (own.weight + kSegmentWeight);
+    }
     result.rgb = scene.ambient * result.kd;
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const glm::dvec3 offset = scene.lights[i].position_m - point_m;

@@ -33,9 +33,14 @@ struct ShadedScene {
     std::map<std::array<int, 3>, ShadedRecord> records;  ///< voxel v spans [v, v + 1) times its size
     std::vector<ShadedLight> lights;
     glm::dvec3 ambient{0};
-    std::map<uint32_t, Ward> materials;  ///< by label; kd is not used
+    std::map<uint32_t, Ward> materials;         ///< by label; kd is not used
+    std::map<uint32_t, glm::dvec3> segment_kd;  ///< by label, average_segments(records)
     bool shadows = true;
 };
+
+/// The mean kd of each label over its records, weighted by their certainty; only of labels whose records are as certain
+/// as three that are.
+std::map<uint32_t, glm::dvec3> average_segments(const std::map<std::array<int, 3>, ShadedRecord>& records);
 
 struct ShadedPoint {
     bool known = false;  ///< kd is

@@ -10,6 +10,7 @@
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/observation/observation.h"
+#include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "tools/bench/distribution.h"
@@ -156,10 +157,12 @@ class Bench {
         frame.keep(model.position_m);
         frame.keep(model.normal);
         if (shade) {
-            const PredictedImages predicted =
-                add_predict_radiance(frame, map(), voxels, records_, records_.import(frame), state_.import(frame),
-                                     {model.position_m, model.normal, blocks.view, blocks.grid, lights_.upload(frame),
-                                      materials_.import(frame), materials_.capacity(), true, access()});
+            const PredictedImages predicted = add_predict_radiance(
+                frame, map(), voxels, records_, records_.import(frame), state_.import(frame),
+                {model.position_m, model.normal, blocks.view, blocks.grid, lights_.upload(frame),
+                 materials_.import(frame),
+                 add_average_segments(frame, records_, records_.import(frame), materials_.capacity()),
+                 materials_.capacity(), true, access()});
             for (const graph::ImageId image : {predicted.kd, predicted.label, predicted.ks_alpha, predicted.rgb})
                 frame.keep(image);
             if (read_back) rgb = frame.read_back(predicted.rgb);

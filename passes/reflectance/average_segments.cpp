@@ -1,0 +1,27 @@
+#include "passes/reflectance/average_segments.h"
+
+#include <algorithm>
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+                                     uint32_t labels) {
+    const graph::BufferId sums =
+        frame.fill(frame.create_buffer("reflectance.segments", labels * sizeof(gpu::SegmentAlbedo)), 0);
+    auto pass = frame.compute("reflectance.average_segments", spirv::average_segments);
+    pass.read("RecordCounters", records.record_counters).read("Records", records.records);
+    pass.read("Albedo", records.albedo);
+    const graph::BufferId averaged = pass.modify("Segments", sums);
+    pass.dispatch_covering(map.settings().capacity_records);
+    return averaged;
+}
+
+std::optional<glm::vec3> kd_of(const gpu::SegmentAlbedo& segment) {
+    const glm::vec3 weight(segment.weight);
+    if (std::min({weight.r, weight.g, weight.b}) < gpu::kLeastSegmentWeight * gpu::kCertaintySteps) return std::nullopt;
+    return glm::vec3(segment.kd) / (weight * gpu::kAlbedoSteps);
+}
+
+}  // namespace patina

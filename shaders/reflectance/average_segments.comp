@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Sums up the albedo of each segment over its records.
+#include "lib/reflectance.glsl"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
+layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 2) readonly buffer Albedo { uvec2 albedo[]; };
+layout(std430, binding = 3) buffer Segments { SegmentAlbedo segments[]; };
+
+void main() {
+    const uint record = gl_GlobalInvocationID.x;
+    if (record >= counters.high_water) return;
+    const uint label = record_label(records[record]);
+    if (label == 0u || label >= uint(segments.length())) return;
+    const uvec2 stored = albedo[record];
+    const uvec3 weight = uvec3(round(albedo_certainty(stored) * kCertaintySteps));
+    const uvec3 kd = uvec3(round(clamp(albedo_kd(stored), 0.0, 1.0) * kAlbedoSteps)) * weight;
+    if (weight == uvec3(0u)) return;
+    [[unroll]] for (int c = 0; c < 3; ++c) {
+        atomicAdd(segments[label].kd[c], kd[c]);
+        atomicAdd(segments[label].weight[c], weight[c]);
+    }
+    atomicAdd(segments[label].kd.w, 1u);
+}
