@@ -156,6 +156,15 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
             widen(gloss.image<uint64_t>()), widen(rgb.image<uint64_t>()),    label.image<uint32_t>()};
 }
 
+std::vector<gpu::SegmentAlbedo> ShadingRig::average_segments() {
+    graph::Frame frame = runner_.begin();
+    const graph::Readback sums = frame.read_back(
+        add_average_segments(frame, observations_.map(), observations_.map().import(frame), materials.capacity()));
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    return sums.as<gpu::SegmentAlbedo>();
+}
+
 reference::ShadedScene ShadingRig::scene() const {
     reference::ShadedScene scene;
     scene.voxel_m = voxel_m_;

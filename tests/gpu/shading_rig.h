@@ -6,6 +6,7 @@
 #include "passes/model/lights.h"
 #include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
+#include "shared/reflectance.h"
 #include "tests/gpu/observation_rig.h"
 #include "tests/reference/predict_radiance.h"
 
@@ -37,6 +38,9 @@ class ShadingRig {
     void paint(const std::function<reference::ShadedRecord(const RecordPlace&)>& paint);
 
     ShadedView predict(const Intrinsics& camera, const RigidTransform& world_from_camera, bool shadows = true);
+
+    /// The sums of the first 64 segments.
+    std::vector<gpu::SegmentAlbedo> average_segments();
 
     /// The painted model with the lights as the reference takes it.
     reference::ShadedScene scene() const;
