@@ -181,8 +181,11 @@ TEST_F(EncodeTest, ColorMatchesTheReferenceOnWholeGroupsAndTails) {
         const auto expected = reference::expose_color(radiance, 0.7, noise, key);
         for (size_t i = 0; i < extent.area(); ++i) {
             for (int c = 0; c < 3; ++c) {
-                const double e = expected.pixels()[i][c];
-                EXPECT_NEAR(got.pixels()[i][c], e, 1e-6 + 1e-5 * e) << extent << " pixel " << i << " channel " << c;
+                const double e = expected.pixels()[i][c], value = 0.7 * radiance.pixels()[i][c];
+                const double sigma = std::sqrt(noise.color_read * noise.color_read + noise.color_shot * value);
+                // Vulkan allows sin and cos an error of 2^-11, which Box-Muller multiplies by up to sqrt(2 ln 2^24).
+                const double bound = 1e-6 + 1e-5 * e + sigma * 5.8 / 2048;
+                EXPECT_NEAR(got.pixels()[i][c], e, bound) << extent << " pixel " << i << " channel " << c;
             }
             ASSERT_EQ(got.pixels()[i].a, 1);
         }

@@ -273,11 +273,13 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
         });
         reference::ShadedScene scene = rig.scene();
         scene.materials = {{1, {{}, glm::dvec3(0.1f), 0.2f}}, {2, {{}, glm::dvec3(0.05f), 0.4f}}};
+        // Which record draws which numbers differs from run to run: shares are taken over all pixels, not over few.
+        size_t compared = 0, same = 0;
         for (const Extent2D extent : {Extent2D{1, 1}, {13, 7}, {65, 33}, {160, 120}}) {
             const double focal = 0.9 * extent.width;
             const Intrinsics camera{extent, focal, focal, 0.5 * (extent.width - 1.0), 0.5 * (extent.height - 1.0), {}};
             const ShadedView view = rig.predict(camera, poses[0]);
-            size_t compared = 0, same = 0;
+            const size_t before = compared;
             for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
                 const glm::dvec3 normal(view.normal.at(x, y));
                 if (normal == glm::dvec3(0)) return;
@@ -290,11 +292,11 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
                 same += agrees;
                 ++compared;
             });
-            // Surfaces are packed to 8 bits: where a record is barely another surface's, or as near as another one,
-            // random neighbours differ.
-            EXPECT_GE(static_cast<double>(same), 0.98 * static_cast<double>(compared)) << extent;
-            EXPECT_TRUE(extent.width == 1 || compared > extent.area() / 10) << extent;
+            EXPECT_TRUE(extent.width == 1 || compared - before > extent.area() / 10) << extent;
         }
+        // Surfaces are packed to 8 bits: where a record is barely another surface's, or as near as another one, random
+        // neighbours differ.
+        EXPECT_GE(static_cast<double>(same), 0.98 * static_cast<double>(compared));
     }
 }
 
