@@ -53,12 +53,13 @@ TEST_F(Interrupt, BeforeTheFirstFrameLeavesNothing) {
 }
 
 TEST_F(Interrupt, OfSynthLeavesNothing) {
+    // 100000 frames and the 60 of the scene's lighting sequence.
     const fs::path out = beside("parent") / "recording";
     Program program({"synth", "cubes", "--frames", "100000", "--extent", "64x53", "--out", out, "--quiet"});
     await(program, beside("parent"));
     program.send(SIGINT);
     EXPECT_THAT(expect_failure(program.wait(), 130),
-                AllOf(HasSubstr("interrupted after"), HasSubstr("of 100000 frames")));
+                AllOf(HasSubstr("interrupted after"), HasSubstr("of 100060 frames")));
     EXPECT_TRUE(files_in(beside("parent")).empty());
 }
 
