@@ -127,6 +127,14 @@ void Reconstruction::refine_all() {
     runner_.submit(std::move(graph));
 }
 
+void Reconstruction::relight(std::span<const PointLight> lights) {
+    if (!reflectance_ || frames_ == 0) return;
+    refine_all();
+    graph::Frame graph = runner_.begin();
+    reflectance_->relight(graph, map_.import(graph), lights);
+    runner_.submit(std::move(graph));
+}
+
 void Reconstruction::add(const RgbdFrame& frame) {
     check(frame);
     if (frames_ == 0) {

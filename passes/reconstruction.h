@@ -108,6 +108,10 @@ class Reconstruction {
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
+    /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
+    /// Without reflectance nothing changes. Throws Error as Lights::set does.
+    void relight(std::span<const PointLight> lights);
+
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
     /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }

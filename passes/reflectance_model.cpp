@@ -52,6 +52,12 @@ void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels
     ObservationMap::keep(frame, records);
 }
 
+void ReflectanceModel::relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights) {
+    lights_.set(lights);
+    settings_.refine.albedo = false;
+    refine_all(frame, voxels);
+}
+
 PredictedView ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast) {
     PredictRadianceInputs inputs;

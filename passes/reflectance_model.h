@@ -57,6 +57,10 @@ class ReflectanceModel {
     /// Brings every record up to date.
     void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);
 
+    /// Puts the model under other lights than those it was observed under: their visibility is found, kd stays. Nothing
+    /// may be added or refined after that.
+    void relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights);
+
     /// What a camera sees that was cast into the model.
     PredictedView add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
                               const RaycastImages& cast);
