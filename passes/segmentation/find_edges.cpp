@@ -51,32 +51,33 @@ graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_positi
     return depth_m;
 }
 
-graph::ImageId add_fit_surface(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params) {
-    constexpr const char* kPass = "segmentation.fit_surface";
+graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params) {
+    constexpr const char* kPass = "segmentation.fit_normals";
     const Extent2D extent = checked_extent(kPass, frame.shape(depth_m).extent, params);
-    auto pass = frame.compute(kPass, spirv::fit_surface);
+    auto pass = frame.compute(kPass, spirv::fit_normals);
     pass.read("depth_m", depth_m);
-    const graph::ImageId surface = pass.create("surface", {extent, vulkan::Format::kRgba32f});
+    const graph::ImageId normal = pass.create("normal", {extent, vulkan::Format::kR32u});
     pass.push(params).dispatch_covering(extent);
-    return surface;
+    return normal;
 }
 
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId surface, const gpu::FrameSurfaceParams& params) {
+graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+                              const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.find_edges";
-    const Extent2D extent = checked_extent(kPass, frame.shape(surface).extent, params);
+    const Extent2D extent = checked_extent(kPass, frame.common_extent({depth_m, normal}), params);
     auto pass = frame.compute(kPass, spirv::find_edges);
-    pass.read("surface", surface);
+    pass.read("depth_m", depth_m).read("normal", normal);
     const graph::ImageId inner_depth_m = pass.create("inner_depth_m", {extent, vulkan::Format::kR32f});
     pass.push(params).dispatch_covering(extent);
     return inner_depth_m;
 }
 
 graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
-                               graph::ImageId surface, const gpu::FrameSurfaceParams& params) {
+                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.claim_edges";
-    const Extent2D extent = checked_extent(kPass, frame.common_extent({component, surface}), params);
+    const Extent2D extent = checked_extent(kPass, frame.common_extent({component, depth_m, normal}), params);
     auto pass = frame.compute(kPass, spirv::claim_edges);
-    pass.read("surface", surface).read("component", component).read("Pixels", pixels);
+    pass.read("depth_m", depth_m).read("normal", normal).read("component", component).read("Pixels", pixels);
     const graph::ImageId claimed = pass.create("claimed", {extent, vulkan::Format::kR32u});
     pass.push(params).dispatch_covering(extent);
     return claimed;

@@ -46,21 +46,22 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
 graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
                                 const gpu::FrameSurfaceParams& params);
 
-/// Normals from eight depths around each pixel. `depth_m` as add_choose_depth returns it. Returns W x H rgba32f: xyz
-/// the unit normal in camera coordinates, towards the camera, 0 where it is not known; w depth in metres, 0 where there
-/// is none. Throws Error when extents differ.
-graph::ImageId add_fit_surface(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
+/// Normals from eight depths around each pixel. `depth_m` as add_choose_depth returns it. Returns W x H r32ui:
+/// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none
+/// is known. Throws Error when extents differ.
+graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
 
-/// Finds edges between the smooth, convex parts of a surface, as add_fit_surface returns it (phi_c of Tateno, Tombari
-/// and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and small
-/// steps are creases at their foot). A pixel is at an edge where the normals on both sides of it differ and face each
-/// other, or where its own is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is no
-/// surface. Throws Error when extents differ.
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId surface, const gpu::FrameSurfaceParams& params);
+/// Finds edges between the smooth, convex parts of a surface, with normals from add_fit_normals (phi_c of Tateno,
+/// Tombari and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and
+/// small steps are creases at their foot). A pixel is at an edge where the normals on both sides of it differ and face
+/// each other, or where its own is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is
+/// no surface. Throws Error when extents differ.
+graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+                              const gpu::FrameSurfaceParams& params);
 
 /// Gives pixels that have depth but no component, or a small one, to one nearby: the one on whose tangent plane they
 /// lie. `component` and `pixels` as in Components. Returns W x H r32ui, 0: none. Throws Error when extents differ.
 graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
-                               graph::ImageId surface, const gpu::FrameSurfaceParams& params);
+                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params);
 
 }  // namespace patina

@@ -17,10 +17,10 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
                                 const gpu::Camera& camera, const SegmentSettings& settings) {
     const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
     const graph::ImageId depth_m = add_choose_depth(frame, model_position_m, reading_m, params);
-    const graph::ImageId surface = add_fit_surface(frame, depth_m, params);
+    const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
     const auto [component, pixels] =
-        add_label_components(frame, add_find_edges(frame, surface, params), settings.edges.jump);
-    const graph::ImageId claimed = add_claim_edges(frame, component, pixels, surface, params);
+        add_label_components(frame, add_find_edges(frame, depth_m, normal, params), settings.edges.jump);
+    const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
     return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
 }
 

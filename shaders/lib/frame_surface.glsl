@@ -1,7 +1,15 @@
 // A frame's surface in camera coordinates (shared/find_edges.h). Functions without bindings.
 #ifndef PATINA_LIB_FRAME_SURFACE_GLSL
 #define PATINA_LIB_FRAME_SURFACE_GLSL
+#include "lib/octahedral.glsl"
 #include "shared/find_edges.h"
+
+// Normals in 32 bits, octahedral, 16 bits each from 1 to 65535; 0 stands for none.
+uint pack_normal(vec3 normal) {
+    const uvec2 bits = uvec2(round(to_octahedral(normal) * 32767.0) + 32768.0);
+    return bits.x | bits.y << 16;
+}
+vec3 unpack_normal(uint packed) { return from_octahedral((vec2(packed & 0xffffu, packed >> 16) - 32768.0) / 32767.0); }
 
 vec3 surface_point_m(FrameSurfaceParams params, ivec2 pixel, float z) {
     return vec3((vec2(pixel) - params.focal_center_px.zw) / params.focal_center_px.xy * z, z);

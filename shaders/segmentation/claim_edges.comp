@@ -5,10 +5,11 @@
 #include "lib/frame_surface.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
-layout(binding = 0, rgba32f) uniform readonly image2D surface;  // normal in camera coordinates; w: depth
-layout(binding = 1, r32ui) uniform readonly uimage2D component;
-layout(std430, binding = 2) readonly buffer Pixels { uint pixels[]; };  // by component; of 0: 0
-layout(binding = 3, r32ui) uniform writeonly uimage2D claimed;
+layout(binding = 0, r32f) uniform readonly image2D depth_m;
+layout(binding = 1, r32ui) uniform readonly uimage2D normal;
+layout(binding = 2, r32ui) uniform readonly uimage2D component;
+layout(std430, binding = 3) readonly buffer Pixels { uint pixels[]; };  // by component; of 0: 0
+layout(binding = 4, r32ui) uniform writeonly uimage2D claimed;
 layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
 const ivec2 kDirections[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
@@ -25,7 +26,7 @@ void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
     uint own = component_at(pixel);
-    const float z = imageLoad(surface, pixel).w;
+    const float z = imageLoad(depth_m, pixel).x;
     const bool wanting = own == 0u && z > 0.0;
 
     // The nearest component in each direction. No branch: software devices leave the loop as soon as no pixel of a
@@ -43,8 +44,8 @@ void main() {
     float nearest_m = params.claim_m + params.claim_sigmas * depth_sigma_m(params, z);
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 place = clamped(pixel + apart[i] * kDirections[i]);
-        const vec4 there = imageLoad(surface, place);
-        const float distance_m = abs(dot(surface_point_m(params, place, there.w) - point_m, there.xyz));
+        const vec3 there_m = surface_point_m(params, place, imageLoad(depth_m, place).x);
+        const float distance_m = abs(dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x)));
         const bool nearer = found[i] != 0u && distance_m < nearest_m;
         own = nearer ? found[i] : own;
         nearest_m = nearer ? distance_m : nearest_m;

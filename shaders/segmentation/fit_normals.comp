@@ -5,7 +5,7 @@
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
-layout(binding = 1, rgba32f) uniform writeonly image2D surface;  // normal in camera coordinates; w: depth
+layout(binding = 1, r32ui) uniform writeonly uimage2D normal;
 layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
 float load(ivec2 pixel) {
@@ -51,7 +51,7 @@ void main() {
                             fit.products.x * fit.slopes.y - fit.products.y * fit.slopes.x) /
                        max(determinant, 1.0);
     const vec2 from_center = vec2(pixel) - params.focal_center_px.zw;
-    const vec3 normal = -normalize(vec3(slope * params.focal_center_px.xy, 1.0 / z - dot(slope, from_center)));
+    const vec3 fitted = -normalize(vec3(slope * params.focal_center_px.xy, 1.0 / z - dot(slope, from_center)));
     const bool known = depth > 0.0 && determinant >= 1.0;
-    imageStore(surface, pixel, vec4(known ? normal : vec3(0.0), depth));
+    imageStore(normal, pixel, uvec4(known ? pack_normal(fitted) : 0u));
 }
