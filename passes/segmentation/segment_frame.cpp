@@ -19,7 +19,7 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
     const graph::ImageId depth_m = add_choose_depth(frame, model_position_m, reading_m, params);
     const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
     const auto [component, pixels] =
-        add_label_components(frame, add_find_edges(frame, depth_m, normal, params), settings.edges.jump);
+        add_label_components(frame, add_find_edges(frame, depth_m, normal, params), params.jump_m, params.jump_slope);
     const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
     return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
 }
