@@ -25,7 +25,7 @@ struct EdgeSettings {
     uint32_t min_reach_px = 2;
     uint32_t max_reach_px = 4;
     float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
-    float crease_sigmas = 1;      ///< and so many times what noise does to the angle
+    float crease_sigmas = 0.5f;   ///< and so many times what noise does to the angle
     float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
     float claim_sigmas = 3;       ///< and so many sigmas of its depth,
     uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y

@@ -93,7 +93,7 @@ TEST_F(FindEdges, ConcaveCreasesAreEdgesAndConvexOnesAreNot) {
 
 TEST_F(FindEdges, NoiseWidensTheAngle) {
     EdgeSettings noisy;
-    noisy.noise = {0.02f, 0};
+    noisy.noise = {0.1f, 0};
     EXPECT_LT(find(crease(60, {320, 20})).inner_depth_m.at(156, 10), 0);
     EXPECT_GT(find(crease(60, {320, 20}), noisy).inner_depth_m.at(156, 10), 0);
 }

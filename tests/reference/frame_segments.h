@@ -42,7 +42,7 @@ struct SurfaceRules {
     double noise_floor_m = 0.001, noise_per_m = 0.00025;
     double reach_m = 0.015;
     int min_reach_px = 2, max_reach_px = 4;
-    double crease_degrees = 20, crease_sigmas = 1;
+    double crease_degrees = 20, crease_sigmas = 0.5;
 };
 
 /// Unit normals towards the camera, in its coordinates; 0 where unknown.
