@@ -1,0 +1,63 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "shared/camera.h"
+#include "shared/find_edges.h"
+
+namespace patina {
+
+/// How much a depth scatters: sigma(z) = floor_m + per_m z^2. The defaults are a Kinect v2's, 1 to 2 mm at 1 m and 5 mm
+/// at 4 m.
+struct DepthNoise {
+    float floor_m = 0.001f;
+    float per_m = 0.00025f;  ///< 1 / m
+};
+
+/// What belongs together in a frame.
+struct EdgeSettings {
+    DepthNoise noise;
+    /// Pixels k apart lie on one surface where their depths differ by at most jump_m plus k times what a surface with
+    /// the steepest inclination changes from pixel to pixel.
+    float jump_m = 0.01f;
+    float steepest_degrees = 80;
+    float reach_m =
+        0.015f;  ///< normals come from pixels so far away on a surface seen head-on, and are compared there,
+    uint32_t min_reach_px = 2;
+    uint32_t max_reach_px = 4;
+    float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
+    float crease_sigmas = 0.5f;   ///< and so many times what noise does to the angle
+    float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
+    float claim_sigmas = 3;       ///< and so many sigmas of its depth,
+    uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y
+};
+
+/// The parameters that passes on a frame's surface share; components of fewer than `min_pixels` get no pixels. Throws
+/// Error for a reach below 1 px, or bounds that cross.
+gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const EdgeSettings& settings,
+                                            uint32_t min_pixels);
+
+/// The model's depth where there is one, else the reading. `model_position_m`: W x H rgba32f, w is depth, 0 where
+/// nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none (add_filter_depth). Returns
+/// W x H r32f in metres, 0 where neither is. Throws Error when extents differ.
+graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                                const gpu::FrameSurfaceParams& params);
+
+/// Normals from eight depths around each pixel. `depth_m` as add_choose_depth returns it. Returns W x H r32ui:
+/// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none
+/// is known. Throws Error when extents differ.
+graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
+
+/// Finds edges between the smooth, convex parts of a surface, with normals from add_fit_normals (phi_c of Tateno,
+/// Tombari and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and
+/// small steps are creases at their foot). A pixel is at an edge where the normals on both sides of it differ and face
+/// each other, or where its own is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is
+/// no surface. Throws Error when extents differ.
+graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+                              const gpu::FrameSurfaceParams& params);
+
+/// Gives pixels that have depth but no component, or a small one, to one nearby: the one on whose tangent plane they
+/// lie. `component` and `pixels` as in Components. Returns W x H r32ui, 0: none. Throws Error when extents differ.
+graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
+                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params);
+
+}  // namespace patina

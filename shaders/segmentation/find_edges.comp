@@ -1,0 +1,52 @@
+// Marks pixels at concave creases.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/frame_surface.glsl"
+
+layout(local_size_x = 32, local_size_y = 4) in;
+layout(binding = 0, r32f) uniform readonly image2D depth_m;
+layout(binding = 1, r32ui) uniform readonly uimage2D normal;
+layout(binding = 2, r32f) uniform writeonly image2D inner_depth_m;  // negative at edges
+layout(push_constant) uniform Push { FrameSurfaceParams params; };
+
+struct Side {
+    vec3 normal;
+    vec3 point_m;
+};
+
+// The surface beside a pixel, or at the pixel itself where the neighbour does not belong to its surface.
+Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
+    const ivec2 place = clamp(pixel + offset, ivec2(0), ivec2(params.extent) - 1);
+    const float z = imageLoad(depth_m, place).x;
+    const uint packed = imageLoad(normal, place).x;
+    const bool joined = packed != 0u && abs(z - here.point_m.z) <= limit_m;
+    return Side(joined ? unpack_normal(packed) : here.normal,
+                joined ? surface_point_m(params, place, z) : here.point_m);
+}
+
+bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine) {
+    const Side a = side_at(pixel, here, -offset, limit_m);
+    const Side b = side_at(pixel, here, offset, limit_m);
+    const bool concave = dot(b.point_m - a.point_m, b.normal - a.normal) < 0.0;
+    return concave && dot(a.normal, b.normal) < cosine;
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
+    const float depth = imageLoad(depth_m, pixel).x;
+    const uint packed = imageLoad(normal, pixel).x;
+    const float z = max(depth, 1e-3);
+    const Side here = Side(unpack_normal(packed), surface_point_m(params, pixel, z));
+    const int reach = reach_px(params, z);
+    const float limit_m = jump_limit_m(params, z, reach);
+    // The error of a normal that was fitted to eight depths, and of the angle between two.
+    const int diagonal = diagonal_px(reach);
+    const float spread_px = sqrt(float(2 * reach * reach + 4 * diagonal * diagonal));
+    const float sigma_rad = 1.4142 * depth_sigma_m(params, z) * params.focal_center_px.x / (z * spread_px);
+    const float cosine = cos(min(params.crease_rad + params.crease_sigmas * sigma_rad, 3.1415));
+
+    const bool edge = packed == 0u || is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine) ||
+                      is_crease(pixel, here, ivec2(0, reach), limit_m, cosine);
+    imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
+}
