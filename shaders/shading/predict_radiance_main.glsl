@@ -35,6 +35,7 @@ const float kOtherCosine = 0.25;
 const float kOnPlaneVox = 0.5;
 const float kOffPlaneVox = 1.0;
 const float kLeastWeight = 1e-6;  // trilinear shares below it are none
+const float kOtherSurface2 = 100.0;  // added to squared distances: what is of another surface comes last
 const float kLeastAlpha = 0.01;
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
@@ -120,7 +121,8 @@ Reflectance interpolate(SurfacePoint point) {
     return Reflectance(sum / max(weights, 1e-20), weights, known, normals, labelled);
 }
 
-// Where none of the eight is known: what the nearest known record of the same surface within one voxel more has.
+// Where none of the eight is known: what the nearest known record within one voxel more has; one of the same surface if
+// there is any. Rims, which no frame saw but grazing, have normals too far off to tell.
 Reflectance fill(SurfacePoint point, Reflectance found) {
     const ivec3 low = ivec3(floor(point.at_vox)) - 1;
     float nearest = 1e9, nearest_label = found.labelled == kNoRecord ? 1e9 : -1.0;
@@ -133,7 +135,8 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
         if (record == kNoRecord) continue;
         const uvec4 its = PACKED(record);
         const vec3 away = point.at_vox - vec3(voxel);
-        const float distance2 = same_surface(point, away, packed_surface(its)) > 0.0 ? dot(away, away) : 1e9;
+        const bool same = same_surface(point, away, packed_surface(its)) > 0.0;
+        const float distance2 = dot(away, away) + (same ? 0.0 : kOtherSurface2);
         if (distance2 < nearest && packed_certainty(its) != vec3(0.0)) {
             nearest = distance2;
             content = its;
@@ -164,10 +167,15 @@ Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
                        found.labelled);
 }
 
-// Makes the shares sum to 1.
+// Makes the shares sum to 1. Where no light was marched yet, every light reaches the point.
 void normalise_shares() {
-    float all = 1e-20;
+    float all = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) all += share_of[i];
+    if (all == 0.0) {
+        share_of[0] = 1.0;
+        visible_from[0] = uvec2(0xffffffffu);
+        return;
+    }
     [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] /= all;
 }
 
