@@ -48,5 +48,6 @@ void main() {
     const vec2 from_center = vec2(pixel) - params.focal_center_px.zw;
     const vec3 normal = vec3(-depth_per_px * params.focal_center_px.xy, here + dot(depth_per_px, from_center));
     const float plane_factor = here / max(length(normal), 1e-6);
-    imageStore(slope, pixel, uvec4(known ? pack_slope(depth_per_px, plane_factor, is_beside_edge(pixel, here, jump_m)) : 0u));
+    imageStore(slope, pixel,
+               uvec4(known ? pack_slope(depth_per_px, plane_factor, is_beside_edge(pixel, here, jump_m)) : 0u));
 }
