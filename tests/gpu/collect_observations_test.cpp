@@ -156,7 +156,7 @@ TEST_F(CollectObservations, ASpheresNormalsAndPointsAreThoseOfTheVoxel) {
         observed += !voxel.seen.empty();
     }
     EXPECT_GT(observed, 250u);
-    EXPECT_LT(worst_degrees, 4);
+    EXPECT_LT(worst_degrees, 5);  // of surface seen at up to 80 degrees, where the model knows its rim least
     EXPECT_LT(worst_m, 0.001);
 }
 
@@ -353,7 +353,7 @@ TEST_F(CollectObservations, AgreesWithTheReferenceOnAClutteredScene) {
             const ObservationRig::Collected collected = rig.collect(frame);
             const ObservationContent after = rig.content();
 
-            const reference::ObservationRules rules{0.02, 6, 75, 0.01, 0.003, 1, 2, 2, {i * 5 % 4 % 2, i * 5 % 4 / 2},
+            const reference::ObservationRules rules{0.02, 6, 80, 0.01, 0.003, 1, 2, 2, {i * 5 % 4 % 2, i * 5 % 4 / 2},
                                                     {}};
             reference::ObservedFrame observed{
                 frame.camera,         frame.world_from_camera,
