@@ -9,7 +9,7 @@ namespace patina {
 struct ObservationSettings {
     uint32_t stride_px = 2;        ///< every so many pixels look for voxels to observe, another phase in every frame
     float max_distance_m = 8.0f;   ///< farther surface is not observed
-    float max_angle_degrees = 75;  ///< between the normal and the direction to the colour camera
+    float max_angle_degrees = 80;  ///< between the normal and the direction to the colour camera
     /// How far a reading may lie off the model's surface: the first, plus the second times depth^2, three times a time
     /// of flight camera's noise.
     float depth_tolerance_m = 0.01f;
