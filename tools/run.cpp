@@ -57,34 +57,81 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const RunOptions& option
                                                      sensor::SyntheticOptions{.frames = frames});
 }
 
-/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
-std::vector<PointLight> lights_of(const RunOptions& options) {
-    std::vector<PointLight> lights;
-    if (!options.lights.empty()) {
-        for (const sensor::PointLight& light : sensor::read_lights(options.lights))
-            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), 0});
-    } else if (!options.lighting.empty()) {
-        LightsOptions find;
-        find.sequence = options.lighting;
-        find.quiet = options.quiet;
-        find.device = options.device;
-        for (const FoundLight& light : find_lights(find))
-            lights.push_back({light.position_m, light.intensity, light.radius_m});
-        if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
+Illumination lights_from_file(const std::filesystem::path& file) {
+    Illumination given;
+    given.found_by = "file";
+    for (const sensor::PointLight& light : sensor::read_lights(file)) {
+        FoundLight known;
+        known.position_m = glm::vec3(light.position_m);
+        known.intensity = glm::vec3(light.intensity);
+        given.lights.push_back(known);
     }
-    return lights;
+    given.ambient = glm::vec3(sensor::read_ambient(file));
+    return given;
+}
+
+/// What tells the lights: those that the user gives, says where to find, or the sequence's own lighting sequence.
+Illumination lights_of(const RunOptions& options) {
+    if (!options.lights.empty()) return lights_from_file(options.lights);
+    const bool by_default = options.lighting.empty();
+    if (options.lighting == "none" || (by_default && !has_lighting_sequence(options.sequence))) return {};
+    const bool self = options.lighting == "self";
+    LightsOptions find;
+    find.sequence = self || by_default ? options.sequence : options.lighting;
+    find.from = self ? LightsFrom::kMainSequence : LightsFrom::kLightingSequence;
+    find.format = self ? options.format : "";
+    find.frames = self ? options.frames : 0;
+    find.reconstruction = options.settings;
+    find.quiet = options.quiet;
+    find.device = options.device;
+    Illumination found = find_lights(find);
+    if (found.lights.empty() && !by_default) throw Error("no lamp was found in the sequence '", find.sequence, "'");
+    return found;
 }
 
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
-ReconstructionSettings settings_of(const RunOptions& options, const std::vector<PointLight>& lights) {
+ReconstructionSettings settings_of(const RunOptions& options, const Illumination& lights) {
     ReconstructionSettings settings = options.settings;
-    if (lights.empty()) {
+    if (lights.lights.empty()) {
         const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
+        if (asked) throw Error("reflectance needs lights: give --lights FILE, --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
     return settings;
+}
+
+std::vector<PointLight> point_lights(const Illumination& illumination) {
+    std::vector<PointLight> lights;
+    for (const FoundLight& light : illumination.lights)
+        lights.push_back({light.position_m, light.intensity, light.radius_m});
+    return lights;
+}
+
+nlohmann::ordered_json to_json(glm::vec3 v) { return {v.x, v.y, v.z}; }
+
+/// For run.json: the lights, how they were found, and how sure that is.
+nlohmann::ordered_json lights_json(const Illumination& illumination) {
+    nlohmann::ordered_json json{{"found_by", illumination.found_by}};
+    const bool found = illumination.found_by != "file";
+    auto& list = json["lamps"] = nlohmann::ordered_json::array();
+    for (const FoundLight& light : illumination.lights) {
+        nlohmann::ordered_json lamp{{"position_m", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
+        if (found) {
+            lamp["radius_m"] = light.radius_m;
+            lamp["spread_m"] = light.spread_m;
+            lamp["sightings"] = light.sightings;
+            lamp["clipped_sightings"] = light.clipped;
+            lamp["triangulated"] = !light.has_depth;
+        }
+        list.push_back(std::move(lamp));
+    }
+    json["ambient"] = to_json(illumination.ambient);
+    if (illumination.found_by == "main sequence") {
+        json["misfit"] = illumination.misfit;
+        json["unexplained_highlights"] = illumination.unexplained;
+    }
+    return json;
 }
 
 PassTime summarised(const graph::Timing& timing) {
@@ -112,7 +159,7 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
 class Run {
   public:
     Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder, vulkan::Device& device,
-        sensor::Source& source, std::vector<PointLight> lights, const RunTruth& truth)
+        sensor::Source& source, Illumination lights, const RunTruth& truth)
         : options_(options),
           interrupt_(interrupt),
           folder_(folder),
@@ -162,7 +209,7 @@ class Run {
         const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
         folder_.publish("scene.glb");
         folder_.write("trajectory.txt", trajectory_text(poses_));
-        if (!lights_.empty()) write_lights();
+        if (!lights_.lights.empty()) write_lights();
         if (!options_.dump_graph.empty()) {
             write_text(options_.dump_graph.string() + ".dot", graph_dot_);
             write_text(options_.dump_graph.string() + ".json", graph_json_);
@@ -181,7 +228,7 @@ class Run {
 
   private:
     void prepare_reflectance(ReflectanceModel& reflectance) {
-        reflectance.set_lights(lights_);
+        reflectance.set_lights(point_lights(lights_), lights_.ambient);
         if (!options_.truth_materials) return;
         for (const sensor::Material& m : truth_.materials())
             reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
@@ -223,9 +270,9 @@ class Run {
 
     void write_lights() {
         std::vector<sensor::PointLight> lights;
-        for (const PointLight& light : lights_)
+        for (const FoundLight& light : lights_.lights)
             lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
-        sensor::write_lights(folder_.stage("lights.json"), lights);
+        sensor::write_lights(folder_.stage("lights.json"), lights, glm::dvec3(lights_.ambient));
         folder_.publish("lights.json");
     }
 
@@ -251,12 +298,13 @@ class Run {
         record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
         record.seed = options_.seed;
         record.settings = settings_json(settings_);
-        record.settings["lights"] = lights_.size();
+        record.settings["lighting"] = options_.lighting;
         record.settings["truth_labels"] = options_.truth_labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
         record.settings["dump_every"] = options_.dump_every;
+        record.lights = lights_json(lights_);
         record.sequence = info_;
         record.frames = {ledger_.read(), ledger_.used(), ledger_.skipped()};
         const gpu::MapCounters& counters = reconstruction_.counters();
@@ -309,7 +357,7 @@ class Run {
     sensor::Source& source_;
     sensor::SequenceInfo info_;
     Clock::time_point start_ = Clock::now();
-    std::vector<PointLight> lights_;
+    Illumination lights_;
     const RunTruth& truth_;
     ReconstructionSettings settings_;
     Reconstruction reconstruction_;
@@ -331,7 +379,7 @@ void run(const RunOptions& options) {
     std::unique_ptr<sensor::Source> recorded;
     std::unique_ptr<sensor::SyntheticSource> rendered;
     if (!is_synthetic(options)) recorded = open_recording(options);
-    std::vector<PointLight> lights = lights_of(options);
+    Illumination lights = lights_of(options);
     device.emplace(options.device);
     if (is_synthetic(options)) rendered = open_synthetic(options, *device);
     const RunTruth truth(options.sequence, rendered.get());

@@ -18,8 +18,11 @@ struct RunOptions {
     uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     uint64_t seed = 0;        ///< of everything that is drawn at random
     bool quiet = false;
-    std::filesystem::path lights;      ///< lights.json: with it the run estimates reflectance too
-    std::string lighting;              ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    std::filesystem::path lights;  ///< lights.json: with it the run estimates reflectance too
+    /// Where else lights are found: a sequence as find_lights takes it, in whose low-exposure frames they are; "self":
+    /// in what they light in the main sequence; "none": no lights, and no reflectance. Empty: in the lighting sequence
+    /// that the main sequence has, if it has one.
+    std::string lighting;
     bool truth_labels = false;         ///< segments are the objects of the sequence's truth/labels
     bool truth_materials = false;      ///< ks and alpha are those of truth/materials.json, by label
     std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last fused frame; empty writes none

@@ -46,8 +46,10 @@ void add_run(CLI::App& app) {
     command->add_option("--dump-every", run_options.dump_every, "Write frames/NNNNNN.exr of every so many frames");
     command->add_option("--lights", run_options.lights,
                         "lights.json: estimate what surfaces reflect under these lights, not only where they are");
-    command->add_option("--lighting", run_options.lighting,
-                        "Sequence of low exposure, or one that holds lighting/, in which the lights are found");
+    command->add_option(
+        "--lighting", run_options.lighting,
+        "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
+        "light; none: no reflectance; by default in the sequence's lighting/");
     add_truth_option(*command, "--labels", run_options.truth_labels, "Segments: truth takes those of truth/labels");
     add_truth_option(*command, "--materials", run_options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
