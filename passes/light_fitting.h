@@ -4,16 +4,14 @@
 #include <vector>
 
 #include "passes/light_estimation.h"
-#include "passes/lighting/fit_intensities.h"
+#include "passes/lighting/search_lights.h"
 #include "passes/reconstruction.h"
 
 namespace patina {
 
 struct LightFittingSettings {
-    uint32_t most_lamps = 6;
-    float cell_m = 1;             ///< surface of one chromaticity within a cube of this size has one albedo
-    float highlight_share = 0.5;  ///< what unexplained highlights count beside the misfit of diffuse light
-    float least_gain = 0.1f;      ///< a lamp makes the sum of both smaller by this share, or is left out
+    LightSearchSettings search;
+    float cell_m = 1;  ///< surface of one chromaticity within a cube of this size has one albedo
 };
 
 /// Lamps found in what they light.

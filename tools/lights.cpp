@@ -149,11 +149,8 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device) {
 }
 
 void write(const fs::path& file, const Illumination& found) {
-    std::vector<sensor::PointLight> lights;
-    for (const FoundLight& light : found.lights)
-        lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
     const fs::path partial = file.string() + ".patina-partial";
-    sensor::write_lights(partial, lights, glm::dvec3(found.ambient));
+    write_lights_json(partial, found);
     std::error_code failure;
     fs::rename(partial, file, failure);
     if (failure) throw Error("the file '", file.string(), "' cannot be written: ", failure.message());
@@ -169,10 +166,18 @@ void print(const FoundLight& light) {
 
 }  // namespace
 
+void write_lights_json(const fs::path& file, const Illumination& illumination) {
+    std::vector<sensor::PointLight> lights;
+    for (const FoundLight& light : illumination.lights)
+        lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
+    sensor::write_lights(file, lights, glm::dvec3(illumination.ambient));
+}
+
 bool has_lighting_sequence(const std::string& sequence) {
     if (const auto scene = scene_name(sequence))
         return sensor::lighting_sequence(sensor::load_scene(*scene)).has_value();
-    return fs::is_directory(fs::path(sequence) / "lighting");
+    const fs::path path(sequence);
+    return fs::is_directory((path.filename() == "sequence.json" ? path.parent_path() : path) / "lighting");
 }
 
 Illumination find_lights(const LightsOptions& options) {

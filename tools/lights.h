@@ -43,6 +43,9 @@ struct Illumination {
     float unexplained = 0;
 };
 
+/// Writes lights.json of the sequence format. Throws Error when the file cannot be written.
+void write_lights_json(const std::filesystem::path& file, const Illumination& illumination);
+
 /// Whether a sequence has a lighting sequence of its own: the folder lighting/, or a scene's.
 bool has_lighting_sequence(const std::string& sequence);
 

@@ -19,9 +19,9 @@
 #include "tools/export/write_glb.h"
 #include "tools/frame_dumps.h"
 #include "tools/interrupt.h"
-#include "tools/lights.h"
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
+#include "tools/run_lights.h"
 #include "tools/run_settings.h"
 #include "tools/run_truth.h"
 #include "tools/version.h"
@@ -57,38 +57,6 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const RunOptions& option
                                                      sensor::SyntheticOptions{.frames = frames});
 }
 
-Illumination lights_from_file(const std::filesystem::path& file) {
-    Illumination given;
-    given.found_by = "file";
-    for (const sensor::PointLight& light : sensor::read_lights(file)) {
-        FoundLight known;
-        known.position_m = glm::vec3(light.position_m);
-        known.intensity = glm::vec3(light.intensity);
-        given.lights.push_back(known);
-    }
-    given.ambient = glm::vec3(sensor::read_ambient(file));
-    return given;
-}
-
-/// What tells the lights: those that the user gives, says where to find, or the sequence's own lighting sequence.
-Illumination lights_of(const RunOptions& options) {
-    if (!options.lights.empty()) return lights_from_file(options.lights);
-    const bool by_default = options.lighting.empty();
-    if (options.lighting == "none" || (by_default && !has_lighting_sequence(options.sequence))) return {};
-    const bool self = options.lighting == "self";
-    LightsOptions find;
-    find.sequence = self || by_default ? options.sequence : options.lighting;
-    find.from = self ? LightsFrom::kMainSequence : LightsFrom::kLightingSequence;
-    find.format = self ? options.format : "";
-    find.frames = self ? options.frames : 0;
-    find.reconstruction = options.settings;
-    find.quiet = options.quiet;
-    find.device = options.device;
-    Illumination found = find_lights(find);
-    if (found.lights.empty() && !by_default) throw Error("no lamp was found in the sequence '", find.sequence, "'");
-    return found;
-}
-
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
 ReconstructionSettings settings_of(const RunOptions& options, const Illumination& lights) {
     ReconstructionSettings settings = options.settings;
@@ -99,39 +67,6 @@ ReconstructionSettings settings_of(const RunOptions& options, const Illumination
         settings.reflectance.emplace();
     }
     return settings;
-}
-
-std::vector<PointLight> point_lights(const Illumination& illumination) {
-    std::vector<PointLight> lights;
-    for (const FoundLight& light : illumination.lights)
-        lights.push_back({light.position_m, light.intensity, light.radius_m});
-    return lights;
-}
-
-nlohmann::ordered_json to_json(glm::vec3 v) { return {v.x, v.y, v.z}; }
-
-/// For run.json: the lights, how they were found, and how sure that is.
-nlohmann::ordered_json lights_json(const Illumination& illumination) {
-    nlohmann::ordered_json json{{"found_by", illumination.found_by}};
-    const bool found = illumination.found_by != "file";
-    auto& list = json["lamps"] = nlohmann::ordered_json::array();
-    for (const FoundLight& light : illumination.lights) {
-        nlohmann::ordered_json lamp{{"position_m", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
-        if (found) {
-            lamp["radius_m"] = light.radius_m;
-            lamp["spread_m"] = light.spread_m;
-            lamp["sightings"] = light.sightings;
-            lamp["clipped_sightings"] = light.clipped;
-            lamp["triangulated"] = !light.has_depth;
-        }
-        list.push_back(std::move(lamp));
-    }
-    json["ambient"] = to_json(illumination.ambient);
-    if (illumination.found_by == "main sequence") {
-        json["misfit"] = illumination.misfit;
-        json["unexplained_highlights"] = illumination.unexplained;
-    }
-    return json;
 }
 
 PassTime summarised(const graph::Timing& timing) {
@@ -269,10 +204,7 @@ class Run {
     }
 
     void write_lights() {
-        std::vector<sensor::PointLight> lights;
-        for (const FoundLight& light : lights_.lights)
-            lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
-        sensor::write_lights(folder_.stage("lights.json"), lights, glm::dvec3(lights_.ambient));
+        write_lights_json(folder_.stage("lights.json"), lights_);
         folder_.publish("lights.json");
     }
 

@@ -12,7 +12,7 @@ constexpr float kDarkest = 0.004f;          // a pixel value of 8-bit noise
 constexpr float kChromaticityStep = 0.06f;  // more than what lamps of different colour make of one albedo
 constexpr double kNoise = 0.01;             // of pixel values: residuals are told in these
 constexpr double kRelativeNoise = 0.1;      // what one albedo per group, highlights and shadow borders leave
-constexpr float kHighlightSpread = 0.25f;   // tangent of the half vector's angle at which a highlight is half explained
+constexpr float kHighlightSpread = 0.2f;    // tangent of the half vector's angle at which a highlight is half explained
 constexpr double kLeastShare = 1e-6;        // of the mean irradiance, below which a lamp reaches nothing
 
 float brightness(const gpu::LightSample& sample, LightChannel channel) {
@@ -112,9 +112,11 @@ LitSurface::LitSurface(std::span<const gpu::LightSample> drawn, float cell_m) {
 }
 
 ReceivedLight LitSurface::received(std::span<const float> row) const {
-    auto light = std::make_shared<std::vector<float>>();
-    light->reserve(places_.size());
-    for (const uint32_t place : places_) light->push_back(row[place]);
+    auto light = std::make_shared<ReceivedLightValues>();
+    for (const uint32_t place : places_) {
+        light->by_sample.push_back(row[place]);
+        light->mean += row[place] / static_cast<double>(places_.size());
+    }
     return light;
 }
 
@@ -128,7 +130,7 @@ FittedIntensities LitSurface::fit(std::span<const ReceivedLight> lamps, uint32_t
     std::vector<float> given(count * unknowns, 1.0f), lit(count), bright(count), weight(count, 1.0f);
     std::vector<double> mean(unknowns);
     for (size_t i = 0; i < count; ++i) {
-        for (size_t l = 0; l < lamps.size(); ++l) given[i * unknowns + l] = (*lamps[l])[i];
+        for (size_t l = 0; l < lamps.size(); ++l) given[i * unknowns + l] = lamps[l]->by_sample[i];
         for (size_t l = 0; l < unknowns; ++l) mean[l] += given[i * unknowns + l] / static_cast<double>(count);
         bright[i] = brightness(samples_[i], channel);
     }

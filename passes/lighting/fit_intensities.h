@@ -11,8 +11,12 @@
 
 namespace patina {
 
-/// What a lamp of intensity 1 gives each sample of a LitSurface.
-using ReceivedLight = std::shared_ptr<const std::vector<float>>;
+/// What a lamp of intensity 1 gives the samples of a LitSurface.
+struct ReceivedLightValues {
+    std::vector<float> by_sample;
+    double mean = 0;
+};
+using ReceivedLight = std::shared_ptr<const ReceivedLightValues>;
 
 /// Which pixel values are explained.
 enum class LightChannel : uint8_t { kRed, kGreen, kBlue, kMean };

@@ -18,7 +18,7 @@ void main() {
     if (record >= counters.high_water) return;
     const VoxelRecord known = records[record];
     if (!is_candidate(known)) return;
-    const Claim claim = claim_of(known);
+    const Claim claim = claim_of(known), highlight = highlight_claim_of(known);
     atomicMax(claims[claim.place], claim.priority);
-    if (sample_of(record, known).highlight.w > 0.0) atomicMax(claims[kLightSamples + claim.place], claim.priority);
+    if (sample_of(record, known).highlight.w > 0.0) atomicMax(claims[highlight.place], highlight.priority);
 }

@@ -19,11 +19,11 @@ void main() {
     if (record >= counters.high_water) return;
     const VoxelRecord known = records[record];
     if (!is_candidate(known)) return;
-    const Claim claim = claim_of(known);
-    const bool surface = claims[claim.place] == claim.priority;
-    const bool highlight = claims[kLightSamples + claim.place] == claim.priority;
-    if (!surface && !highlight) return;
+    const Claim claim = claim_of(known), highlight = highlight_claim_of(known);
+    const bool is_sample = claims[claim.place] == claim.priority;
+    const bool is_highlight = claims[highlight.place] == highlight.priority;
+    if (!is_sample && !is_highlight) return;
     const LightSample drawn = sample_of(record, known);
-    if (surface) samples[claim.place] = drawn;
-    if (highlight) samples[kLightSamples + claim.place] = drawn;
+    if (is_sample) samples[claim.place] = drawn;
+    if (is_highlight) samples[highlight.place] = drawn;
 }

@@ -58,10 +58,18 @@ struct Claim {
     uint priority;  // above 0
 };
 
+// The bits of a hash of the block choose the place; the others and the voxel, which follows the hash, the priority.
 Claim claim_of(VoxelRecord known) {
     const uint hash = hash_of_key(known.block_key);
     const uint voxel = (voxel_in_block(known) ^ hash >> 16) & 0x3fu;
-    return Claim(hash & (kLightSamples - 1u), 1u + (hash / kLightSamples << 6 | voxel));
+    return Claim(hash % kLightSamples, 1u + (hash / kLightSamples << 6 | voxel));
+}
+
+// Highlights are few: a block's voxels have eight places.
+Claim highlight_claim_of(VoxelRecord known) {
+    const uint hash = hash_of_key(known.block_key), voxel = voxel_in_block(known);
+    const uint classes = kLightSamples / 8u;
+    return Claim(kLightSamples + (hash % classes * 8u | voxel & 7u), 1u + (hash / classes << 6 | voxel));
 }
 
 bool is_candidate(VoxelRecord known) {
