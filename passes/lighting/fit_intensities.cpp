@@ -13,6 +13,7 @@ constexpr float kChromaticityStep = 0.06f;  // more than what lamps of different
 constexpr double kNoise = 0.01;             // of pixel values: residuals are told in these
 constexpr double kRelativeNoise = 0.1;      // what one albedo per group, highlights and shadow borders leave
 constexpr float kHighlightSpread = 0.2f;    // tangent of the half vector's angle at which a highlight is half explained
+constexpr double kLeastLit = 0.02;          // of the mean irradiance; darker samples count the same
 constexpr double kLeastShare = 1e-6;        // of the mean irradiance, below which a lamp reaches nothing
 
 float brightness(const gpu::LightSample& sample, LightChannel channel) {
@@ -93,6 +94,90 @@ class NormalEquations {
     std::vector<double> values_;
 };
 
+/// Iteratively reweighted least squares for the intensities.
+class IntensityFit {
+  public:
+    IntensityFit(std::span<const gpu::LightSample> samples, std::span<const uint32_t> group, uint32_t groups,
+                 std::span<const ReceivedLight> lamps, size_t count, LightChannel channel)
+        : group_(group),
+          groups_(groups),
+          count_(count),
+          unknowns_(lamps.size() + 1),
+          given_(count * unknowns_, 1.0f),
+          lit_(count),
+          bright_(count),
+          weight_(count, 1.0f),
+          mean_(unknowns_) {
+        for (size_t i = 0; i < count; ++i) {
+            for (size_t l = 0; l < lamps.size(); ++l) given_[i * unknowns_ + l] = lamps[l]->by_sample[i];
+            for (size_t l = 0; l < unknowns_; ++l) mean_[l] += given(i, l) / static_cast<double>(count);
+            bright_[i] = brightness(samples[i], channel);
+        }
+        spread_evenly();
+    }
+
+    /// Albedo and residuals under the present intensities, and from these the weights.
+    void weigh() {
+        std::vector<double> both(groups_), squares(groups_);
+        for (size_t i = 0; i < count_; ++i) {
+            double sum = 0;
+            for (size_t l = 0; l < unknowns_; ++l) sum += fitted_.intensities[l] * given(i, l);
+            lit_[i] = static_cast<float>(sum);
+            both[group_[i]] += double{weight_[i]} * bright_[i] * lit_[i];
+            squares[group_[i]] += double{weight_[i]} * lit_[i] * lit_[i];
+        }
+        fitted_.albedo.assign(groups_, 0);
+        for (uint32_t g = 0; g < groups_; ++g)
+            if (squares[g] > 0) fitted_.albedo[g] = static_cast<float>(both[g] / squares[g]);
+        fitted_.misfit = 0;
+        for (size_t i = 0; i < count_; ++i) {
+            const double expected = fitted_.albedo[group_[i]] * lit_[i];
+            const double off = (bright_[i] - expected) / (2 * kNoise + kRelativeNoise * (bright_[i] + expected));
+            fitted_.misfit += off * off / (1 + off * off) / static_cast<double>(count_);
+            weight_[i] = static_cast<float>(1 / ((1 + off * off) * (1 + off * off)));
+        }
+    }
+
+    /// The intensities under the present weights.
+    void solve() {
+        std::vector<double> group_bright(groups_), group_given(groups_ * unknowns_), row(unknowns_);
+        for (size_t i = 0; i < count_; ++i) {
+            group_bright[group_[i]] += double{weight_[i]} * bright_[i];
+            for (size_t l = 0; l < unknowns_; ++l)
+                group_given[group_[i] * unknowns_ + l] += double{weight_[i]} * given(i, l);
+        }
+        NormalEquations equations(unknowns_);
+        for (size_t i = 0; i < count_; ++i) {
+            const uint32_t g = group_[i];
+            if (!(group_bright[g] > 0)) continue;
+            const double share = bright_[i] / group_bright[g], scale = 1 / (kLeastLit + lit_[i]);
+            for (size_t l = 0; l < unknowns_; ++l) row[l] = share * group_given[g * unknowns_ + l] - given(i, l);
+            equations.add(row, weight_[i] * scale * scale);
+        }
+        fitted_.intensities = equations.smallest(mean_);
+    }
+
+    const FittedIntensities& result() const { return fitted_; }
+
+  private:
+    float given(size_t sample, size_t lamp) const { return given_[sample * unknowns_ + lamp]; }
+
+    /// Every lamp that reaches anything gives the same.
+    void spread_evenly() {
+        for (double& mean : mean_)
+            if (mean < kLeastShare) mean = 0;
+        const auto reaching = std::count_if(mean_.begin(), mean_.end(), [](double mean) { return mean > 0; });
+        for (const double mean : mean_)
+            fitted_.intensities.push_back(mean > 0 ? 1 / (mean * static_cast<double>(reaching)) : 0);
+    }
+
+    std::span<const uint32_t> group_;
+    size_t groups_, count_, unknowns_;  // the last unknown: ambient light, which gives every sample 1
+    std::vector<float> given_, lit_, bright_, weight_;
+    std::vector<double> mean_;
+    FittedIntensities fitted_;
+};
+
 }  // namespace
 
 LitSurface::LitSurface(std::span<const gpu::LightSample> drawn, float cell_m) {
@@ -126,63 +211,14 @@ size_t LitSurface::samples_before(uint32_t place) const {
 
 FittedIntensities LitSurface::fit(std::span<const ReceivedLight> lamps, uint32_t steps, size_t count,
                                   LightChannel channel) const {
-    const size_t unknowns = lamps.size() + 1;  // the last: ambient light, which gives every sample 1
-    std::vector<float> given(count * unknowns, 1.0f), lit(count), bright(count), weight(count, 1.0f);
-    std::vector<double> mean(unknowns);
-    for (size_t i = 0; i < count; ++i) {
-        for (size_t l = 0; l < lamps.size(); ++l) given[i * unknowns + l] = lamps[l]->by_sample[i];
-        for (size_t l = 0; l < unknowns; ++l) mean[l] += given[i * unknowns + l] / static_cast<double>(count);
-        bright[i] = brightness(samples_[i], channel);
+    if (count == 0) return {std::vector<double>(lamps.size() + 1), 0, std::vector<float>(groups_)};
+    IntensityFit fit(samples_, group_, groups_, lamps, count, channel);
+    for (uint32_t step = 0; step < steps; ++step) {
+        fit.weigh();
+        fit.solve();
     }
-    FittedIntensities fitted;
-    size_t reaching = 0;
-    for (double& m : mean) {
-        m = m < kLeastShare ? 0 : m;
-        reaching += m > 0;
-    }
-    for (const double m : mean) fitted.intensities.push_back(m > 0 ? 1 / (m * static_cast<double>(reaching)) : 0);
-
-    std::vector<double> group_bright(groups_), group_lit(groups_), group_lit2(groups_), group_given, row(unknowns);
-    for (uint32_t step = 0;; ++step) {
-        std::fill(group_bright.begin(), group_bright.end(), 0);
-        std::fill(group_lit2.begin(), group_lit2.end(), 0);
-        for (size_t i = 0; i < count; ++i) {
-            double sum = 0;
-            for (size_t l = 0; l < unknowns; ++l) sum += fitted.intensities[l] * given[i * unknowns + l];
-            lit[i] = static_cast<float>(sum);
-            group_bright[group_[i]] += double{weight[i]} * bright[i] * lit[i];
-            group_lit2[group_[i]] += double{weight[i]} * lit[i] * lit[i];
-        }
-        fitted.albedo.assign(groups_, 0);
-        for (uint32_t g = 0; g < groups_; ++g)
-            if (group_lit2[g] > 0) fitted.albedo[g] = static_cast<float>(group_bright[g] / group_lit2[g]);
-        fitted.misfit = 0;
-        for (size_t i = 0; i < count; ++i) {
-            const double expected = fitted.albedo[group_[i]] * lit[i];
-            const double off = (bright[i] - expected) / (2 * kNoise + kRelativeNoise * (bright[i] + expected));
-            fitted.misfit += off * off / (1 + off * off) / static_cast<double>(count);
-            weight[i] = static_cast<float>(1 / ((1 + off * off) * (1 + off * off)));
-        }
-        if (step == steps) return fitted;
-
-        group_given.assign(size_t{groups_} * unknowns, 0);
-        std::fill(group_bright.begin(), group_bright.end(), 0);
-        for (size_t i = 0; i < count; ++i) {
-            group_bright[group_[i]] += double{weight[i]} * bright[i];
-            for (size_t l = 0; l < unknowns; ++l)
-                group_given[group_[i] * unknowns + l] += double{weight[i]} * given[i * unknowns + l];
-        }
-        NormalEquations equations(unknowns);
-        for (size_t i = 0; i < count; ++i) {
-            const uint32_t g = group_[i];
-            if (!(group_bright[g] > 0)) continue;
-            const double share = bright[i] / group_bright[g], scale = 1 / (0.02 + lit[i]);
-            for (size_t l = 0; l < unknowns; ++l)
-                row[l] = share * group_given[g * unknowns + l] - given[i * unknowns + l];
-            equations.add(row, weight[i] * scale * scale);
-        }
-        fitted.intensities = equations.smallest(mean);
-    }
+    fit.weigh();
+    return fit.result();
 }
 
 std::vector<float> LitSurface::unexplained(glm::vec3 place_m) const {

@@ -14,7 +14,7 @@ namespace patina {
 struct LightSearchSettings {
     uint32_t most_lamps = 6;
     float highlight_share = 0.5f;  ///< what unexplained highlights count beside the misfit of diffuse light
-    float least_gain = 0.1f;       ///< a lamp makes the sum of both smaller by this share, or is left out
+    float least_gain = 0.12f;      ///< a lamp makes the sum of both smaller by this share, or is left out
 };
 
 /// A lamp's place, what it gives the samples, and how badly it explains each highlight.
