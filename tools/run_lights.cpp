@@ -5,13 +5,14 @@
 namespace patina::tools {
 namespace {
 
-Illumination lights_from_file(const std::filesystem::path& file) {
+Illumination illumination_from_file(const std::filesystem::path& file) {
     Illumination given;
     given.found_by = "file";
     for (const sensor::PointLight& light : sensor::read_lights(file)) {
         FoundLight known;
         known.position_m = glm::vec3(light.position_m);
         known.intensity = glm::vec3(light.intensity);
+        known.radius_m = static_cast<float>(light.radius_m);
         given.lights.push_back(known);
     }
     given.ambient = glm::vec3(sensor::read_ambient(file));
@@ -22,8 +23,8 @@ nlohmann::ordered_json to_json(glm::vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-Illumination lights_of(const RunOptions& options) {
-    if (!options.lights.empty()) return lights_from_file(options.lights);
+Illumination lights_of(const SequenceOptions& options) {
+    if (!options.lights.empty()) return illumination_from_file(options.lights);
     const bool by_default = options.lighting.empty();
     if (options.lighting == "none" || (by_default && !has_lighting_sequence(options.sequence))) return {};
     const bool self = options.lighting == "self";
