@@ -10,6 +10,7 @@
 #include "tools/export/report.h"
 #include "tools/export/run_record.h"
 #include "tools/frame_dumps.h"
+#include "tools/run_lights.h"
 #include "tools/run_settings.h"
 #include "tools/scene_files.h"
 #include "tools/version.h"
@@ -70,7 +71,7 @@ class Run {
         times_s_.emplace_back("surface", seconds_since(start));
         check_validation();
         fusion_.stop_if_interrupted();
-        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(),
+        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(), fusion_.illumination().ambient,
                                options_.truth_labels ? fusion_.truth().names() : std::vector<std::string>());
         const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
         folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));
@@ -118,7 +119,8 @@ class Run {
         record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
         record.seed = options_.seed;
         record.settings = settings_json(fusion_.settings());
-        record.settings["lights"] = fusion_.lights().size();
+        record.settings["lighting"] = options_.lighting;
+        record.lights = lights_json(fusion_.illumination());
         record.settings["truth_labels"] = options_.truth_labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;

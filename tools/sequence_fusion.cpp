@@ -8,9 +8,9 @@
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
 #include "sensor/synthetic/scene_file.h"
-#include "tools/lights.h"
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
+#include "tools/run_lights.h"
 
 namespace patina::tools {
 
@@ -38,27 +38,12 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& o
                                                      sensor::SyntheticOptions{.frames = frames});
 }
 
-/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
-std::vector<PointLight> lights_of(const SequenceOptions& options) {
-    if (!options.lights.empty()) return lights_from_file(options.lights);
-    std::vector<PointLight> lights;
-    if (options.lighting.empty()) return lights;
-    LightsOptions find;
-    find.sequence = options.lighting;
-    find.quiet = options.quiet;
-    find.device = options.device;
-    for (const FoundLight& light : find_lights(find))
-        lights.push_back({light.position_m, light.intensity, light.radius_m});
-    if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
-    return lights;
-}
-
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
 ReconstructionSettings settings_of(const SequenceOptions& options, const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
     if (lights.empty()) {
         const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
+        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
@@ -80,7 +65,8 @@ SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGu
     // A recording is opened before the device, so that a wrong path is told at once.
     const sensor::SyntheticSource* scene = nullptr;
     if (!is_synthetic(options)) source_ = open_recording(options);
-    lights_ = lights_of(options);
+    illumination_ = lights_of(options);
+    lights_ = point_lights(illumination_);
     device_.emplace(options.device);
     if (is_synthetic(options)) {
         auto rendered = open_synthetic(options, *device_);
@@ -95,7 +81,7 @@ SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGu
 }
 
 void SequenceFusion::prepare_reflectance(ReflectanceModel& reflectance) {
-    reflectance.set_lights(lights_);
+    reflectance.set_lights(lights_, illumination_.ambient);
     if (!options_.truth_materials) return;
     for (const sensor::Material& m : truth_->materials())
         reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));

@@ -15,6 +15,7 @@
 #include "sensor/synthetic/synthetic_source.h"
 #include "tools/export/trajectory.h"
 #include "tools/interrupt.h"
+#include "tools/lights.h"
 #include "tools/run_truth.h"
 
 namespace patina::tools {
@@ -26,7 +27,10 @@ struct SequenceOptions {
     uint32_t frames = 0;   ///< at most so many frames of the sequence; 0 takes all (120 of a synthetic scene)
     bool quiet = false;
     std::filesystem::path lights;  ///< lights.json: with it reflectance is estimated too
-    std::string lighting;          ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    /// Where else lights are found: a sequence as find_lights takes it, in whose low-exposure frames they are; "self":
+    /// in what they light in the main sequence; "none": no lights, and no reflectance. Empty: in the lighting sequence
+    /// that the main sequence has, if it has one.
+    std::string lighting;
     bool truth_labels = false;     ///< segments are the objects of the sequence's truth/labels
     bool truth_materials = false;  ///< ks and alpha are those of truth/materials.json, by label
     vulkan::DeviceOptions device;
@@ -55,6 +59,7 @@ class SequenceFusion {
     const sensor::SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
     const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
     const std::vector<PointLight>& lights() const { return lights_; }
+    const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
     const RunTruth& truth() const { return *truth_; }
     const sensor::Ledger& ledger() const { return ledger_; }
     const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
@@ -70,6 +75,7 @@ class SequenceFusion {
     std::unique_ptr<sensor::Source> source_;
     std::optional<RunTruth> truth_;
     sensor::SequenceInfo info_;
+    Illumination illumination_;
     std::vector<PointLight> lights_;
     std::optional<Reconstruction> reconstruction_;
     sensor::Ledger ledger_;

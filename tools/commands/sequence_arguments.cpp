@@ -33,7 +33,8 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command.add_option("--lights", options.lights,
                        "lights.json: estimate what surfaces reflect under these lights, not only where they are");
     command.add_option("--lighting", options.lighting,
-                       "Sequence of low exposure, or one that holds lighting/, in which the lights are found");
+                       "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
+                       "light; none: no reflectance; by default in the sequence's lighting/");
     add_truth_option(command, "--labels", options.truth_labels, "Segments: truth takes those of truth/labels");
     add_truth_option(command, "--materials", options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");

@@ -68,6 +68,7 @@ std::string run_json(const RunRecord& record) {
     run["driver"] = record.device.driver;
     run["seed"] = record.seed;
     run["settings"] = record.settings;
+    run["lights"] = record.lights;
     run["sequence"] = sequence_json(record.sequence);
     run["frames"] = frames_json(record.frames);
     run["voxel_pool"] = {{"blocks_used", record.voxel_pool.blocks_used},

@@ -66,6 +66,7 @@ struct RunRecord {
     DeviceRecord device;
     uint64_t seed = 0;
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();  ///< as given and defaulted, in reading order
+    nlohmann::ordered_json lights = nlohmann::ordered_json::object();    ///< which there are, and how they were found
     sensor::SequenceInfo sequence;
     FrameLedger frames;
     VoxelPoolRecord voxel_pool;
