@@ -1,6 +1,7 @@
 #include "passes/reconstruction.h"
 
 #include <cmath>
+#include <map>
 
 #include <glm/gtc/packing.hpp>
 
@@ -44,10 +45,30 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     return settings;
 }
 
+FrameSegments given_segments(graph::Frame& graph, const RgbdFrame& frame) {
+    const Extent2D extent = frame.depth.camera.extent;
+    std::vector<uint32_t> image(extent.area());
+    std::vector<gpu::FrameSegment> segments(gpu::kMaxFrameSegments + 1);
+    std::map<uint32_t, uint32_t> number;
+    for (const uint16_t id : frame.labels) number[id] = 0;
+    number.erase(0);
+    uint32_t n = 0;
+    for (auto& [id, s] : number) segments[s = ++n].key = id;
+    for (size_t i = 0; i < frame.labels.size(); ++i) {
+        image[i] = frame.labels[i] ? number[frame.labels[i]] : 0;
+        ++segments[image[i]].pixels;
+    }
+    const gpu::FrameSegmentCount count{n, 0, 0, 0};
+    return {graph.upload("segments", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(image))),
+            graph.upload<gpu::FrameSegment>("segment.table", std::span(segments)),
+            graph.upload<gpu::FrameSegmentCount>("segment.count", std::span(&count, 1))};
+}
+
 }  // namespace
 
 ModelView PendingView::get() const {
     ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
+    if (label_) view.label = label_->image<uint32_t>();
     if (reflectance_) {
         view.reflectance = {widened(reflectance_->kd),
                             widened(reflectance_->ks_alpha),
@@ -66,6 +87,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
+    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -91,15 +113,20 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
     add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
+    if (segmentation_) segmentation_->clear_new_blocks(graph, ids);
     const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
                   fusion.color ? std::optional(input.color) : std::nullopt);
-    if (reflectance_) observe(graph, ids, visible, input, slope, frame);
-    if (settings_.view_every_frame) {
+    if (segmentation_ || reflectance_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-        graph.keep(model.position_m);
-        graph.keep(model.normal);
+        ObservationInputs observed{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
+        if (segmentation_) observed.labels = segment(graph, ids, visible, model, input, frame);
+        if (reflectance_) observe(graph, ids, observed, frame);
+        if (settings_.view_every_frame) {
+            graph.keep(model.position_m);
+            graph.keep(model.normal);
+        }
     }
     if (settings_.remove_every > 0 && frames_ % settings_.remove_every == settings_.remove_every - 1) {
         add_remove_empty_blocks(graph, map_, ids, visible, params);
@@ -107,15 +134,17 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     return visible;
 }
 
-void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
-                             const InputImages& input, graph::ImageId slope, const RgbdFrame& frame) {
-    const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-    ObservationInputs inputs{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
-    if (!frame.labels.empty()) {
-        const std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
-        inputs.labels =
-            graph.upload("labels", {frame.depth.camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
-    }
+graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                                       const RaycastImages& model, const InputImages& input, const RgbdFrame& frame) {
+    const FrameSegments segments = given_segments(graph, frame);
+    return segmentation_->add(graph, ids, visible, {segments, model, input.color},
+                              make_camera(frame.color.camera,
+                                          frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
+                              frames_);
+}
+
+void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs,
+                             const RgbdFrame& frame) {
     reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
                       make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
                       frames_);
@@ -135,13 +164,16 @@ void Reconstruction::add(const RgbdFrame& frame) {
         const glm::dvec3 center_m(frame.world_from_depth[3]);
         map_.reset(graph, center_m);
         if (reflectance_) reflectance_->reset(graph, center_m);
+        if (segmentation_) segmentation_->reset(graph);
         runner_.submit(std::move(graph));
     }
     graph::Frame graph = runner_.begin();
     VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = fuse(graph, ids, frame);
     VoxelMap::keep(graph, ids);
-    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t))});
+    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}});
+    if (segmentation_)
+        pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
     runner_.submit(std::move(graph));
     ++frames_;
     take_counts();
@@ -158,6 +190,8 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
+    if (segmentation_)
+        pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model.position_m));
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
@@ -176,6 +210,8 @@ void Reconstruction::take_counts() {
     while (!pending_counts_.empty() && pending_counts_.front().counters.ready()) {
         counters_ = pending_counts_.front().counters.as<gpu::MapCounters>().front();
         visible_blocks_ = pending_counts_.front().visible_blocks.as<uint32_t>().front();
+        if (const auto& segments = pending_counts_.front().segments)
+            segment_counters_ = segments->as<gpu::SegmentCounters>().front();
         pending_counts_.pop_front();
     }
 }
@@ -183,6 +219,11 @@ void Reconstruction::take_counts() {
 const gpu::MapCounters& Reconstruction::counters() {
     take_counts();
     return counters_;
+}
+
+const gpu::SegmentCounters& Reconstruction::segment_counters() {
+    take_counts();
+    return segment_counters_;
 }
 
 uint32_t Reconstruction::visible_blocks() {

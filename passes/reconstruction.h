@@ -14,6 +14,7 @@
 #include "passes/input/input.h"
 #include "passes/model/voxel_map.h"
 #include "passes/reflectance_model.h"
+#include "passes/segmentation_model.h"
 #include "passes/surface/mesh.h"
 
 namespace patina {
@@ -27,6 +28,8 @@ struct ReconstructionSettings {
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
     /// Observations and albedo beside the geometry; empty: none. Needs lights (Reconstruction::reflectance).
     std::optional<ReflectanceModelSettings> reflectance{};
+    /// Segments of the map; empty: none.
+    std::optional<SegmentationSettings> segmentation{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -36,7 +39,8 @@ struct RgbdFrame {
     ColorInput color;
     RigidTransform color_from_depth{1.0};
     RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
-    /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known.
+    /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known. Used where the
+    /// settings say that segments are given.
     std::span<const uint16_t> labels{};
 };
 
@@ -45,6 +49,7 @@ struct ModelView {
     Image<glm::vec4> position_m;  ///< world; w: depth along the optical axis, 0 where nothing was hit
     Image<glm::vec4> normal;      ///< world, unit length; 0 where nothing was hit
     Image<glm::vec4> color;       ///< linear; a = 0 where there is none
+    Image<uint32_t> label{};      ///< segment of the map, 0: none; empty without segmentation
 
     /// What the model reflects, where it has reflectance (shading/predict_radiance.h).
     struct Reflectance {
@@ -70,6 +75,7 @@ class PendingView {
         graph::Readback kd, ks_alpha, label, rgb, segments;
     };
     graph::Readback position_m_, normal_, color_;
+    std::optional<graph::Readback> label_;
     std::optional<Reflectance> reflectance_;
 };
 
@@ -102,6 +108,9 @@ class Reconstruction {
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
+    /// The segments' counters as of at most two frames ago; exact after wait(). Zero without segmentation.
+    const gpu::SegmentCounters& segment_counters();
+
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
     /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
@@ -113,8 +122,9 @@ class Reconstruction {
 
   private:
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
-    void observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible, const InputImages& input,
-                 graph::ImageId slope, const RgbdFrame& frame);
+    graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                           const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
+    void observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs, const RgbdFrame& frame);
     void check(const RgbdFrame& frame) const;
     void take_counts();
 
@@ -123,13 +133,16 @@ class Reconstruction {
     VoxelMap map_;
     MapAccess access_;
     std::optional<ReflectanceModel> reflectance_;
+    std::optional<SegmentationModel> segmentation_;
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;
+        std::optional<graph::Readback> segments;
     };
     std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
     uint32_t visible_blocks_ = 0;
+    gpu::SegmentCounters segment_counters_{};
 };
 
 }  // namespace patina

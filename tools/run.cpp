@@ -79,11 +79,17 @@ std::vector<PointLight> lights_of(const RunOptions& options) {
 ReconstructionSettings settings_of(const RunOptions& options, const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
     if (lights.empty()) {
-        const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
+        const bool asked = options.truth_materials || settings.reflectance;
         if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
+    if (options.labels == "off") {
+        settings.segmentation.reset();
+    } else if (!settings.segmentation) {
+        settings.segmentation.emplace();
+    }
+    if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
     return settings;
 }
 
@@ -194,7 +200,7 @@ class Run {
         }
         RgbdFrame rgbd = to_rgbd(info_, frame);
         Image<uint16_t> labels;
-        if (options_.truth_labels) {
+        if (settings_.segmentation && settings_.segmentation->given) {
             labels = truth_.labels(frame.index, info_.depth.extent);
             rgbd.labels = labels.pixels();
         }
@@ -252,7 +258,7 @@ class Run {
         record.seed = options_.seed;
         record.settings = settings_json(settings_);
         record.settings["lights"] = lights_.size();
-        record.settings["truth_labels"] = options_.truth_labels;
+        record.settings["labels"] = options_.labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;

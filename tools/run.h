@@ -20,7 +20,7 @@ struct RunOptions {
     bool quiet = false;
     std::filesystem::path lights;      ///< lights.json: with it the run estimates reflectance too
     std::string lighting;              ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
-    bool truth_labels = false;         ///< segments are the objects of the sequence's truth/labels
+    std::string labels = "geometry";   ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
     bool truth_materials = false;      ///< ks and alpha are those of truth/materials.json, by label
     std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last fused frame; empty writes none
     vulkan::DeviceOptions device;

@@ -48,7 +48,11 @@ void add_run(CLI::App& app) {
                         "lights.json: estimate what surfaces reflect under these lights, not only where they are");
     command->add_option("--lighting", run_options.lighting,
                         "Sequence of low exposure, or one that holds lighting/, in which the lights are found");
-    add_truth_option(*command, "--labels", run_options.truth_labels, "Segments: truth takes those of truth/labels");
+    command
+        ->add_option("--labels", run_options.labels,
+                     "Segments: geometry finds them, truth takes those of truth/labels, off does without")
+        ->check(CLI::IsMember({"off", "geometry", "truth"}))
+        ->capture_default_str();
     add_truth_option(*command, "--materials", run_options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
     command->add_flag_callback(

@@ -1,0 +1,17 @@
+#include "passes/segmentation/clear_labels.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::BufferId add_clear_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+                                 graph::BufferId labels) {
+    auto pass = frame.compute("segmentation.clear_labels", spirv::clear_labels);
+    pass.read("NewSlots", ids.new_slots).read("Blocks", ids.blocks).read("Counters", ids.counters).push(map.grid());
+    pass.specialise("kVoxelChunks", map.chunks());
+    labels = pass.modify("Labels", labels);
+    pass.dispatch_indirect(ids.assign_arguments);
+    return labels;
+}
+
+}  // namespace patina

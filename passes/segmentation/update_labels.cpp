@@ -1,0 +1,23 @@
+#include "passes/segmentation/update_labels.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::BufferId add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+                                  graph::BufferId labels, SegmentTableIds& table, const VisibleBlocks& visible,
+                                  const RaycastImages& model, const SampledLabels& sampled,
+                                  const FrameSegments& segments, graph::BufferId segment_labels) {
+    frame.common_extent({model.position_m, model.normal, segments.segment});
+    auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
+    pass.read("Surface", sampled.blocks).read("BlockKeys", ids.block_keys).read("View", visible.view);
+    pass.read("position_m", model.position_m).read("normal", model.normal).read("segment", segments.segment);
+    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
+    pass.specialise("kVoxelChunks", map.chunks());
+    labels = pass.modify("Labels", labels);
+    table.counters = pass.modify("Counters", table.counters);
+    pass.dispatch_indirect(sampled.arguments);
+    return labels;
+}
+
+}  // namespace patina

@@ -1,0 +1,76 @@
+#include "passes/segmentation_model.h"
+
+#include "passes/segmentation/assign_labels.h"
+#include "passes/segmentation/clear_labels.h"
+#include "passes/segmentation/count_overlaps.h"
+#include "passes/segmentation/label_pixels.h"
+#include "passes/segmentation/sample_labels.h"
+#include "passes/segmentation/sweep_labels.h"
+#include "passes/segmentation/update_labels.h"
+
+namespace patina {
+
+SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
+                                     MapAccess access)
+    : map_(map),
+      settings_(settings),
+      access_(access),
+      labels_(device, map),
+      table_(device, settings.capacity_labels) {}
+
+gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camera, Extent2D extent,
+                                                  uint32_t frame_index) const {
+    gpu::SegmentationParams params{};
+    params.color_camera = color_camera;
+    params.extent = {extent.width, extent.height};
+    params.stamp = frame_index + 1;
+    params.capacity = settings_.capacity_labels;
+    params.overlap_slots = overlap_slots(extent);
+    params.given = settings_.given ? 1 : 0;
+    params.inherit_share = settings_.inherit_share;
+    params.inherit_pixels = settings_.inherit_pixels;
+    params.merge_share = settings_.merge_share;
+    params.merge_count = settings_.merge_frames;
+    params.merge_chroma = settings_.merge_chroma;
+    params.new_pixels = settings_.new_pixels;
+    params.prune_voxels = settings_.prune_voxels;
+    params.prune_frames = settings_.prune_frames;
+    return params;
+}
+
+void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const {
+    frame.keep(add_clear_labels(frame, map_, voxels, labels_.import(frame)));
+}
+
+graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                                      const SegmentationInputs& inputs, const gpu::Camera& color_camera,
+                                      uint32_t frame_index) const {
+    const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
+    const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
+    graph::BufferId labels = labels_.import(frame);
+    SegmentTableIds table = table_.import(frame);
+    const SampledLabels sampled =
+        add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model.position_m, access_);
+    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, inputs.segments, sampled.label,
+                                                        inputs.model.position_m, inputs.color_linear, uniforms);
+    const graph::BufferId assigned = add_assign_labels(frame, table, inputs.segments, overlaps, uniforms);
+    labels = add_update_labels(frame, map_, voxels, labels, table, visible, inputs.model, sampled, inputs.segments,
+                               assigned);
+    labels = add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
+    frame.keep(labels);
+    SegmentTable::keep(frame, table);
+    return add_label_pixels(frame, inputs.segments, sampled.label, table.parents, assigned);
+}
+
+graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,
+                                           graph::ImageId position_m) const {
+    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, position_m,
+                             access_)
+        .label;
+}
+
+std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {
+    return {{"voxel labels", labels_.bytes()}, {"segments", table_.bytes()}};
+}
+
+}  // namespace patina

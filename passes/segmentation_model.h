@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "passes/fusion/raycast.h"
+#include "passes/model/label_map.h"
+#include "passes/model/segment_table.h"
+#include "passes/segmentation/frame_segments.h"
+
+namespace patina {
+
+/// Sizes and thresholds of the segmentation of the map.
+struct SegmentationSettings {
+    bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
+    uint32_t capacity_labels = 4096;  ///< label 0 included
+    float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
+    uint32_t inherit_pixels = 15;     ///< and how many at least
+    uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
+    float merge_share = 0.2f;         ///< of a segment's pixels that its second label must cover to be the same object's
+    uint32_t merge_frames = 3;        ///< in which two labels were the same, less those in which they were not
+    float merge_chroma = 0.03f;       ///< labels whose mean chromaticities differ by more are not merged
+    uint32_t prune_voxels = 10;       ///< labels with fewer voxels are given up
+    uint32_t prune_frames = 30;       ///< when they were not seen for so many frames
+};
+
+/// What one frame brings to the segmentation; images of the depth camera but for the colour.
+struct SegmentationInputs {
+    FrameSegments segments;
+    RaycastImages model;          ///< the map's surface after the frame was fused
+    graph::ImageId color_linear;  ///< rgba16f, of the colour camera
+};
+
+/// The map's segments: a label per voxel, carried over from the segments of frames so that an object keeps its label.
+/// Lives as long as the map.
+class SegmentationModel {
+  public:
+    /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the model.
+    SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
+                      MapAccess access);
+
+    /// Forgets everything; the first thing done with it.
+    void reset(graph::Frame& frame) const { table_.reset(frame); }
+
+    /// To be called after a frame's blocks were allocated.
+    void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;
+
+    /// Carries a frame's segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where none is known.
+    graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                       const SegmentationInputs& inputs, const gpu::Camera& color_camera, uint32_t frame_index) const;
+
+    /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
+    graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, graph::ImageId position_m) const;
+
+    std::vector<VoxelMap::PoolBytes> memory() const;
+    const SegmentationSettings& settings() const { return settings_; }
+    const SegmentTable& table() const { return table_; }
+    const LabelMap& labels() const { return labels_; }
+
+  private:
+    gpu::SegmentationParams params(const gpu::Camera& color_camera, Extent2D extent, uint32_t frame_index) const;
+
+    const VoxelMap& map_;
+    SegmentationSettings settings_;
+    MapAccess access_;
+    LabelMap labels_;
+    SegmentTable table_;
+};
+
+}  // namespace patina

@@ -1,0 +1,11 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Sampling of labels with the map in storage buffers, as every device can bind them.
+#include "shared/voxel_map.h"
+layout(std430, binding = 4) readonly buffer ViewGrid { uint view_grid[]; };
+layout(std430, binding = 5) readonly buffer Labels { uint words[]; }
+labels[kMaxVoxelChunks];
+#define CELL(i) view_grid[i]
+#define LABEL(C, i) labels[C].words[i]
+#include "segmentation/sample_labels_main.glsl"

@@ -1,0 +1,10 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Sampling of labels with the map in texel buffers, which software devices gather faster than storage buffers.
+#include "shared/voxel_map.h"
+layout(binding = 4, r32ui) uniform readonly uimageBuffer ViewGrid;
+layout(binding = 5, r32ui) uniform readonly uimageBuffer Labels[kMaxVoxelChunks];
+#define CELL(i) imageLoad(ViewGrid, int(i)).x
+#define LABEL(C, i) imageLoad(Labels[C], int(i)).x
+#include "segmentation/sample_labels_main.glsl"
