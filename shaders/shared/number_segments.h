@@ -1,0 +1,25 @@
+// From components, known by sparse keys, to segments numbered 1, 2, ... in the order of the keys.
+#ifndef PATINA_SHARED_NUMBER_SEGMENTS_H
+#define PATINA_SHARED_NUMBER_SEGMENTS_H
+#include "shared/frame_segments.h"
+INTEROP_BEGIN
+
+INTEROP_CONST uint kNumberGroup = 128u;
+INTEROP_CONST uint kNumberQuads = 8u;  // of four keys, one invocation after another
+INTEROP_CONST uint kKeysPerGroup = kNumberGroup * kNumberQuads * 4u;
+
+// How many components there are.
+struct KeyTotals {
+    uint kept;       // with enough pixels
+    uint too_small;  // with fewer
+};
+
+struct NumberSegmentsParams {
+    uint min_pixels;  // 1 or more
+    uint capacity;    // at most kMaxFrameSegments
+    uint groups;
+    uint pad0;
+};
+
+INTEROP_END
+#endif

@@ -1,0 +1,189 @@
+// patina_segment_bench: how long it takes to divide a frame into segments, and pictures of them. See docs/benchmarks.md.
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "engine/core/shader_camera.h"
+#include "passes/segmentation/segment_frame.h"
+#include "sensor/picture_file.h"
+#include "tools/bench/distribution.h"
+#include "tools/bench/recording.h"
+#include "tools/commands/commands.h"
+#include "tools/rgbd_frame.h"
+
+namespace patina::bench {
+
+namespace {
+
+struct Options {
+    tools::DeviceArguments device;
+    std::string sequence = "synthetic:office";
+    std::string extent = "512x424";
+    std::string pictures;
+    uint32_t model_frames = 8;
+    uint32_t frames = 20;
+    uint32_t warmup = 4;
+};
+
+/// Processor time of this process, all threads together.
+double processor_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+/// One colour per segment, black for none: hues a golden angle apart.
+Image<sensor::SrgbPixel> in_colors(const Image<uint32_t>& segment) {
+    Image<sensor::SrgbPixel> picture(segment.extent());
+    for (size_t i = 0; i < segment.pixels().size(); ++i) {
+        const uint32_t number = segment.pixels()[i];
+        const uint32_t mixed = number * 2654435761u;
+        if (number > 0) picture.pixels()[i] = {64 + (mixed >> 24) % 192, 64 + (mixed >> 16) % 192, 64 + (mixed >> 8) % 192};
+    }
+    return picture;
+}
+
+/// A model that grows frame by frame, and the segments of the last frame.
+class Bench {
+  public:
+    explicit Bench(vulkan::Device& device) : device_(device), reconstruction_(device, {}) {}
+
+    void add(const RgbdFrame& rgbd) {
+        last_ = rgbd;
+        reconstruction_.add(last_);
+    }
+
+    /// The last frame's segments.
+    Image<uint32_t> segments() {
+        graph::Frame frame = runner().begin();
+        const graph::Readback read = frame.read_back(add_segment_frame(frame, add_surface(frame), camera()).segment);
+        runner().submit(std::move(frame));
+        runner().wait();
+        return read.image<uint32_t>();
+    }
+
+    /// Processor time of each of `frames` times that the last frame's surface is cast, with or without its segments.
+    std::vector<float> measure(uint32_t frames, bool segment) {
+        std::vector<float> samples;
+        for (uint32_t i = 0; i < frames; ++i) {
+            runner().wait();
+            const double start = processor_ms();
+            graph::Frame frame = runner().begin();
+            const SurfaceInputs inputs = cast(frame);
+            for (const auto id : {inputs.model_position_m, inputs.model_normal, inputs.depth_m, inputs.normal})
+                frame.keep(id);
+            if (segment) {
+                const FrameSegments out =
+                    add_segment_frame(frame, add_choose_surface(frame, inputs, camera()), camera());
+                frame.keep(out.segment);
+                frame.keep(out.segments);
+                frame.keep(out.count);
+            }
+            runner().submit(std::move(frame));
+            runner().wait();
+            samples.push_back(static_cast<float>(processor_ms() - start));
+        }
+        return samples;
+    }
+
+    graph::Runner& runner() { return reconstruction_.runner(); }
+
+  private:
+    gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
+
+    SurfaceInputs cast(graph::Frame& frame) {
+        const VoxelMap& map = reconstruction_.map();
+        const VoxelMapIds voxels = map.import(frame);
+        const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
+        const VisibleBlocks visible = add_visible_blocks(frame, map, voxels, camera(), 0.1f, far_m);
+        const RaycastImages model =
+            add_raycast(frame, map, voxels, visible, preferred_map_access(device_.caps(), map));
+        const InputImages input = add_input(frame, last_.depth, last_.color, camera());
+        return {model.position_m, model.normal, input.filtered_depth_m, input.surface.normal};
+    }
+
+    graph::ImageId add_surface(graph::Frame& frame) { return add_choose_surface(frame, cast(frame), camera()); }
+
+    vulkan::Device& device_;
+    Reconstruction reconstruction_;
+    RgbdFrame last_;
+};
+
+void print(const std::string& name, const Distribution& d) {
+    fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
+}
+
+Extent2D parse_extent(const std::string& text) {
+    Extent2D extent;
+    if (std::sscanf(text.c_str(), "%ux%u", &extent.width, &extent.height) != 2) {
+        throw Error("--extent takes WIDTHxHEIGHT, such as 512x424, not '", text, "'");
+    }
+    return extent;
+}
+
+void run(const Options& options) {
+    const vulkan::DeviceOptions device_options = options.device.options();
+    const Recording recording =
+        load({options.sequence, {}, parse_extent(options.extent), options.model_frames}, device_options);
+    vulkan::Device device(device_options);
+    Bench bench(device);
+    if (!options.pictures.empty()) std::filesystem::create_directories(options.pictures);
+    for (const sensor::Frame& frame : recording.frames) {
+        bench.add(tools::to_rgbd(recording.info, frame));
+        if (options.pictures.empty()) continue;
+        const auto file = std::filesystem::path(options.pictures) / (sensor::picture_stem(frame.index) + ".png");
+        sensor::write_png(file, in_colors(bench.segments()));
+    }
+    bench.measure(options.warmup, true);
+    bench.measure(1, false);
+    bench.runner().clear_timings();
+    const Distribution with = distribution(bench.measure(options.frames, true));
+    const auto timings = bench.runner().pass_timings();
+    const Distribution without = distribution(bench.measure(options.frames, false));
+    fmt::print("{}, {}\n{} at {}, {} frames\n\n", device.caps().name, device.caps().driver, options.sequence,
+               options.extent, options.frames);
+    fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
+    for (const graph::Timing& timing : timings) {
+        if (timing.name.find("segmentation.") != std::string::npos) print(timing.name, distribution(timing.samples_ms));
+    }
+    print("processor time of a frame", with);
+    print("the same without segments", without);
+    fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", "segmentation",
+               (with.median - without.median) / 2);
+}
+
+}  // namespace
+
+}  // namespace patina::bench
+
+int main(int argc, char** argv) {
+    using namespace patina;
+    CLI::App app("Measures how long it takes to divide a frame into segments", "patina_segment_bench");
+    bench::Options options;
+    app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
+    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--pictures", options.pictures, "Folder for a picture of each frame's segments");
+    app.add_option("--model-frames", options.model_frames, "How many frames to fuse")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    app.add_option("--frames", options.frames, "How many times to segment the last one")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    app.add_option("--warmup", options.warmup, "How many times before")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    options.device.add_to(app);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        bench::run(options);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "patina_segment_bench: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
