@@ -1,7 +1,6 @@
 #include "passes/reconstruction.h"
 
 #include <cmath>
-#include <map>
 
 #include <glm/gtc/packing.hpp>
 
@@ -43,25 +42,6 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
     check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
     return settings;
-}
-
-FrameSegments given_segments(graph::Frame& graph, const RgbdFrame& frame) {
-    const Extent2D extent = frame.depth.camera.extent;
-    std::vector<uint32_t> image(extent.area());
-    std::vector<gpu::FrameSegment> segments(gpu::kMaxFrameSegments + 1);
-    std::map<uint32_t, uint32_t> number;
-    for (const uint16_t id : frame.labels) number[id] = 0;
-    number.erase(0);
-    uint32_t n = 0;
-    for (auto& [id, s] : number) segments[s = ++n].key = id;
-    for (size_t i = 0; i < frame.labels.size(); ++i) {
-        image[i] = frame.labels[i] ? number[frame.labels[i]] : 0;
-        ++segments[image[i]].pixels;
-    }
-    const gpu::FrameSegmentCount count{n, 0, 0, 0};
-    return {graph.upload("segments", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(image))),
-            graph.upload<gpu::FrameSegment>("segment.table", std::span(segments)),
-            graph.upload<gpu::FrameSegmentCount>("segment.count", std::span(&count, 1))};
 }
 
 }  // namespace
@@ -136,11 +116,16 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
 
 graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                                        const RaycastImages& model, const InputImages& input, const RgbdFrame& frame) {
-    const FrameSegments segments = given_segments(graph, frame);
-    return segmentation_->add(graph, ids, visible, {segments, model, input.color},
-                              make_camera(frame.color.camera,
-                                          frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
-                              frames_);
+    SegmentationInputs inputs{model, input.filtered_depth_m, input.color, {}};
+    if (settings_.segmentation->given) {
+        const Extent2D extent = frame.depth.camera.extent;
+        std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
+        words.resize(extent.area());
+        inputs.given = graph.upload("labels", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
+    }
+    return segmentation_->add(
+        graph, ids, visible, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)), frames_);
 }
 
 void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs,

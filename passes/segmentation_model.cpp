@@ -1,5 +1,6 @@
 #include "passes/segmentation_model.h"
 
+#include "passes/input/unproject_depth.h"
 #include "passes/segmentation/assign_labels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
@@ -42,24 +43,34 @@ void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds&
     frame.keep(add_clear_labels(frame, map_, voxels, labels_.import(frame)));
 }
 
+FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
+                                          const gpu::Camera& depth_camera) const {
+    const SegmentSettings& settings = settings_.frame;
+    const SurfaceInputs surfaces{inputs.model.position_m, inputs.model.normal, inputs.depth_m,
+                                 add_unproject_depth(frame, inputs.depth_m, depth_camera).normal};
+    const graph::ImageId surface = add_choose_surface(frame, surfaces, depth_camera, settings.edges);
+    if (inputs.given) return add_given_segments(frame, *inputs.given, surface, depth_camera, settings.capacity);
+    return add_segment_frame(frame, surface, depth_camera, settings);
+}
+
 graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                                      const SegmentationInputs& inputs, const gpu::Camera& color_camera,
-                                      uint32_t frame_index) const {
+                                      const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
+                                      const gpu::Camera& color_camera, uint32_t frame_index) const {
+    const FrameSegments seen = segments(frame, inputs, depth_camera);
     const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
     graph::BufferId labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
     const SampledLabels sampled =
         add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model.position_m, access_);
-    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, inputs.segments, sampled.label,
-                                                        inputs.model.position_m, inputs.color_linear, uniforms);
-    const graph::BufferId assigned = add_assign_labels(frame, table, inputs.segments, overlaps, uniforms);
-    labels = add_update_labels(frame, map_, voxels, labels, table, visible, inputs.model, sampled, inputs.segments,
-                               assigned);
+    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, seen, sampled.label, inputs.model.position_m,
+                                                        inputs.color_linear, uniforms);
+    const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
+    labels = add_update_labels(frame, map_, voxels, labels, table, visible, inputs.model, sampled, seen, assigned);
     labels = add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     frame.keep(labels);
     SegmentTable::keep(frame, table);
-    return add_label_pixels(frame, inputs.segments, sampled.label, table.parents, assigned);
+    return add_label_pixels(frame, seen, sampled.label, table.parents, assigned);
 }
 
 graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,

@@ -1,18 +1,19 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "passes/fusion/raycast.h"
 #include "passes/model/label_map.h"
 #include "passes/model/segment_table.h"
-#include "passes/segmentation/frame_segments.h"
+#include "passes/segmentation/segment_frame.h"
 
 namespace patina {
 
 /// Sizes and thresholds of the segmentation of the map.
 struct SegmentationSettings {
+    SegmentSettings frame;            ///< how a frame is divided
     bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
     uint32_t capacity_labels = 4096;  ///< label 0 included
     float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
@@ -27,9 +28,10 @@ struct SegmentationSettings {
 
 /// What one frame brings to the segmentation; images of the depth camera but for the colour.
 struct SegmentationInputs {
-    FrameSegments segments;
-    RaycastImages model;          ///< the map's surface after the frame was fused
-    graph::ImageId color_linear;  ///< rgba16f, of the colour camera
+    RaycastImages model;                   ///< the map's surface after the frame was fused
+    graph::ImageId depth_m;                ///< W x H r32f: smoothed readings
+    graph::ImageId color_linear;           ///< rgba16f, of the colour camera
+    std::optional<graph::ImageId> given{}; ///< W x H r32ui: ids that take the place of the frame's own segments
 };
 
 /// The map's segments: a label per voxel, carried over from the segments of frames so that an object keeps its label.
@@ -46,9 +48,10 @@ class SegmentationModel {
     /// To be called after a frame's blocks were allocated.
     void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;
 
-    /// Carries a frame's segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where none is known.
+    /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where none is known.
     graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                       const SegmentationInputs& inputs, const gpu::Camera& color_camera, uint32_t frame_index) const;
+                       const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
+                       const gpu::Camera& color_camera, uint32_t frame_index) const;
 
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, graph::ImageId position_m) const;
@@ -59,6 +62,8 @@ class SegmentationModel {
     const LabelMap& labels() const { return labels_; }
 
   private:
+    FrameSegments segments(graph::Frame& frame, const SegmentationInputs& inputs,
+                           const gpu::Camera& depth_camera) const;
     gpu::SegmentationParams params(const gpu::Camera& color_camera, Extent2D extent, uint32_t frame_index) const;
 
     const VoxelMap& map_;
