@@ -67,7 +67,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
-    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
+    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -176,7 +176,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
     if (segmentation_)
-        pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model.position_m));
+        pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model));
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),

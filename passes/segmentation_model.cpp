@@ -2,20 +2,18 @@
 
 #include "passes/input/unproject_depth.h"
 #include "passes/segmentation/assign_labels.h"
+#include "passes/segmentation/claim_voxels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
-#include "passes/segmentation/label_pixels.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
 
 namespace patina {
 
-SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
-                                     MapAccess access)
+SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings)
     : map_(map),
       settings_(settings),
-      access_(access),
       labels_(device, map),
       table_(device, settings.capacity_labels) {}
 
@@ -40,7 +38,7 @@ gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camer
 }
 
 void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const {
-    frame.keep(add_clear_labels(frame, map_, voxels, labels_.import(frame)));
+    add_clear_labels(frame, map_, voxels, labels_.import(frame));
 }
 
 FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
@@ -59,25 +57,21 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     const FrameSegments seen = segments(frame, inputs, depth_camera);
     const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
-    graph::BufferId labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const SampledLabels sampled =
-        add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model.position_m, access_);
-    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, seen, sampled.label, inputs.model.position_m,
+    const ClaimedVoxels claimed =
+        add_claim_voxels(frame, map_, labels_.import(frame), table.parents, visible, inputs.model);
+    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, seen, claimed.label, inputs.model.position_m,
                                                         inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    labels = add_update_labels(frame, map_, voxels, labels, table, visible, inputs.model, sampled, seen, assigned);
-    labels = add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
-    frame.keep(labels);
+    const UpdatedLabels updated = add_update_labels(frame, map_, claimed, table, seen, assigned);
+    frame.keep(add_sweep_labels(frame, map_, voxels, updated.words, table, uniforms));
     SegmentTable::keep(frame, table);
-    return add_label_pixels(frame, seen, sampled.label, table.parents, assigned);
+    return updated.label;
 }
 
 graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,
-                                           graph::ImageId position_m) const {
-    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, position_m,
-                             access_)
-        .label;
+                                           const RaycastImages& model) const {
+    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, model);
 }
 
 std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {

@@ -39,13 +39,12 @@ struct SegmentationInputs {
 class SegmentationModel {
   public:
     /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the model.
-    SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
-                      MapAccess access);
+    SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings);
 
     /// Forgets everything; the first thing done with it.
     void reset(graph::Frame& frame) const { table_.reset(frame); }
 
-    /// To be called after a frame's blocks were allocated.
+    /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;
 
     /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where none is known.
@@ -54,7 +53,7 @@ class SegmentationModel {
                        const gpu::Camera& color_camera, uint32_t frame_index) const;
 
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
-    graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, graph::ImageId position_m) const;
+    graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, const RaycastImages& model) const;
 
     std::vector<VoxelMap::PoolBytes> memory() const;
     const SegmentationSettings& settings() const { return settings_; }
@@ -68,7 +67,6 @@ class SegmentationModel {
 
     const VoxelMap& map_;
     SegmentationSettings settings_;
-    MapAccess access_;
     LabelMap labels_;
     SegmentTable table_;
 };

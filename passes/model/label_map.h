@@ -7,7 +7,7 @@
 namespace patina {
 
 /// A label per voxel of a voxel map, beside it: block ids and chunks are the map's. A voxel holds label 16 bits |
-/// confidence 8 bits, 0 where none is known. Blocks are cleared when the map assigns them
+/// confidence 6 bits, 0 where none is known. Blocks are cleared when the map assigns them
 /// (segmentation/clear_labels.h), so that nothing has to be done when they are removed.
 class LabelMap {
   public:

@@ -10,8 +10,10 @@ graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, c
     auto pass = frame.compute("segmentation.assign_labels", spirv::assign_labels);
     pass.read("Segments", segments.segments).read("SegmentCount", segments.count).read("Segmentation", params);
     pass.read("Overlaps", overlaps.table).read("OverlapList", overlaps.list);
-    pass.create("Votes", kEntries * sizeof(gpu::SegmentVote));
-    const graph::BufferId assigned = pass.create("SegmentLabels", kEntries * sizeof(uint32_t));
+    const auto zeros = [&](const char* name, uint64_t bytes) { return frame.fill(frame.create_buffer(name, bytes), 0); };
+    pass.modify("Votes", zeros("segmentation.votes", kEntries * sizeof(gpu::SegmentVote)));
+    const graph::BufferId assigned =
+        pass.modify("SegmentLabels", zeros("segmentation.segment_labels", kEntries * sizeof(uint32_t)));
     table.parents = pass.modify("Parents", table.parents);
     table.labels = pass.modify("Labels", table.labels);
     table.pairs = pass.modify("Pairs", table.pairs);

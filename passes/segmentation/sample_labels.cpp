@@ -4,26 +4,16 @@
 
 namespace patina {
 
-SampledLabels add_sample_labels(graph::Frame& frame, const VoxelMap& map, graph::BufferId labels,
-                                graph::BufferId parents, const VisibleBlocks& visible, graph::ImageId position_m,
-                                MapAccess access) {
-    const Extent2D extent = frame.shape(position_m).extent;
-    const uint64_t blocks = map.settings().capacity_blocks;
-    const auto marks = frame.fill(frame.create_buffer("segmentation.marks", blocks * sizeof(uint32_t)), 0);
-    SampledLabels out;
-    out.blocks = frame.fill(frame.create_buffer("segmentation.blocks", (1 + blocks) * sizeof(uint32_t)), 0, 4);
-    out.arguments = frame.fill(frame.create_buffer("segmentation.blocks_arguments", 16), 1);
-
-    const bool texel = access == MapAccess::kTexel;
-    auto pass = frame.compute("segmentation.sample_labels", texel ? spirv::sample_labels_texel : spirv::sample_labels);
-    pass.read("position_m", position_m).read("View", visible.view).read("ViewGrid", visible.grid);
-    pass.read("Labels", labels).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
-    out.label = pass.create("map_label", {extent, vulkan::Format::kR32u});
-    pass.modify("Marks", marks);
-    out.blocks = pass.modify("Surface", out.blocks);
-    out.arguments = pass.modify("Arguments", out.arguments);
+graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, graph::BufferId labels,
+                                 graph::BufferId parents, const VisibleBlocks& visible, const RaycastImages& model) {
+    const Extent2D extent = frame.common_extent({model.position_m, model.normal});
+    auto pass = frame.compute("segmentation.sample_labels", spirv::sample_labels);
+    pass.read("position_m", model.position_m).read("normal", model.normal);
+    pass.read("View", visible.view).read("ViewGrid", visible.grid);
+    pass.read("Words", labels).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
+    const graph::ImageId label = pass.create("map_label", {extent, vulkan::Format::kR32u});
     pass.dispatch_covering(extent);
-    return out;
+    return label;
 }
 
 }  // namespace patina

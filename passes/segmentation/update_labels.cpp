@@ -4,20 +4,19 @@
 
 namespace patina {
 
-graph::BufferId add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
-                                  graph::BufferId labels, SegmentTableIds& table, const VisibleBlocks& visible,
-                                  const RaycastImages& model, const SampledLabels& sampled,
-                                  const FrameSegments& segments, graph::BufferId segment_labels) {
-    frame.common_extent({model.position_m, model.normal, segments.segment});
+UpdatedLabels add_update_labels(graph::Frame& frame, const VoxelMap& map, const ClaimedVoxels& claimed,
+                                SegmentTableIds& table, const FrameSegments& segments, graph::BufferId segment_labels) {
+    const Extent2D extent = frame.common_extent({segments.segment, claimed.label, claimed.voxel});
     auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
-    pass.read("Surface", sampled.blocks).read("BlockKeys", ids.block_keys).read("View", visible.view);
-    pass.read("position_m", model.position_m).read("normal", model.normal).read("segment", segments.segment);
-    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
-    pass.specialise("kVoxelChunks", map.chunks());
-    labels = pass.modify("Labels", labels);
+    pass.read("segment", segments.segment).read("map_label", claimed.label).read("voxel", claimed.voxel);
+    pass.read("Parents", table.parents).read("SegmentLabels", segment_labels);
+    pass.specialise("kVoxelChunks", map.chunks()).push(gpu::UpdateLabelsParams{map.grid().chunk_shift, 0, 0, 0});
+    UpdatedLabels out;
+    out.label = pass.create("label", {extent, vulkan::Format::kR32u});
+    out.words = pass.modify("Words", claimed.words);
     table.counters = pass.modify("Counters", table.counters);
-    pass.dispatch_indirect(sampled.arguments);
-    return labels;
+    pass.dispatch_covering(extent);
+    return out;
 }
 
 }  // namespace patina

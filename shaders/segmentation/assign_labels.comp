@@ -14,7 +14,7 @@ layout(std140, binding = 2) uniform Segmentation { SegmentationParams frame; };
 layout(std430, binding = 3) readonly buffer Overlaps { SegmentOverlap overlaps[]; };
 layout(std430, binding = 4) readonly buffer OverlapList { uint overlap_list[]; };
 layout(std430, binding = 5) coherent buffer Votes { SegmentVote votes[]; };
-layout(std430, binding = 6) coherent buffer SegmentLabels { uint segment_labels[]; };
+layout(std430, binding = 6) coherent buffer SegmentLabels { uint segment_labels[]; };  // zero at first
 layout(std430, binding = 7) coherent buffer Parents { uint parents[]; };
 layout(std430, binding = 8) coherent buffer Labels { SegmentLabel labels[]; };
 layout(std430, binding = 9) coherent buffer Pairs { SegmentPair pairs[]; };
@@ -278,10 +278,7 @@ void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint count = segment_count.segments;
     const bool overflow = overlap_list[0] >= frame.overlap_slots / 4u * 3u;
-    for (uint s = lane; s <= count; s += kGroup) {
-        votes[s] = SegmentVote(kNone, 0u, kNone, 0u);
-        segment_labels[s] = kNoLabel;
-    }
+    for (uint s = lane; s <= count; s += kGroup) votes[s] = SegmentVote(kNone, 0u, kNone, 0u);
     if (lane == 0u) {
         merged = 0u;
         counters.frame_merged = 0u;
