@@ -67,7 +67,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
-    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation);
+    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {

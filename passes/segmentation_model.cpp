@@ -2,18 +2,21 @@
 
 #include "passes/input/unproject_depth.h"
 #include "passes/segmentation/assign_labels.h"
-#include "passes/segmentation/claim_voxels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
+#include "passes/segmentation/label_pixels.h"
+#include "passes/segmentation/list_surface.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
 
 namespace patina {
 
-SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings)
+SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
+                                     MapAccess access)
     : map_(map),
       settings_(settings),
+      access_(access),
       labels_(device, map),
       table_(device, settings.capacity_labels) {}
 
@@ -38,7 +41,8 @@ gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camer
 }
 
 void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const {
-    add_clear_labels(frame, map_, voxels, labels_.import(frame));
+    LabelMapIds labels = labels_.import(frame);
+    add_clear_labels(frame, map_, voxels, labels);
 }
 
 FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
@@ -57,21 +61,25 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     const FrameSegments seen = segments(frame, inputs, depth_camera);
     const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
+    LabelMapIds labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const ClaimedVoxels claimed =
-        add_claim_voxels(frame, map_, labels_.import(frame), table.parents, visible, inputs.model);
-    const SegmentOverlaps overlaps = add_count_overlaps(frame, table, seen, claimed.label, inputs.model.position_m,
-                                                        inputs.color_linear, uniforms);
+    const graph::ImageId known =
+        add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model, access_);
+    const SegmentOverlaps overlaps =
+        add_count_overlaps(frame, table, seen, known, inputs.model.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    const UpdatedLabels updated = add_update_labels(frame, map_, claimed, table, seen, assigned);
-    frame.keep(add_sweep_labels(frame, map_, voxels, updated.words, table, uniforms));
+    const SurfaceBlocks blocks =
+        add_list_surface(frame, map_, labels, visible, inputs.model.position_m, values.stamp);
+    add_update_labels(frame, map_, voxels, labels, table, visible, blocks, inputs.model, seen, assigned);
+    add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
+    LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);
-    return updated.label;
+    return add_label_pixels(frame, seen, known, table.parents, assigned);
 }
 
 graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,
                                            const RaycastImages& model) const {
-    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, model);
+    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, model, access_);
 }
 
 std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {

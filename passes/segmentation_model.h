@@ -39,7 +39,8 @@ struct SegmentationInputs {
 class SegmentationModel {
   public:
     /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the model.
-    SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings);
+    SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
+                      MapAccess access);
 
     /// Forgets everything; the first thing done with it.
     void reset(graph::Frame& frame) const { table_.reset(frame); }
@@ -67,6 +68,7 @@ class SegmentationModel {
 
     const VoxelMap& map_;
     SegmentationSettings settings_;
+    MapAccess access_;
     LabelMap labels_;
     SegmentTable table_;
 };

@@ -4,13 +4,15 @@
 
 namespace patina {
 
-graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, graph::BufferId labels,
-                                 graph::BufferId parents, const VisibleBlocks& visible, const RaycastImages& model) {
+graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
+                                 graph::BufferId parents, const VisibleBlocks& visible, const RaycastImages& model,
+                                 MapAccess access) {
     const Extent2D extent = frame.common_extent({model.position_m, model.normal});
-    auto pass = frame.compute("segmentation.sample_labels", spirv::sample_labels);
+    const bool texel = access == MapAccess::kTexel;
+    auto pass = frame.compute("segmentation.sample_labels", texel ? spirv::sample_labels_texel : spirv::sample_labels);
     pass.read("position_m", model.position_m).read("normal", model.normal);
     pass.read("View", visible.view).read("ViewGrid", visible.grid);
-    pass.read("Words", labels).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
+    pass.read("Words", labels.words).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
     const graph::ImageId label = pass.create("map_label", {extent, vulkan::Format::kR32u});
     pass.dispatch_covering(extent);
     return label;

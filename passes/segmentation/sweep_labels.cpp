@@ -4,16 +4,15 @@
 
 namespace patina {
 
-graph::BufferId add_sweep_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
-                                 graph::BufferId labels, SegmentTableIds& table, graph::BufferId params) {
+void add_sweep_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+                      SegmentTableIds& table, graph::BufferId params) {
     auto pass = frame.compute("segmentation.sweep_labels", spirv::sweep_labels);
     pass.read("BlockKeys", ids.block_keys).read("Counters", ids.counters).read("Segmentation", params);
     pass.read("Parents", table.parents).push(map.grid());
     pass.specialise("kVoxelChunks", map.chunks());
-    labels = pass.modify("Words", labels);
+    labels.words = pass.modify("Words", labels.words);
     table.labels = pass.modify("Labels", table.labels);
     pass.dispatch_indirect(ids.block_arguments);
-    return labels;
 }
 
 }  // namespace patina

@@ -4,19 +4,18 @@
 
 namespace patina {
 
-UpdatedLabels add_update_labels(graph::Frame& frame, const VoxelMap& map, const ClaimedVoxels& claimed,
-                                SegmentTableIds& table, const FrameSegments& segments, graph::BufferId segment_labels) {
-    const Extent2D extent = frame.common_extent({segments.segment, claimed.label, claimed.voxel});
+void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+                       SegmentTableIds& table, const VisibleBlocks& visible, const SurfaceBlocks& blocks,
+                       const RaycastImages& model, const FrameSegments& segments, graph::BufferId segment_labels) {
+    frame.common_extent({model.position_m, model.normal, segments.segment});
     auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
-    pass.read("segment", segments.segment).read("map_label", claimed.label).read("voxel", claimed.voxel);
-    pass.read("Parents", table.parents).read("SegmentLabels", segment_labels);
-    pass.specialise("kVoxelChunks", map.chunks()).push(gpu::UpdateLabelsParams{map.grid().chunk_shift, 0, 0, 0});
-    UpdatedLabels out;
-    out.label = pass.create("label", {extent, vulkan::Format::kR32u});
-    out.words = pass.modify("Words", claimed.words);
+    pass.read("Surface", blocks.list).read("BlockKeys", ids.block_keys).read("View", visible.view);
+    pass.read("position_m", model.position_m).read("normal", model.normal).read("segment", segments.segment);
+    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
+    pass.specialise("kVoxelChunks", map.chunks());
+    labels.words = pass.modify("Words", labels.words);
     table.counters = pass.modify("Counters", table.counters);
-    pass.dispatch_covering(extent);
-    return out;
+    pass.dispatch_indirect(blocks.arguments);
 }
 
 }  // namespace patina

@@ -9,8 +9,9 @@ layout(local_size_x = kAssignGroup) in;
 layout(std430, binding = 0) readonly buffer NewSlots { uint new_slots[]; };
 layout(std430, binding = 1) readonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 2) readonly buffer Counters { MapCounters counters; };
-layout(std430, binding = 3) buffer Labels { uvec4 quads[]; }
-labels[kMaxVoxelChunks];
+layout(std430, binding = 3) writeonly buffer Words { uvec4 quads[]; }
+words[kMaxVoxelChunks];
+layout(std430, binding = 8) writeonly buffer Stamps { uint stamps[]; };
 layout(push_constant) uniform Push { VoxelGrid grid; };
 
 void main() {
@@ -18,9 +19,10 @@ void main() {
     if (item >= counters.assign_keys) return;
     const uint block = blocks[new_slots[item]];
     if (block == kNoBlock) return;
+    if (gl_LocalInvocationIndex == 0u) stamps[block] = 0u;
     const uint first = index_in_chunk(grid.chunk_shift, block) * (kBlockVoxels / 4u);
 #define CLEAR(C)                                                                     \
     for (uint i = gl_LocalInvocationIndex; i < kBlockVoxels / 4u; i += kAssignGroup) \
-        labels[C].quads[first + i] = uvec4(0u);
+        words[C].quads[first + i] = uvec4(0u);
     WITH_CHUNK(grid.chunk_shift, block, CLEAR)
 }

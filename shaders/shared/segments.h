@@ -7,9 +7,7 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kNoLabel = 0u;
-INTEROP_CONST uint kNoVoxel = 0xffffffffu;     // a pixel without a voxel
-INTEROP_CONST uint kMaxLabelConfidence = 63u;  // of a voxel: 6 bits
-INTEROP_CONST float kMostVoxelPixels = 17.0f;  // along the edge of a voxel, whose diagonal then covers 31 at most
+INTEROP_CONST uint kMaxLabelConfidence = 255u;  // of a voxel: 8 bits
 INTEROP_CONST uint kPairBuckets = 1024u;        // of the pair counters
 INTEROP_CONST uint kPairWays = 4u;              // counters of one bucket
 INTEROP_CONST uint kSweepFrames = 64u;          // in which every voxel block is swept once
@@ -19,6 +17,10 @@ INTEROP_CONST uint kMostChromaSamples = 1u << 20;  // then the sums are halved
 INTEROP_CONST uint kLabelGroupX = 32u;  // of passes over pixels
 INTEROP_CONST uint kLabelGroupY = 4u;
 INTEROP_CONST uint kStripPixels = 8u;          // of one row, that one invocation counts
+INTEROP_CONST uint kUpdateFrames = 8u;         // in which every block that stays in sight is updated once
+INTEROP_CONST uint kListStride = 2u;           // of the pixels that list blocks
+INTEROP_CONST uint kUpdateLabelsGroup = 32u;   // invocations per block
+INTEROP_CONST uint kLabelQuads = 4u;           // of four voxels along x, per invocation
 INTEROP_CONST uint kAssignLabelsGroup = 128u;  // of the one workgroup that assigns labels
 INTEROP_CONST uint kSweepGroup = 64u;          // block ids per group
 
@@ -96,8 +98,8 @@ struct SegmentationParams {
     uint pad1;
 };
 
-struct UpdateLabelsParams {
-    uint chunk_shift;  // of the voxel map
+struct ListSurfaceParams {
+    uint stamp;  // the frame's index + 1
     uint pad0;
     uint pad1;
     uint pad2;
