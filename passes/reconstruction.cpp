@@ -102,6 +102,10 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         ObservationInputs observed{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
         if (segmentation_) observed.labels = segment(graph, ids, visible, model, input, frame);
+        if (segmentation_ && reflectance_) {
+            ObservationMapIds records = reflectance_->observations().import(graph);
+            segmentation_->add_records(graph, reflectance_->observations(), records, frames_);
+        }
         if (reflectance_) observe(graph, ids, observed, frame);
         if (settings_.view_every_frame) {
             graph.keep(model.position_m);
@@ -195,8 +199,10 @@ void Reconstruction::take_counts() {
     while (!pending_counts_.empty() && pending_counts_.front().counters.ready()) {
         counters_ = pending_counts_.front().counters.as<gpu::MapCounters>().front();
         visible_blocks_ = pending_counts_.front().visible_blocks.as<uint32_t>().front();
-        if (const auto& segments = pending_counts_.front().segments)
+        if (const auto& segments = pending_counts_.front().segments) {
             segment_counters_ = segments->as<gpu::SegmentCounters>().front();
+            label_stability_.add(segment_counters_);
+        }
         pending_counts_.pop_front();
     }
 }
@@ -204,6 +210,11 @@ void Reconstruction::take_counts() {
 const gpu::MapCounters& Reconstruction::counters() {
     take_counts();
     return counters_;
+}
+
+const LabelStability& Reconstruction::label_stability() {
+    take_counts();
+    return label_stability_;
 }
 
 const gpu::SegmentCounters& Reconstruction::segment_counters() {

@@ -111,6 +111,12 @@ class Reconstruction {
     /// The segments' counters as of at most two frames ago; exact after wait(). Zero without segmentation.
     const gpu::SegmentCounters& segment_counters();
 
+    /// How steady the segments' labels were in the frames that segment_counters() tells of.
+    const LabelStability& label_stability();
+
+    /// The segments of the map; null when the settings have none.
+    const SegmentationModel* segmentation() const { return segmentation_ ? &*segmentation_ : nullptr; }
+
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
     /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
@@ -143,6 +149,7 @@ class Reconstruction {
     gpu::MapCounters counters_{};
     uint32_t visible_blocks_ = 0;
     gpu::SegmentCounters segment_counters_{};
+    LabelStability label_stability_;
 };
 
 }  // namespace patina

@@ -6,7 +6,9 @@
 #include "passes/segmentation/count_overlaps.h"
 #include "passes/segmentation/label_pixels.h"
 #include "passes/segmentation/list_surface.h"
+#include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
+#include "passes/segmentation/sample_records.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
 
@@ -18,7 +20,13 @@ SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map
       settings_(settings),
       access_(access),
       labels_(device, map),
-      table_(device, settings.capacity_labels) {}
+      table_(device, settings.capacity_labels),
+      samples_(device, settings.capacity_labels) {}
+
+void SegmentationModel::reset(graph::Frame& frame) const {
+    table_.reset(frame);
+    samples_.reset(frame);
+}
 
 gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camera, Extent2D extent,
                                                   uint32_t frame_index) const {
@@ -77,13 +85,25 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     return add_label_pixels(frame, seen, known, table.parents, assigned);
 }
 
+void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
+                                    uint32_t frame_index) const {
+    gpu::SegmentationParams values{};
+    values.stamp = frame_index + 1;
+    const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
+    add_relabel_records(frame, map, records, table_.import(frame), uniforms);
+    if (settings_.sample_every == 0 || frame_index % settings_.sample_every != settings_.sample_every - 1) return;
+    SegmentSampleIds ids = samples_.import(frame);
+    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations, settings_.sample_seed);
+    SegmentSamples::keep(frame, ids);
+}
+
 graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,
                                            const RaycastImages& model) const {
     return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, model, access_);
 }
 
 std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {
-    return {{"voxel labels", labels_.bytes()}, {"segments", table_.bytes()}};
+    return {{"voxel labels", labels_.bytes()}, {"segments", table_.bytes()}, {"segment samples", samples_.bytes()}};
 }
 
 }  // namespace patina

@@ -6,6 +6,8 @@
 
 #include "passes/fusion/raycast.h"
 #include "passes/model/label_map.h"
+#include "passes/model/observation_map.h"
+#include "passes/model/segment_samples.h"
 #include "passes/model/segment_table.h"
 #include "passes/segmentation/segment_frame.h"
 
@@ -24,6 +26,26 @@ struct SegmentationSettings {
     float merge_chroma = 0.03f;       ///< labels whose mean chromaticities differ by more are not merged
     uint32_t prune_voxels = 10;       ///< labels with fewer voxels are given up
     uint32_t prune_frames = 30;       ///< when they were not seen for so many frames
+    uint32_t sample_every = 16;       ///< frames after which each segment's records are chosen anew; 0: never
+    uint32_t sample_observations = 4; ///< of a record that may be chosen, at least
+    uint32_t sample_seed = 1;
+};
+
+/// How often voxels changed from one label to another, after the first frames, and but for frames in which labels were
+/// merged.
+struct LabelStability {
+    static constexpr uint32_t kFirstFrames = 30;
+
+    uint64_t voxels = 0;  ///< that segments voted on
+    uint64_t flips = 0;   ///< of these
+    uint32_t frames = 0;  ///< all of them, the first ones too
+
+    /// Counts a frame in.
+    void add(const gpu::SegmentCounters& counters) {
+        if (++frames <= kFirstFrames || counters.frame_merged > 0) return;
+        voxels += counters.frame_voxels;
+        flips += counters.frame_flips;
+    }
 };
 
 /// What one frame brings to the segmentation; images of the depth camera but for the colour.
@@ -43,7 +65,7 @@ class SegmentationModel {
                       MapAccess access);
 
     /// Forgets everything; the first thing done with it.
-    void reset(graph::Frame& frame) const { table_.reset(frame); }
+    void reset(graph::Frame& frame) const;
 
     /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;
@@ -53,6 +75,11 @@ class SegmentationModel {
                        const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
                        const gpu::Camera& color_camera, uint32_t frame_index) const;
 
+    /// Brings one part of the observations' labels up to date with merged and pruned segments, another in every frame,
+    /// and chooses the segments' records when that is due. To be called in every frame in which add() was.
+    void add_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
+                     uint32_t frame_index) const;
+
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, const RaycastImages& model) const;
 
@@ -60,6 +87,7 @@ class SegmentationModel {
     const SegmentationSettings& settings() const { return settings_; }
     const SegmentTable& table() const { return table_; }
     const LabelMap& labels() const { return labels_; }
+    const SegmentSamples& samples() const { return samples_; }
 
   private:
     FrameSegments segments(graph::Frame& frame, const SegmentationInputs& inputs,
@@ -71,6 +99,7 @@ class SegmentationModel {
     MapAccess access_;
     LabelMap labels_;
     SegmentTable table_;
+    SegmentSamples samples_;
 };
 
 }  // namespace patina

@@ -98,6 +98,13 @@ struct SegmentationParams {
     uint pad1;
 };
 
+struct RelabelParams {
+    uint edge_shift;  // of the observation map
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
 struct ListSurfaceParams {
     uint stamp;  // the frame's index + 1
     uint pad0;
