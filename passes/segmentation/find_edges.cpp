@@ -1,65 +1,86 @@
 #include "passes/segmentation/find_edges.h"
 
-#include <cmath>
-
 #include "engine/core/error.h"
-#include "shared/find_edges.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
 namespace {
 
-void check_extent(const char* pass, Extent2D extent, const gpu::Camera& camera) {
-    const Extent2D camera_extent{camera.extent.x, camera.extent.y};
-    if (extent != camera_extent) {
-        throw Error("the pass '", pass, "' got images of ", extent, " from a camera of ", camera_extent);
-    }
+Extent2D checked_extent(const char* pass, Extent2D extent, const gpu::FrameSurfaceParams& params) {
+    const Extent2D camera{params.extent.x, params.extent.y};
+    if (extent != camera) throw Error("the pass '", pass, "' got images of ", extent, " from a camera of ", camera);
+    return extent;
 }
 
 }  // namespace
 
-graph::ImageId add_choose_surface(graph::Frame& frame, const SurfaceInputs& inputs, const gpu::Camera& camera,
-                                  const EdgeSettings& settings) {
-    constexpr const char* kPass = "segmentation.choose_surface";
-    const Extent2D extent =
-        frame.common_extent({inputs.model_position_m, inputs.model_normal, inputs.depth_m, inputs.normal});
-    check_extent(kPass, extent, camera);
-    auto pass = frame.compute(kPass, spirv::choose_surface);
-    pass.read("model_position_m", inputs.model_position_m).read("model_normal", inputs.model_normal);
-    pass.read("depth_m", inputs.depth_m).read("normal", inputs.normal);
-    const graph::ImageId surface = pass.create("surface", {extent, vulkan::Format::kRgba32f});
-    pass.push(gpu::ChooseSurfaceParams{camera, settings.noise.floor_m, settings.noise.per_m, settings.agreement_floor_m,
-                                       settings.agreement_sigmas});
-    pass.dispatch_covering(extent);
-    return surface;
-}
-
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId surface, const gpu::Camera& camera,
-                              const EdgeSettings& settings) {
-    constexpr const char* kPass = "segmentation.find_edges";
-    const Extent2D extent = frame.shape(surface).extent;
-    check_extent(kPass, extent, camera);
+gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const EdgeSettings& settings,
+                                            uint32_t min_pixels) {
     if (settings.min_reach_px == 0 || settings.min_reach_px > settings.max_reach_px) {
-        throw Error("the pass '", kPass, "' compares pixels from ", settings.min_reach_px, " to ",
-                    settings.max_reach_px, " px apart; it needs 1 at least, and the second no smaller");
+        throw Error("normals are compared from ", settings.min_reach_px, " to ", settings.max_reach_px,
+                    " px apart; it must be 1 at least, and the second no smaller");
     }
-    gpu::FindEdgesParams params{};
+    gpu::FrameSurfaceParams params{};
     params.focal_center_px = camera.focal_center_px;
     params.extent = camera.extent;
+    params.jump_m = settings.jump.floor_m;
+    params.jump_slope = settings.jump.slope;
     params.noise_floor_m = settings.noise.floor_m;
     params.noise_per_m = settings.noise.per_m;
     params.reach_px_m = settings.reach_m * camera.focal_center_px.x;
     params.min_reach_px = static_cast<float>(settings.min_reach_px);
     params.max_reach_px = static_cast<float>(settings.max_reach_px);
-    params.step_floor_m = settings.step_floor_m;
-    params.step_sigmas = settings.step_sigmas;
-    params.crease_cosine = std::cos(glm::radians(settings.crease_degrees));
+    params.crease_rad = glm::radians(settings.crease_degrees);
+    params.crease_sigmas = settings.crease_sigmas;
+    params.claim_m = settings.claim_m;
+    params.claim_sigmas = settings.claim_sigmas;
+    params.claim_reach_px = static_cast<int>(settings.claim_reach_px);
+    params.min_pixels = min_pixels;
+    return params;
+}
+
+graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                                const gpu::FrameSurfaceParams& params) {
+    constexpr const char* kPass = "segmentation.choose_depth";
+    const Extent2D extent = checked_extent(kPass, frame.common_extent({model_position_m, reading_m}), params);
+    auto pass = frame.compute(kPass, spirv::choose_depth);
+    pass.read("model_position_m", model_position_m).read("reading_m", reading_m);
+    const graph::ImageId depth_m = pass.create("depth_m", {extent, vulkan::Format::kR32f});
+    pass.push(params).dispatch_covering(extent);
+    return depth_m;
+}
+
+graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params) {
+    constexpr const char* kPass = "segmentation.fit_normals";
+    const Extent2D extent = checked_extent(kPass, frame.shape(depth_m).extent, params);
+    auto pass = frame.compute(kPass, spirv::fit_normals);
+    pass.read("depth_m", depth_m);
+    const graph::ImageId normal = pass.create("normal", {extent, vulkan::Format::kR32u});
+    pass.push(params).dispatch_covering(extent);
+    return normal;
+}
+
+graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+                              const gpu::FrameSurfaceParams& params) {
+    constexpr const char* kPass = "segmentation.find_edges";
+    const Extent2D extent = checked_extent(kPass, frame.common_extent({depth_m, normal}), params);
     auto pass = frame.compute(kPass, spirv::find_edges);
-    pass.read("surface", surface);
+    pass.read("depth_m", depth_m).read("normal", normal);
     const graph::ImageId inner_depth_m = pass.create("inner_depth_m", {extent, vulkan::Format::kR32f});
     pass.push(params).dispatch_covering(extent);
     return inner_depth_m;
+}
+
+graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
+                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params) {
+    constexpr const char* kPass = "segmentation.claim_edges";
+    const Extent2D extent = checked_extent(kPass, frame.common_extent({component, depth_m, normal}), params);
+    auto pass = frame.compute(kPass, spirv::claim_edges);
+    pass.read("depth_m", depth_m).read("normal", normal).read("component", component).read("Pixels", pixels);
+    const graph::ImageId claimed = pass.create("claimed", {extent, vulkan::Format::kR32u});
+    pass.push(params).dispatch_covering(extent);
+    return claimed;
 }
 
 }  // namespace patina

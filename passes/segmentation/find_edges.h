@@ -2,50 +2,66 @@
 
 #include "engine/graph/frame.h"
 #include "shared/camera.h"
+#include "shared/find_edges.h"
 
 namespace patina {
 
-/// How much a depth reading scatters: sigma(z) = floor_m + per_m z^2. The defaults are a Kinect v2's, 1 to 2 mm at 1 m
-/// and 5 mm at 4 m.
+/// How much a depth scatters: sigma(z) = floor_m + per_m z^2. The defaults are a Kinect v2's, 1 to 2 mm at 1 m and 5 mm
+/// at 4 m.
 struct DepthNoise {
     float floor_m = 0.001f;
     float per_m = 0.00025f;  ///< 1 / m
 };
 
-/// What counts as the same surface. Distances follow noise: a floor plus a number of sigmas.
+/// Pixels that are k apart lie on one surface where their depths differ by at most floor_m + k slope z. At Kinect-like
+/// focal lengths a surface inclined by 75 degrees changes by 1 % of its depth from pixel to pixel.
+struct SurfaceJump {
+    float floor_m = 0.01f;
+    float slope = 0.015f;
+};
+
+/// What belongs together in a frame.
 struct EdgeSettings {
     DepthNoise noise;
-    float agreement_floor_m = 0.01f;  ///< a reading so near to the model's tangent plane is the model's
-    float agreement_sigmas = 3;
-    float reach_m = 0.01f;  ///< pixels are compared with neighbours so far away on a surface seen head-on,
-    uint32_t min_reach_px = 1;
+    SurfaceJump jump;
+    float reach_m =
+        0.015f;  ///< normals come from pixels so far away on a surface seen head-on, and are compared there,
+    uint32_t min_reach_px = 2;
     uint32_t max_reach_px = 4;
-    float step_floor_m = 0.006f;  ///< least step that separates
-    float step_sigmas = 3;
-    float crease_degrees = 20;  ///< a concave crease separates where normals differ by more
+    float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
+    float crease_sigmas = 2;      ///< and so many times what noise does to the angle
+    float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
+    float claim_sigmas = 3;       ///< and so many sigmas of its depth,
+    uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y
 };
 
-/// The surface that a frame shows, from the model where it agrees with the readings, else from the readings.
-struct SurfaceInputs {
-    graph::ImageId model_position_m;  ///< W x H rgba32f: w is depth, 0 where nothing was hit (add_raycast)
-    graph::ImageId model_normal;      ///< W x H rgba16f: world; 0 where there is none
-    graph::ImageId depth_m;           ///< W x H r32f: smoothed readings; 0 where there is none
-    graph::ImageId normal;            ///< W x H rgba16f: world, of depth_m (add_unproject_depth)
-};
+/// The parameters that passes on a frame's surface share; components of fewer than `min_pixels` get no pixels. Throws
+/// Error for a reach below 1 px, or bounds that cross.
+gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const EdgeSettings& settings,
+                                            uint32_t min_pixels);
 
-/// Chooses between model and readings for each pixel. Model where its normal is known, and there is no reading or one
-/// that lies on its tangent plane. Returns W x H rgba32f: xyz is the unit normal in camera coordinates, towards the
-/// camera, 0 where there is none; w is depth in metres, 0 where there is no surface. Throws Error when extents differ.
-graph::ImageId add_choose_surface(graph::Frame& frame, const SurfaceInputs& inputs, const gpu::Camera& camera,
-                                  const EdgeSettings& settings = {});
+/// The model's depth where there is one, else the reading. `model_position_m`: W x H rgba32f, w is depth, 0 where
+/// nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none (add_filter_depth). Returns
+/// W x H r32f in metres, 0 where neither is. Throws Error when extents differ.
+graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                                const gpu::FrameSurfaceParams& params);
 
-/// Finds edges between the smooth, convex parts of a surface (after Tateno, Tombari and Navab 2015). A pixel is at an
-/// edge where, towards one of eight neighbours,
-///  - the surface makes a step: each of the two points lies off the other's tangent plane, on opposite sides;
-///  - or a concave crease: the points lie above each other's planes, and the normals differ;
-/// or where the normal is unknown. `surface` as add_choose_surface returns it. Returns W x H r32f: depth in metres,
-/// negative at edges, 0 where there is no surface. Throws Error for settings out of range, or when extents differ.
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId surface, const gpu::Camera& camera,
-                              const EdgeSettings& settings = {});
+/// Normals from eight depths around each pixel. `depth_m` as add_choose_depth returns it. Returns W x H r32ui:
+/// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none
+/// is known. Throws Error when extents differ.
+graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
+
+/// Finds edges between the smooth, convex parts of a surface, with normals from add_fit_normals (phi_c of Tateno,
+/// Tombari and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and
+/// small steps are creases at their foot). A pixel is at an edge where the normals on both sides of it differ and face
+/// each other, or where its own is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is
+/// no surface. Throws Error when extents differ.
+graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+                              const gpu::FrameSurfaceParams& params);
+
+/// Gives pixels that have depth but no component, or a small one, to one nearby: the one on whose tangent plane they
+/// lie. `component` and `pixels` as in Components. Returns W x H r32ui, 0: none. Throws Error when extents differ.
+graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
+                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params);
 
 }  // namespace patina

@@ -17,13 +17,15 @@ graph::BufferId add_empty_keys(graph::Frame& frame, const std::string& name, uin
     return frame.fill(frame.create_buffer(name, groups * kGroupBytes), 0);
 }
 
-NumberedSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, uint32_t min_pixels,
-                                     uint32_t capacity) {
+FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, graph::ImageId key,
+                                  graph::ImageId depth_m, const gpu::Camera& camera, uint32_t min_pixels,
+                                  uint32_t capacity) {
     if (min_pixels == 0) throw Error("the least size of a segment is 0 px, it must be 1 at least");
     if (capacity == 0 || capacity > gpu::kMaxFrameSegments) {
         throw Error("a frame's table of segments for ", capacity, " is asked for, it must be 1 to ",
                     gpu::kMaxFrameSegments);
     }
+    const Extent2D extent = frame.common_extent({key, depth_m});
     const auto groups = static_cast<uint32_t>(frame.bytes(pixels) / kGroupBytes);
     const gpu::NumberSegmentsParams params{min_pixels, capacity, groups, 0};
     auto total = frame.compute("segmentation.total_segments", spirv::total_segments);
@@ -31,15 +33,23 @@ NumberedSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels
     const graph::BufferId totals = total.create("Totals", groups * sizeof(gpu::KeyTotals));
     total.dispatch(groups);
 
-    NumberedSegments out;
-    out.segments =
-        frame.fill(frame.create_buffer("segmentation.segments", (capacity + 1) * sizeof(gpu::FrameSegment)), 0);
+    FrameSegments out;
+    const uint64_t table_bytes = (uint64_t{capacity} + 1) * sizeof(gpu::FrameSegment);
+    out.segments = frame.fill(frame.create_buffer("segmentation.segments", table_bytes), 0);
     auto number = frame.compute("segmentation.number_segments", spirv::number_segments);
     number.read("Pixels", pixels).read("Totals", totals).push(params);
-    out.numbers = number.create("Numbers", frame.bytes(pixels));
+    const graph::BufferId numbers = number.create("Numbers", frame.bytes(pixels));
     out.segments = number.modify("Segments", out.segments);
     out.count = number.create("Count", sizeof(gpu::FrameSegmentCount));
     number.dispatch(groups);
+
+    auto measure = frame.compute("segmentation.measure_segments", spirv::measure_segments);
+    measure.read("keys", key).read("depth_m", depth_m).read("Pixels", pixels).read("Numbers", numbers);
+    out.segments = measure.modify("Segments", out.segments);
+    out.segment = measure.create("segment", {extent, vulkan::Format::kR32u});
+    const auto keys = static_cast<uint32_t>(frame.bytes(pixels) / sizeof(uint32_t));
+    measure.push(gpu::MeasureSegmentsParams{camera, row_words_of(extent), keys, min_pixels, 0});
+    measure.dispatch_covering(words_of(extent));
     return out;
 }
 

@@ -1,7 +1,8 @@
 #include "passes/segmentation/segment_frame.h"
 
-#include "passes/segmentation/draw_segments.h"
-#include "shared/draw_segments.h"
+#include "passes/segmentation/label_components.h"
+#include "passes/segmentation/number_segments.h"
+#include "shared/number_segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -12,33 +13,26 @@ constexpr uint32_t kGivenIds = 65536;
 
 }  // namespace
 
-FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId surface, const gpu::Camera& camera,
-                                const SegmentSettings& settings) {
-    const graph::ImageId inner_depth_m = add_find_edges(frame, surface, camera, settings.edges);
-    const Components components = add_label_components(frame, inner_depth_m, settings.connection);
-    const NumberedSegments numbered =
-        add_number_segments(frame, components.pixels, settings.min_pixels, settings.capacity);
-    const graph::ImageId drawn = add_draw_segments(frame, components, numbered.numbers, settings.min_pixels);
-    const graph::ImageId segment =
-        add_claim_edges(frame, drawn, surface, camera, settings.edges, settings.claim_reach_px);
-    return {segment, add_measure_segments(frame, numbered.segments, segment, surface, camera), numbered.count};
+FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                                const gpu::Camera& camera, const SegmentSettings& settings) {
+    const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
+    const graph::ImageId depth_m = add_choose_depth(frame, model_position_m, reading_m, params);
+    const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
+    const auto [component, pixels] =
+        add_label_components(frame, add_find_edges(frame, depth_m, normal, params), settings.edges.jump);
+    const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
+    return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
 }
 
-FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId surface,
+FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,
                                  const gpu::Camera& camera, uint32_t capacity) {
-    const Extent2D extent = frame.common_extent({given, surface});
-    const gpu::CountGivenParams params{{extent.width, extent.height}, (extent.width + 31) / 32, kGivenIds};
+    const Extent2D extent = frame.common_extent({given, depth_m});
     auto count = frame.compute("segmentation.count_given", spirv::count_given);
-    count.read("given", given).read("surface", surface).push(params);
+    count.read("given", given).read("depth_m", depth_m);
+    count.push(gpu::CountGivenParams{{extent.width, extent.height}, row_words_of(extent), kGivenIds});
     const graph::BufferId pixels = count.modify("Pixels", add_empty_keys(frame, "segmentation.pixels", kGivenIds));
     count.dispatch_covering(words_of(extent));
-
-    const NumberedSegments numbered = add_number_segments(frame, pixels, 1, capacity);
-    auto draw = frame.compute("segmentation.draw_given", spirv::draw_given);
-    draw.read("given", given).read("surface", surface).read("Numbers", numbered.numbers).push(params);
-    const graph::ImageId segment = draw.create("segment", {extent, vulkan::Format::kR32u});
-    draw.dispatch_covering(extent);
-    return {segment, add_measure_segments(frame, numbered.segments, segment, surface, camera), numbered.count};
+    return add_number_segments(frame, pixels, given, depth_m, camera, 1, capacity);
 }
 
 }  // namespace patina

@@ -2,28 +2,27 @@
 
 #include "passes/segmentation/find_edges.h"
 #include "passes/segmentation/frame_segments.h"
-#include "passes/segmentation/label_components.h"
 
 namespace patina {
 
 struct SegmentSettings {
     EdgeSettings edges;
-    ConnectionLimit connection;
     uint32_t min_pixels = 60;     ///< smaller components are dropped
     uint32_t claim_reach_px = 6;  ///< how far from a segment pixels without one may join it
     uint32_t capacity = gpu::kMaxFrameSegments;
 };
 
 /// Divides a frame into the smooth, convex parts of its surface: edges, connected components of what lies between them,
-/// and edge pixels given back to the neighbour whose tangent plane they lie on. `surface` as add_choose_surface returns
-/// it, `camera` the one that sees it. Throws Error for settings out of range, or when extents differ.
-FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId surface, const gpu::Camera& camera,
-                                const SegmentSettings& settings = {});
+/// and edge pixels given back to the neighbour whose tangent plane they lie on. `model_position_m` and `reading_m` as
+/// for add_choose_depth, `camera` the one that sees them. Throws Error for settings out of range, or when extents
+/// differ.
+FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                                const gpu::Camera& camera, const SegmentSettings& settings = {});
 
 /// Makes a segment of all pixels with the same given id, connected or not: `given` is W x H r32ui, 0: unknown, at most
-/// 65535; larger ids count as unknown, as do pixels where `surface` has no depth. gpu::FrameSegment::key holds the id.
-/// Throws Error when extents differ.
-FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId surface,
+/// 65535; larger ids count as unknown, as do pixels where `depth_m`, W x H r32f, is 0. gpu::FrameSegment::key holds the
+/// id. Throws Error when extents differ.
+FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,
                                  const gpu::Camera& camera, uint32_t capacity = gpu::kMaxFrameSegments);
 
 }  // namespace patina

@@ -2,41 +2,52 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shared/draw_segments.h"
+#include "lib/frame_surface.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
-layout(binding = 0, rgba32f) uniform readonly image2D surface;  // normal in camera coordinates; w: depth
-layout(binding = 1, r32ui) uniform readonly uimage2D segment;
-layout(binding = 2, r32ui) uniform writeonly uimage2D claimed;
-layout(push_constant) uniform Push { ClaimEdgesParams params; };
+layout(binding = 0, r32f) uniform readonly image2D depth_m;
+layout(binding = 1, r32ui) uniform readonly uimage2D normal;
+layout(binding = 2, r32ui) uniform readonly uimage2D component;
+layout(std430, binding = 3) readonly buffer Pixels { uint pixels[]; };  // by component; of 0: 0
+layout(binding = 4, r32ui) uniform writeonly uimage2D claimed;
+layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
-vec3 position_m(ivec2 pixel, float z) {
-    return vec3((vec2(pixel) - params.focal_center_px.zw) / params.focal_center_px.xy * z, z);
+const ivec2 kDirections[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+
+ivec2 clamped(ivec2 pixel) { return clamp(pixel, ivec2(0), ivec2(params.extent) - 1); }
+
+// The pixel's component, 0 where it is too small.
+uint component_at(ivec2 pixel) {
+    const uint key = imageLoad(component, pixel).x;
+    return pixels[key] >= params.min_pixels ? key : 0u;
 }
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    const ivec2 last = ivec2(params.extent) - 1;
-    if (any(greaterThan(pixel, last))) return;
-    uint own = imageLoad(segment, pixel).x;
-    const float z = imageLoad(surface, pixel).w;
-    const vec3 point = position_m(pixel, z);
-    float nearest_m = params.step_floor_m + params.step_sigmas * (params.noise_floor_m + params.noise_per_m * z * z);
+    if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
+    uint own = component_at(pixel);
+    const float z = imageLoad(depth_m, pixel).x;
     const bool wanting = own == 0u && z > 0.0;
 
-    const ivec2 directions[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-        uint found = 0u;
-        ivec2 place = pixel;
-        // A loop and no branch: software devices leave it as soon as no pixel of a vector needs it.
-        for (int step = 1; wanting && found == 0u && step <= params.reach_px; ++step) {
-            place = clamp(pixel + step * directions[i], ivec2(0), last);
-            found = imageLoad(segment, place).x;
+    // The nearest component in each direction. No branch: software devices leave the loop as soon as no pixel of a
+    // vector needs it.
+    uvec4 found = uvec4(0u);
+    ivec4 apart = ivec4(0);
+    for (int step = 1; wanting && any(equal(found, uvec4(0u))) && step <= params.claim_reach_px; ++step) {
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            const uint there = component_at(clamped(pixel + step * kDirections[i]));
+            apart[i] = found[i] == 0u ? step : apart[i];
+            found[i] = found[i] == 0u ? there : found[i];
         }
-        const vec4 there = imageLoad(surface, place);
-        const float distance_m = abs(dot(position_m(place, there.w) - point, there.xyz));
-        const bool nearer = found != 0u && distance_m < nearest_m;
-        own = nearer ? found : own;
+    }
+    const vec3 point_m = surface_point_m(params, pixel, z);
+    float nearest_m = params.claim_m + params.claim_sigmas * depth_sigma_m(params, z);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 place = clamped(pixel + apart[i] * kDirections[i]);
+        const vec3 there_m = surface_point_m(params, place, imageLoad(depth_m, place).x);
+        const float distance_m = abs(dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x)));
+        const bool nearer = found[i] != 0u && distance_m < nearest_m;
+        own = nearer ? found[i] : own;
         nearest_m = nearer ? distance_m : nearest_m;
     }
     imageStore(claimed, pixel, uvec4(own));

@@ -1,13 +1,12 @@
 // Counts the pixels with depth of each given id.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/runs.glsl"
-#include "shared/draw_segments.h"
+#include "shared/number_segments.h"
 
-layout(local_size_x = kRunGroup) in;
-layout(binding = 0, r32ui) uniform readonly uimage2D given;     // 0: unknown
-layout(binding = 1, rgba32f) uniform readonly image2D surface;  // w: depth
-layout(std430, binding = 2) buffer Pixels { uint pixels[]; };   // by id; 0 before
+layout(local_size_x = kMeasureGroup) in;
+layout(binding = 0, r32ui) uniform readonly uimage2D given;  // 0: unknown
+layout(binding = 1, r32f) uniform readonly image2D depth_m;
+layout(std430, binding = 2) buffer Pixels { uint pixels[]; };  // by id; 0 before
 layout(push_constant) uniform Push { CountGivenParams params; };
 
 void add(uint id, uint count) {
@@ -28,7 +27,7 @@ void main() {
             id = here;
             run = 0u;
         }
-        run += uint(id != 0u && id < params.ids && imageLoad(surface, pixel).w > 0.0);
+        run += uint(id != 0u && id < params.keys && imageLoad(depth_m, pixel).x > 0.0);
     }
     add(id, run);
 }

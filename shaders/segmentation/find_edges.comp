@@ -1,44 +1,52 @@
-// Marks pixels at concave creases and at steps.
+// Marks pixels at concave creases.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
-#include "shared/find_edges.h"
+#include "lib/frame_surface.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
-layout(binding = 0, rgba32f) uniform readonly image2D surface;      // normal in camera coordinates; w: depth
-layout(binding = 1, r32f) uniform writeonly image2D inner_depth_m;  // negative at edges
-layout(push_constant) uniform Push { FindEdgesParams params; };
+layout(binding = 0, r32f) uniform readonly image2D depth_m;
+layout(binding = 1, r32ui) uniform readonly uimage2D normal;
+layout(binding = 2, r32f) uniform writeonly image2D inner_depth_m;  // negative at edges
+layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
-vec3 position_m(ivec2 pixel, float z) {
-    return vec3((vec2(pixel) - params.focal_center_px.zw) / params.focal_center_px.xy * z, z);
+struct Side {
+    vec3 normal;
+    vec3 point_m;
+};
+
+// The surface beside a pixel, or at the pixel itself where the neighbour does not belong to its surface.
+Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
+    const ivec2 place = clamp(pixel + offset, ivec2(0), ivec2(params.extent) - 1);
+    const float z = imageLoad(depth_m, place).x;
+    const uint packed = imageLoad(normal, place).x;
+    const bool joined = packed != 0u && abs(z - here.point_m.z) <= limit_m;
+    return Side(joined ? unpack_normal(packed) : here.normal,
+                joined ? surface_point_m(params, place, z) : here.point_m);
+}
+
+bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine) {
+    const Side a = side_at(pixel, here, -offset, limit_m);
+    const Side b = side_at(pixel, here, offset, limit_m);
+    const bool concave = dot(b.point_m - a.point_m, b.normal - a.normal) < 0.0;
+    return concave && dot(a.normal, b.normal) < cosine;
 }
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    const ivec2 last = ivec2(params.extent) - 1;
-    if (any(greaterThan(pixel, last))) return;
-    const vec4 here = imageLoad(surface, pixel);
-    const vec3 point = position_m(pixel, here.w);
-    const float z = max(here.w, 1e-3);
-    const int reach = int(clamp(round(params.reach_px_m / z), params.min_reach_px, params.max_reach_px));
-    const float step_m = params.step_floor_m + params.step_sigmas * (params.noise_floor_m + params.noise_per_m * z * z);
+    if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
+    const float depth = imageLoad(depth_m, pixel).x;
+    const uint packed = imageLoad(normal, pixel).x;
+    const float z = max(depth, 1e-3);
+    const Side here = Side(unpack_normal(packed), surface_point_m(params, pixel, z));
+    const int reach = reach_px(params, z);
+    const float limit_m = jump_limit_m(params, z, reach);
+    // The error of a normal that was fitted to eight depths, and of the angle between two.
+    const int diagonal = diagonal_px(reach);
+    const float spread_px = sqrt(float(2 * reach * reach + 4 * diagonal * diagonal));
+    const float sigma_rad = 1.4142 * depth_sigma_m(params, z) * params.focal_center_px.x / (z * spread_px);
+    const float cosine = cos(min(params.crease_rad + params.crease_sigmas * sigma_rad, 3.1415));
 
-    bool edge = dot(here.xyz, here.xyz) == 0.0;
-    [[unroll]] for (int y = -1; y <= 1; ++y) {
-        [[unroll]] for (int x = -1; x <= 1; ++x) {
-            if (x == 0 && y == 0) continue;
-            const ivec2 neighbour = clamp(pixel + reach * ivec2(x, y), ivec2(0), last);
-            const vec4 there = imageLoad(surface, neighbour);
-            const vec3 offset = position_m(neighbour, there.w) - point;
-            // How far each point lies above the other's tangent plane. Two planes that meet between the points lie both
-            // below (convex) or both above (concave) each other's points; else there is a step between them.
-            const float there_above = dot(offset, here.xyz);
-            const float here_above = -dot(offset, there.xyz);
-            const bool step = there_above * here_above < 0.0 && min(abs(there_above), abs(here_above)) > step_m;
-            const bool crease = there_above + here_above > 0.0 && dot(here.xyz, there.xyz) < params.crease_cosine;
-            // Where the neighbour has no normal, it is an edge itself and says nothing about this pixel.
-            edge = edge || (dot(there.xyz, there.xyz) > 0.0 && (step || crease));
-        }
-    }
-    imageStore(inner_depth_m, pixel, vec4(edge ? -here.w : here.w));
+    const bool edge = packed == 0u || is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine) ||
+                      is_crease(pixel, here, ivec2(0, reach), limit_m, cosine);
+    imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

@@ -1,15 +1,16 @@
-// Adds up what is known of each segment, 32 pixels of a row at a time.
+// Writes into every pixel the number of its segment, and adds up what is known of each, 32 pixels of a row at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
-#include "lib/runs.glsl"
-#include "shared/draw_segments.h"
-#include "shared/frame_segments.h"
+#include "shared/number_segments.h"
 
-layout(local_size_x = kRunGroup) in;
-layout(binding = 0, r32ui) uniform readonly uimage2D segment;
-layout(binding = 1, rgba32f) uniform readonly image2D surface;  // w: depth
-layout(std430, binding = 2) buffer Segments { FrameSegment segments[]; };
+layout(local_size_x = kMeasureGroup) in;
+layout(binding = 0, r32ui) uniform readonly uimage2D keys;  // 0: none
+layout(binding = 1, r32f) uniform readonly image2D depth_m;
+layout(std430, binding = 2) readonly buffer Pixels { uint pixels[]; };    // by key
+layout(std430, binding = 3) readonly buffer Numbers { uint numbers[]; };  // by key; only where enough pixels are
+layout(std430, binding = 4) buffer Segments { FrameSegment segments[]; };
+layout(binding = 5, r32ui) uniform writeonly uimage2D segment;
 layout(push_constant) uniform Push { MeasureSegmentsParams params; };
 
 // Pixels in a row that belong to one segment.
@@ -40,6 +41,11 @@ void add(Sum sum, uint y) {
     atomicAdd(segments[sum.number].fraction_z, sum.fraction.z);
 }
 
+uint number_of(uint key) {
+    const bool kept = key < params.keys && pixels[min(key, params.keys - 1u)] >= params.min_pixels;
+    return kept ? numbers[key] : 0u;
+}
+
 void main() {
     const uint index = gl_GlobalInvocationID.x;
     const uvec2 extent = params.camera.extent;
@@ -47,11 +53,18 @@ void main() {
     const ivec2 first = ivec2(index % params.row_words * 32u, index / params.row_words);
     const vec3 center_m = camera_center_m(params.camera);
     const int count = min(32, int(extent.x) - first.x);
+    uint key = 0u, number_of_key = 0u;
     Sum sum = Sum(0u, 0u, 0u, ivec3(0), uvec3(0u));
     for (int i = 0; i < count; ++i) {
         const ivec2 pixel = first + ivec2(i, 0);
-        const uint number = imageLoad(segment, pixel).x;
-        const float z = imageLoad(surface, pixel).w;
+        const uint here = imageLoad(keys, pixel).x;
+        const float z = imageLoad(depth_m, pixel).x;
+        if (here != key) {
+            key = here;
+            number_of_key = number_of(here);
+        }
+        const uint number = z > 0.0 ? number_of_key : 0u;
+        imageStore(segment, pixel, uvec4(number));
         const vec3 point = unproject(params.camera, vec2(pixel)) * z;
         const vec3 world_m = to_world_direction(params.camera, point) + center_m;
         if (number != sum.number) {

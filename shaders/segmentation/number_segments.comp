@@ -1,6 +1,7 @@
 // Numbers the components that have enough pixels, in the order of their keys, and begins their entries in the table.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shared/number_segments.h"
 
 layout(local_size_x = kNumberGroup) in;
@@ -46,6 +47,14 @@ void add_totals() {
     barrier();
 }
 
+void begin_segment(uint key, uint number) {
+    const bool placed = number <= params.capacity;
+    numbers[key] = placed ? number : 0u;
+    if (placed) {
+        segments[number] = FrameSegment(0u, key, 0u, 0u, 0xffffffffu, 0xffffffffu, 0u, 0u, 0, 0, 0, 0, 0u, 0u, 0u, 0u);
+    }
+}
+
 void main() {
     add_totals();
     if (gl_GlobalInvocationID.x == 0u) {
@@ -59,16 +68,13 @@ void main() {
     }
     const uint here = enough.x + enough.y + enough.z + enough.w;
     uint number = kept_before + exclusive_sum(here);
-    if (here == 0u) return;
-    for (uint i = 0u; i < kNumberQuads * 4u; ++i) {
-        if (pixels[first + i / 4u][i % 4u] < params.min_pixels) continue;
-        const uint key = first * 4u + i;
-        ++number;
-        const bool placed = number <= params.capacity;
-        numbers[key] = placed ? number : 0u;
-        if (placed) {
-            segments[number] =
-                FrameSegment(0u, key, 0u, 0u, 0xffffffffu, 0xffffffffu, 0u, 0u, 0, 0, 0, 0, 0u, 0u, 0u, 0u);
+    // The loop ends for whole groups of invocations that have nothing to number.
+    const uint last = number + here;
+    for (uint i = 0u; number < last; ++i) {
+        const uvec4 counts = pixels[first + i];
+        [[unroll]] for (uint k = 0u; k < 4u; ++k) {
+            if (counts[k] < params.min_pixels) continue;
+            begin_segment((first + i) * 4u + k, ++number);
         }
     }
 }

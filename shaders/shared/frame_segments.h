@@ -11,7 +11,7 @@ INTEROP_CONST float kSegmentFractionsPerM = 1024.0f;  // unit of the fractions o
 // the mean of x is (whole_x_m + fraction_x / kSegmentFractionsPerM) / pixels.
 struct FrameSegment {
     uint pixels;          // 0: there is no such segment
-    uint key;             // its given id where ids were given, else its first pixel, y * width + x
+    uint key;             // its given id where ids were given, else 1 + y * width + x of its first pixel
     uint touches_border;  // 1 where one of its pixels lies at the picture's border
     uint pad0;
     uint min_x;  // bounding box in pixels, inclusive

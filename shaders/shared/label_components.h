@@ -17,8 +17,8 @@ struct RunWord {
 struct LabelComponentsParams {
     uvec2 extent;      // pixels
     uint row_words;    // words a row
-    float jump_m;      // neighbours are connected where their depths differ by at most jump_m + jump_slope * (the
-    float jump_slope;  // larger depth)
+    float jump_m;      // neighbours are connected where their depths differ by at most jump_m + jump_slope * the
+    float jump_slope;  // larger depth
     uint pad0;
     uint pad1;
     uint pad2;

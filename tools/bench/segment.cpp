@@ -1,4 +1,5 @@
-// patina_segment_bench: how long it takes to divide a frame into segments, and pictures of them. See docs/benchmarks.md.
+// patina_segment_bench: how long it takes to divide a frame into segments, and pictures of them. See
+// docs/benchmarks.md.
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -43,7 +44,8 @@ Image<sensor::SrgbPixel> in_colors(const Image<uint32_t>& segment) {
     for (size_t i = 0; i < segment.pixels().size(); ++i) {
         const uint32_t number = segment.pixels()[i];
         const uint32_t mixed = number * 2654435761u;
-        if (number > 0) picture.pixels()[i] = {64 + (mixed >> 24) % 192, 64 + (mixed >> 16) % 192, 64 + (mixed >> 8) % 192};
+        if (number > 0)
+            picture.pixels()[i] = {64 + (mixed >> 24) % 192, 64 + (mixed >> 16) % 192, 64 + (mixed >> 8) % 192};
     }
     return picture;
 }
@@ -61,7 +63,8 @@ class Bench {
     /// The last frame's segments.
     Image<uint32_t> segments() {
         graph::Frame frame = runner().begin();
-        const graph::Readback read = frame.read_back(add_segment_frame(frame, add_surface(frame), camera()).segment);
+        const auto [model, depth_m] = cast(frame);
+        const graph::Readback read = frame.read_back(add_segment_frame(frame, model, depth_m, camera()).segment);
         runner().submit(std::move(frame));
         runner().wait();
         return read.image<uint32_t>();
@@ -74,12 +77,10 @@ class Bench {
             runner().wait();
             const double start = processor_ms();
             graph::Frame frame = runner().begin();
-            const SurfaceInputs inputs = cast(frame);
-            for (const auto id : {inputs.model_position_m, inputs.model_normal, inputs.depth_m, inputs.normal})
-                frame.keep(id);
+            const auto [model, depth_m] = cast(frame);
+            for (const auto id : {model, depth_m}) frame.keep(id);
             if (segment) {
-                const FrameSegments out =
-                    add_segment_frame(frame, add_choose_surface(frame, inputs, camera()), camera());
+                const FrameSegments out = add_segment_frame(frame, model, depth_m, camera());
                 frame.keep(out.segment);
                 frame.keep(out.segments);
                 frame.keep(out.count);
@@ -96,18 +97,16 @@ class Bench {
   private:
     gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
 
-    SurfaceInputs cast(graph::Frame& frame) {
+    /// The model as the depth camera sees it, and its smoothed readings.
+    std::pair<graph::ImageId, graph::ImageId> cast(graph::Frame& frame) {
         const VoxelMap& map = reconstruction_.map();
         const VoxelMapIds voxels = map.import(frame);
         const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
         const VisibleBlocks visible = add_visible_blocks(frame, map, voxels, camera(), 0.1f, far_m);
-        const RaycastImages model =
-            add_raycast(frame, map, voxels, visible, preferred_map_access(device_.caps(), map));
+        const RaycastImages model = add_raycast(frame, map, voxels, visible, preferred_map_access(device_.caps(), map));
         const InputImages input = add_input(frame, last_.depth, last_.color, camera());
-        return {model.position_m, model.normal, input.filtered_depth_m, input.surface.normal};
+        return {model.position_m, input.filtered_depth_m};
     }
-
-    graph::ImageId add_surface(graph::Frame& frame) { return add_choose_surface(frame, cast(frame), camera()); }
 
     vulkan::Device& device_;
     Reconstruction reconstruction_;
@@ -149,7 +148,7 @@ void run(const Options& options) {
                options.extent, options.frames);
     fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
     for (const graph::Timing& timing : timings) {
-        if (timing.name.find("segmentation.") != std::string::npos) print(timing.name, distribution(timing.samples_ms));
+        print(timing.name, distribution(timing.samples_ms));
     }
     print("processor time of a frame", with);
     print("the same without segments", without);
