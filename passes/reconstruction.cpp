@@ -161,8 +161,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
     const VisibleBlocks visible = fuse(graph, ids, frame);
     VoxelMap::keep(graph, ids);
     pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}});
-    if (segmentation_)
-        pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
+    if (segmentation_) pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
     runner_.submit(std::move(graph));
     ++frames_;
     take_counts();
@@ -179,8 +178,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
-    if (segmentation_)
-        pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model));
+    if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model));
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),

@@ -1,6 +1,5 @@
 #include "passes/segmentation_model.h"
 
-#include "passes/input/unproject_depth.h"
 #include "passes/segmentation/assign_labels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
@@ -54,30 +53,26 @@ void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds&
 }
 
 FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
-                                          const gpu::Camera& depth_camera) const {
+                                          const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
-    const SurfaceInputs surfaces{inputs.model.position_m, inputs.model.normal, inputs.depth_m,
-                                 add_unproject_depth(frame, inputs.depth_m, depth_camera).normal};
-    const graph::ImageId surface = add_choose_surface(frame, surfaces, depth_camera, settings.edges);
-    if (inputs.given) return add_given_segments(frame, *inputs.given, surface, depth_camera, settings.capacity);
-    return add_segment_frame(frame, surface, depth_camera, settings);
+    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
+    return add_segment_frame(frame, inputs.model.position_m, inputs.depth_m, depth_camera, settings,
+                             ColorGuide{inputs.color_linear, color_camera});
 }
 
 graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
                                       const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
                                       const gpu::Camera& color_camera, uint32_t frame_index) const {
-    const FrameSegments seen = segments(frame, inputs, depth_camera);
+    const FrameSegments seen = segments(frame, inputs, depth_camera, color_camera);
     const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
     LabelMapIds labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const graph::ImageId known =
-        add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model, access_);
+    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model, access_);
     const SegmentOverlaps overlaps =
         add_count_overlaps(frame, table, seen, known, inputs.model.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    const SurfaceBlocks blocks =
-        add_list_surface(frame, map_, labels, visible, inputs.model.position_m, values.stamp);
+    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, visible, inputs.model.position_m, values.stamp);
     add_update_labels(frame, map_, voxels, labels, table, visible, blocks, inputs.model, seen, assigned);
     add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);

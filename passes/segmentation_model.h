@@ -21,13 +21,13 @@ struct SegmentationSettings {
     float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
     uint32_t inherit_pixels = 15;     ///< and how many at least
     uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
-    float merge_share = 0.2f;         ///< of a segment's pixels that its second label must cover to be the same object's
-    uint32_t merge_frames = 3;        ///< in which two labels were the same, less those in which they were not
-    float merge_chroma = 0.03f;       ///< labels whose mean chromaticities differ by more are not merged
-    uint32_t prune_voxels = 10;       ///< labels with fewer voxels are given up
-    uint32_t prune_frames = 30;       ///< when they were not seen for so many frames
-    uint32_t sample_every = 16;       ///< frames after which each segment's records are chosen anew; 0: never
-    uint32_t sample_observations = 4; ///< of a record that may be chosen, at least
+    float merge_share = 0.2f;    ///< of a segment's pixels that its second label must cover to be the same object's
+    uint32_t merge_frames = 3;   ///< in which two labels were the same, less those in which they were not
+    float merge_chroma = 0.03f;  ///< labels whose mean chromaticities differ by more are not merged
+    uint32_t prune_voxels = 10;  ///< labels with fewer voxels are given up
+    uint32_t prune_frames = 30;  ///< when they were not seen for so many frames
+    uint32_t sample_every = 16;  ///< frames after which each segment's records are chosen anew; 0: never
+    uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
     uint32_t sample_seed = 1;
 };
 
@@ -50,10 +50,10 @@ struct LabelStability {
 
 /// What one frame brings to the segmentation; images of the depth camera but for the colour.
 struct SegmentationInputs {
-    RaycastImages model;                   ///< the map's surface after the frame was fused
-    graph::ImageId depth_m;                ///< W x H r32f: smoothed readings
-    graph::ImageId color_linear;           ///< rgba16f, of the colour camera
-    std::optional<graph::ImageId> given{}; ///< W x H r32ui: ids that take the place of the frame's own segments
+    RaycastImages model;                    ///< the map's surface after the frame was fused
+    graph::ImageId depth_m;                 ///< W x H r32f: smoothed readings
+    graph::ImageId color_linear;            ///< rgba16f, of the colour camera
+    std::optional<graph::ImageId> given{};  ///< W x H r32ui: ids that take the place of the frame's own segments
 };
 
 /// The map's segments: a label per voxel, carried over from the segments of frames so that an object keeps its label.
@@ -70,7 +70,8 @@ class SegmentationModel {
     /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;
 
-    /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where none is known.
+    /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where
+    /// none is known.
     graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
                        const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
                        const gpu::Camera& color_camera, uint32_t frame_index) const;
@@ -90,8 +91,8 @@ class SegmentationModel {
     const SegmentSamples& samples() const { return samples_; }
 
   private:
-    FrameSegments segments(graph::Frame& frame, const SegmentationInputs& inputs,
-                           const gpu::Camera& depth_camera) const;
+    FrameSegments segments(graph::Frame& frame, const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
+                           const gpu::Camera& color_camera) const;
     gpu::SegmentationParams params(const gpu::Camera& color_camera, Extent2D extent, uint32_t frame_index) const;
 
     const VoxelMap& map_;

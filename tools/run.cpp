@@ -312,8 +312,8 @@ class Run {
                             counters.refused_blocks, options_.settings.map.capacity_blocks));
         }
         if (const uint32_t refused = reconstruction_.segment_counters().refused; refused > 0) {
-            list.push_back(fmt::format("{} segments of frames found all labels in use; raise segmentation.capacity_labels",
-                                       refused));
+            list.push_back(fmt::format(
+                "{} segments of frames found all labels in use; raise segmentation.capacity_labels", refused));
         }
         if (counters.refused_samples > 0) {
             list.push_back(

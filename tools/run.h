@@ -18,10 +18,10 @@ struct RunOptions {
     uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     uint64_t seed = 0;        ///< of everything that is drawn at random
     bool quiet = false;
-    std::filesystem::path lights;      ///< lights.json: with it the run estimates reflectance too
-    std::string lighting;              ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
-    std::string labels = "geometry";   ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
-    bool truth_materials = false;      ///< ks and alpha are those of truth/materials.json, by label
+    std::filesystem::path lights;     ///< lights.json: with it the run estimates reflectance too
+    std::string lighting;             ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    std::string labels = "geometry";  ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
+    bool truth_materials = false;     ///< ks and alpha are those of truth/materials.json, by label
     std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last fused frame; empty writes none
     vulkan::DeviceOptions device;
     ReconstructionSettings settings;

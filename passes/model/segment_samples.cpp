@@ -7,9 +7,7 @@ SegmentSamples::SegmentSamples(vulkan::Device& device, uint32_t labels)
       counts_(device.create_buffer({"segments.sample_counts", labels * sizeof(gpu::SegmentSampleCount)})),
       kept_(device.create_buffer({"segments.samples", uint64_t{labels} * gpu::kSegmentSamples * sizeof(uint32_t)})) {}
 
-void SegmentSamples::reset(graph::Frame& frame) const {
-    frame.keep(frame.fill(frame.import(counts_), 0));
-}
+void SegmentSamples::reset(graph::Frame& frame) const { frame.keep(frame.fill(frame.import(counts_), 0)); }
 
 void SegmentSamples::keep(graph::Frame& frame, const SegmentSampleIds& ids) {
     frame.keep(ids.counts);

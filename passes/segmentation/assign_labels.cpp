@@ -10,7 +10,9 @@ graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, c
     auto pass = frame.compute("segmentation.assign_labels", spirv::assign_labels);
     pass.read("Segments", segments.segments).read("SegmentCount", segments.count).read("Segmentation", params);
     pass.read("Overlaps", overlaps.table).read("OverlapList", overlaps.list);
-    const auto zeros = [&](const char* name, uint64_t bytes) { return frame.fill(frame.create_buffer(name, bytes), 0); };
+    const auto zeros = [&](const char* name, uint64_t bytes) {
+        return frame.fill(frame.create_buffer(name, bytes), 0);
+    };
     pass.modify("Votes", zeros("segmentation.votes", kEntries * sizeof(gpu::SegmentVote)));
     const graph::BufferId assigned =
         pass.modify("SegmentLabels", zeros("segmentation.segment_labels", kEntries * sizeof(uint32_t)));

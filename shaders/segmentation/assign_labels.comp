@@ -82,8 +82,7 @@ void find_best(uint entries) {
 }
 
 bool inherits(SegmentVote vote, uint pixels) {
-    return vote.best_pixels >= frame.inherit_pixels &&
-           float(vote.best_pixels) > frame.inherit_share * float(pixels);
+    return vote.best_pixels >= frame.inherit_pixels && float(vote.best_pixels) > frame.inherit_share * float(pixels);
 }
 
 bool joins(SegmentVote vote, uint pixels) {
@@ -216,8 +215,8 @@ void discount_pairs() {
         if (pair.count == 0u) continue;
         const uint low = pair.labels & 0xffffu, high = pair.labels >> 16;
         const bool live = parents[low] == low && parents[high] == high;
-        const bool apart = pair.stamp != frame.stamp && labels[low].seen == frame.stamp &&
-                           labels[high].seen == frame.stamp;
+        const bool apart =
+            pair.stamp != frame.stamp && labels[low].seen == frame.stamp && labels[high].seen == frame.stamp;
         if (!live) pairs[i].count = 0u;
         if (live && apart) pairs[i].count = pair.count - 1u;
     }

@@ -65,32 +65,32 @@ struct SegmentOverlap {
 
 // Counts that live on the GPU. The host reads them two frames late.
 struct SegmentCounters {
-    uint live;               // labels
-    uint high_water;         // every label in use is below this
-    uint free_head;          // the next label to hand out, an index into the ring of free labels
-    uint free_labels;        // how many there are from there on
-    uint created;            // over the whole run
-    uint merged;             // likewise
-    uint pruned;             // likewise
-    uint refused;            // likewise: segments that found all labels in use
-    uint overflows;          // likewise: frames whose overlap table was too small; they change nothing
-    uint frame_merged;       // in this frame
-    uint frame_voxels;       // voxels that this frame's segments voted on
-    uint frame_flips;        // of these, how many went from one label to another
+    uint live;          // labels
+    uint high_water;    // every label in use is below this
+    uint free_head;     // the next label to hand out, an index into the ring of free labels
+    uint free_labels;   // how many there are from there on
+    uint created;       // over the whole run
+    uint merged;        // likewise
+    uint pruned;        // likewise
+    uint refused;       // likewise: segments that found all labels in use
+    uint overflows;     // likewise: frames whose overlap table was too small; they change nothing
+    uint frame_merged;  // in this frame
+    uint frame_voxels;  // voxels that this frame's segments voted on
+    uint frame_flips;   // of these, how many went from one label to another
 };
 
 struct SegmentationParams {
     Camera color_camera;
-    uvec2 extent;           // of the depth camera
-    uint stamp;             // the frame's index + 1
-    uint capacity;          // labels, label 0 included
-    uint overlap_slots;     // a power of two
-    uint given;             // 1: a segment's key is its label
-    float inherit_share;    // of a segment's pixels
+    uvec2 extent;         // of the depth camera
+    uint stamp;           // the frame's index + 1
+    uint capacity;        // labels, label 0 included
+    uint overlap_slots;   // a power of two
+    uint given;           // 1: a segment's key is its label
+    float inherit_share;  // of a segment's pixels
     uint inherit_pixels;
-    float merge_share;      // of a segment's pixels, for its second label
+    float merge_share;  // of a segment's pixels, for its second label
     uint merge_count;
-    float merge_chroma;     // the largest difference of chromaticities
+    float merge_chroma;  // the largest difference of chromaticities
     uint new_pixels;
     uint prune_voxels;
     uint prune_frames;

@@ -63,6 +63,20 @@ TEST(Previews, DepthRunsFromBlueToRed) {
     EXPECT_EQ(pixel(sheet, 120, 3, 100, 40), kGrey);
 }
 
+TEST(Previews, LabelsHaveColoursOfTheirOwn) {
+    FrameDump frame = half_seen(kExtent);
+    frame.label = Image<float>(kExtent);
+    for (uint32_t x = 0; x < 60; ++x) frame.label.at(x, 10) = static_cast<float>(x);
+    const cv::Mat sheet = decode(preview_png(input_of(kExtent), frame));
+    ASSERT_EQ(sheet.cols, 4 * 120 + 3 * kGap);
+    EXPECT_EQ(pixel(sheet, 120, 3, 0, 10), kGrey) << "no label";
+    for (int x = 1; x < 59; ++x) {
+        const glm::ivec3 apart =
+            glm::abs(glm::ivec3(pixel(sheet, 120, 3, x, 10)) - glm::ivec3(pixel(sheet, 120, 3, x + 1, 10)));
+        EXPECT_GT(apart.r + apart.g + apart.b, 60) << x;
+    }
+}
+
 TEST(Previews, EveryPanelHasACaption) {
     const cv::Mat sheet = decode(preview_png(input_of(kExtent), half_seen(kExtent), {.depth = true}));
     for (int panel = 0; panel < 4; ++panel) {

@@ -50,6 +50,17 @@ sensor::SrgbPixel color_pixel(glm::vec3 linear) {
 
 sensor::SrgbPixel normal_pixel(glm::vec3 normal) { return to_pixel(normal * 0.5f + 0.5f); }
 
+sensor::SrgbPixel label_pixel(float label) {
+    if (!(label > 0)) return kNoValue;
+    // Hues a golden section apart never come close to those of the numbers just before; brightness alternates too.
+    const float hue = std::fmod(label * 0.61803399f, 1.0f) * 6, value = 255 - 45 * std::fmod(label, 3.0f);
+    const auto channel = [&](float offset) {
+        const float away = std::abs(std::fmod(hue + offset, 6.0f) - 3);
+        return static_cast<uint8_t>(value * (0.25f + 0.75f * std::clamp(away - 1, 0.0f, 1.0f)));
+    };
+    return {channel(0), channel(4), channel(2)};
+}
+
 sensor::SrgbPixel map_pixel(ColorMap map, float value) {
     static const std::array<Levels, 3> kLevels{levels_of(cv::COLORMAP_TURBO), levels_of(cv::COLORMAP_VIRIDIS),
                                                levels_of(cv::COLORMAP_INFERNO)};

@@ -21,6 +21,9 @@ sensor::SrgbPixel color_pixel(glm::vec3 linear);
 /// A unit normal as n / 2 + 1/2.
 sensor::SrgbPixel normal_pixel(glm::vec3 normal);
 
+/// A colour for each label, neighbours in number far apart; kNoValue for 0.
+sensor::SrgbPixel label_pixel(float label);
+
 /// Colour maps for 0..1; what lies outside is clipped, NaN is 0.
 enum class ColorMap {
     kTurbo,    ///< from blue to red: many steps can be told apart

@@ -97,6 +97,10 @@ std::string preview_png(const sensor::ColorImage& input, const FrameDump& model,
     std::vector<Panel> panels = {{options.title.empty() ? "input" : "input, " + options.title, draw_input(input)},
                                  {"reconstruction", draw(model.rgb, &model.valid, color_pixel)},
                                  {"normals", draw(model.normal, &model.valid, normal_pixel)}};
+    if (!model.label.empty()) {
+        check_extent("label", model.label.extent(), extent);
+        panels.push_back({"segments", draw(model.label, &model.valid, label_pixel)});
+    }
     if (options.depth) {
         check_extent("depth", model.depth_m.extent(), extent);
         panels.push_back(depth_panel(model));
