@@ -33,6 +33,10 @@ void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera
     }
 }
 
+SurfaceView surface_of(const VisibleBlocks& visible, const RaycastImages& model) {
+    return {model.position_m, model.normal, visible.view, visible.grid};
+}
+
 /// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
 const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
@@ -120,7 +124,7 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
 
 graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                                        const RaycastImages& model, const InputImages& input, const RgbdFrame& frame) {
-    SegmentationInputs inputs{model, input.filtered_depth_m, input.color, {}};
+    SegmentationInputs inputs{surface_of(visible, model), input.filtered_depth_m, input.color, {}};
     if (settings_.segmentation->given) {
         const Extent2D extent = frame.depth.camera.extent;
         std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
@@ -128,7 +132,7 @@ graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& i
         inputs.given = graph.upload("labels", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
     }
     return segmentation_->add(
-        graph, ids, visible, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+        graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
         make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)), frames_);
 }
 
@@ -178,7 +182,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
-    if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, visible, model));
+    if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, surface_of(visible, model)));
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),

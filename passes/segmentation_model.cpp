@@ -56,24 +56,25 @@ FrameSegments SegmentationModel::segments(graph::Frame& frame, const Segmentatio
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
     if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
-    return add_segment_frame(frame, inputs.model.position_m, inputs.depth_m, depth_camera, settings,
+    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera, settings,
                              ColorGuide{inputs.color_linear, color_camera});
 }
 
-graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                                      const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
-                                      const gpu::Camera& color_camera, uint32_t frame_index) const {
+graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
+                                      const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
+                                      uint32_t frame_index) const {
+    const SurfaceView& surface = inputs.surface;
     const FrameSegments seen = segments(frame, inputs, depth_camera, color_camera);
-    const gpu::SegmentationParams values = params(color_camera, visible.extent, frame_index);
+    const gpu::SegmentationParams values = params(color_camera, frame.shape(surface.position_m).extent, frame_index);
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
     LabelMapIds labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, visible, inputs.model, access_);
+    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, surface, access_);
     const SegmentOverlaps overlaps =
-        add_count_overlaps(frame, table, seen, known, inputs.model.position_m, inputs.color_linear, uniforms);
+        add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, visible, inputs.model.position_m, values.stamp);
-    add_update_labels(frame, map_, voxels, labels, table, visible, blocks, inputs.model, seen, assigned);
+    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, surface, values.stamp);
+    add_update_labels(frame, map_, voxels, labels, table, surface, blocks, seen, assigned);
     add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);
@@ -92,9 +93,8 @@ void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& m
     SegmentSamples::keep(frame, ids);
 }
 
-graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const VisibleBlocks& visible,
-                                           const RaycastImages& model) const {
-    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, visible, model, access_);
+graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const SurfaceView& surface) const {
+    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, surface, access_);
 }
 
 std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {

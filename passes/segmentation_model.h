@@ -4,12 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "passes/fusion/raycast.h"
 #include "passes/model/label_map.h"
+#include "passes/model/map_access.h"
 #include "passes/model/observation_map.h"
 #include "passes/model/segment_samples.h"
 #include "passes/model/segment_table.h"
 #include "passes/segmentation/segment_frame.h"
+#include "passes/segmentation/surface_view.h"
 
 namespace patina {
 
@@ -50,7 +51,7 @@ struct LabelStability {
 
 /// What one frame brings to the segmentation; images of the depth camera but for the colour.
 struct SegmentationInputs {
-    RaycastImages model;                    ///< the map's surface after the frame was fused
+    SurfaceView surface;                    ///< the map's, after the frame was fused
     graph::ImageId depth_m;                 ///< W x H r32f: smoothed readings
     graph::ImageId color_linear;            ///< rgba16f, of the colour camera
     std::optional<graph::ImageId> given{};  ///< W x H r32ui: ids that take the place of the frame's own segments
@@ -72,9 +73,8 @@ class SegmentationModel {
 
     /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where
     /// none is known.
-    graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                       const SegmentationInputs& inputs, const gpu::Camera& depth_camera,
-                       const gpu::Camera& color_camera, uint32_t frame_index) const;
+    graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
+                       const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index) const;
 
     /// Brings one part of the observations' labels up to date with merged and pruned segments, another in every frame,
     /// and chooses the segments' records when that is due. To be called in every frame in which add() was.
@@ -82,7 +82,7 @@ class SegmentationModel {
                      uint32_t frame_index) const;
 
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
-    graph::ImageId add_view(graph::Frame& frame, const VisibleBlocks& visible, const RaycastImages& model) const;
+    graph::ImageId add_view(graph::Frame& frame, const SurfaceView& surface) const;
 
     std::vector<VoxelMap::PoolBytes> memory() const;
     const SegmentationSettings& settings() const { return settings_; }

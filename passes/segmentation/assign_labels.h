@@ -2,8 +2,8 @@
 
 #include "engine/graph/frame.h"
 #include "passes/model/segment_table.h"
-#include "passes/segmentation/count_overlaps.h"
 #include "passes/segmentation/frame_segments.h"
+#include "passes/segmentation/segment_overlaps.h"
 
 namespace patina {
 

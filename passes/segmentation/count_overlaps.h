@@ -3,14 +3,9 @@
 #include "engine/graph/frame.h"
 #include "passes/model/segment_table.h"
 #include "passes/segmentation/frame_segments.h"
+#include "passes/segmentation/segment_overlaps.h"
 
 namespace patina {
-
-/// What each segment of a frame shares with each label of the map.
-struct SegmentOverlaps {
-    graph::BufferId table;  ///< gpu::SegmentOverlap[gpu::SegmentationParams::overlap_slots], a hash table
-    graph::BufferId list;   ///< u32: entries, then their slots in no order; three quarters of the slots: overflow
-};
 
 /// Slots of the overlap table for pictures of this extent: a segment of which a label covers less than some pixels
 /// does not matter.

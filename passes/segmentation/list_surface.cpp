@@ -6,14 +6,14 @@
 namespace patina {
 
 SurfaceBlocks add_list_surface(graph::Frame& frame, const VoxelMap& map, LabelMapIds& labels,
-                               const VisibleBlocks& visible, graph::ImageId position_m, uint32_t stamp) {
-    const Extent2D extent = frame.shape(position_m).extent;
+                               const SurfaceView& surface, uint32_t stamp) {
+    const Extent2D extent = frame.shape(surface.position_m).extent;
     const uint64_t entries = 1 + map.settings().capacity_blocks;
     SurfaceBlocks out;
     out.list = frame.fill(frame.create_buffer("segmentation.surface", entries * sizeof(uint32_t)), 0, 4);
     out.arguments = frame.fill(frame.create_buffer("segmentation.surface_arguments", 16), 1);
     auto pass = frame.compute("segmentation.list_surface", spirv::list_surface);
-    pass.read("position_m", position_m).read("View", visible.view).read("ViewGrid", visible.grid);
+    pass.read("position_m", surface.position_m).read("View", surface.view).read("ViewGrid", surface.view_grid);
     pass.push(gpu::ListSurfaceParams{stamp, 0, 0, 0});
     labels.stamps = pass.modify("Stamps", labels.stamps);
     out.list = pass.modify("Surface", out.list);

@@ -5,12 +5,12 @@
 namespace patina {
 
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
-                       SegmentTableIds& table, const VisibleBlocks& visible, const SurfaceBlocks& blocks,
-                       const RaycastImages& model, const FrameSegments& segments, graph::BufferId segment_labels) {
-    frame.common_extent({model.position_m, model.normal, segments.segment});
+                       SegmentTableIds& table, const SurfaceView& surface, const SurfaceBlocks& blocks,
+                       const FrameSegments& segments, graph::BufferId segment_labels) {
+    frame.common_extent({surface.position_m, surface.normal, segments.segment});
     auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
-    pass.read("Surface", blocks.list).read("BlockKeys", ids.block_keys).read("View", visible.view);
-    pass.read("position_m", model.position_m).read("normal", model.normal).read("segment", segments.segment);
+    pass.read("Surface", blocks.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
+    pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
     pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
     pass.specialise("kVoxelChunks", map.chunks());
     labels.words = pass.modify("Words", labels.words);
