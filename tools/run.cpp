@@ -3,27 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "engine/graph/plan/plan.h"
-#include "sensor/ledger.h"
-#include "sensor/open.h"
-#include "sensor/prefetch.h"
-#include "sensor/synthetic/scene_file.h"
-#include "sensor/synthetic/synthetic_source.h"
 #include "tools/export/report.h"
 #include "tools/export/run_record.h"
-#include "tools/export/trajectory.h"
-#include "tools/export/write_glb.h"
 #include "tools/frame_dumps.h"
-#include "tools/interrupt.h"
-#include "tools/lights.h"
-#include "tools/progress.h"
-#include "tools/rgbd_frame.h"
 #include "tools/run_settings.h"
-#include "tools/run_truth.h"
+#include "tools/scene_files.h"
 #include "tools/version.h"
 
 namespace patina::tools {
@@ -32,66 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::string_view kSynthetic = "synthetic:";
-constexpr uint32_t kSyntheticFrames = 120;
-
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-bool is_synthetic(const RunOptions& options) { return options.sequence.starts_with(kSynthetic); }
-
-/// A recording is opened before the device, so that a wrong path is told at once.
-std::unique_ptr<sensor::Source> open_recording(const RunOptions& options) {
-    auto source = sensor::open_sequence(options.sequence, options.format);
-    if (!source->info().has_poses) {
-        throw Error(
-            "the sequence '", options.sequence,
-            "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
-    }
-    return std::make_unique<sensor::PrefetchSource>(std::move(source));
-}
-
-std::unique_ptr<sensor::SyntheticSource> open_synthetic(const RunOptions& options, vulkan::Device& device) {
-    const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
-    return std::make_unique<sensor::SyntheticSource>(device,
-                                                     sensor::load_scene(options.sequence.substr(kSynthetic.size())),
-                                                     sensor::SyntheticOptions{.frames = frames});
-}
-
-/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
-std::vector<PointLight> lights_of(const RunOptions& options) {
-    std::vector<PointLight> lights;
-    if (!options.lights.empty()) {
-        for (const sensor::PointLight& light : sensor::read_lights(options.lights))
-            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), 0});
-    } else if (!options.lighting.empty()) {
-        LightsOptions find;
-        find.sequence = options.lighting;
-        find.quiet = options.quiet;
-        find.device = options.device;
-        for (const FoundLight& light : find_lights(find))
-            lights.push_back({light.position_m, light.intensity, light.radius_m});
-        if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
-    }
-    return lights;
-}
-
-/// With lights, reflectance is estimated; without, there is nothing to estimate it from.
-ReconstructionSettings settings_of(const RunOptions& options, const std::vector<PointLight>& lights) {
-    ReconstructionSettings settings = options.settings;
-    if (lights.empty()) {
-        const bool asked = options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
-    } else if (!settings.reflectance) {
-        settings.reflectance.emplace();
-    }
-    if (options.labels == "off") {
-        settings.segmentation.reset();
-    } else if (!settings.segmentation) {
-        settings.segmentation.emplace();
-    }
-    if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
-    return settings;
-}
 
 PassTime summarised(const graph::Timing& timing) {
     std::vector<float> sorted = timing.samples_ms;
@@ -117,45 +46,21 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
 /// One run from source to folder.
 class Run {
   public:
-    Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder, vulkan::Device& device,
-        sensor::Source& source, std::vector<PointLight> lights, const RunTruth& truth)
+    Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder)
         : options_(options),
-          interrupt_(interrupt),
           folder_(folder),
-          device_(device),
-          source_(source),
-          info_(source.info()),
-          lights_(std::move(lights)),
-          truth_(truth),
-          settings_(settings_of(options, lights_)),
-          reconstruction_(device, settings_) {
-        if (reconstruction_.reflectance()) prepare_reflectance(*reconstruction_.reflectance());
-        if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
-        dumps_.emplace(folder, info_.frames, options.dump_every);
-    }
+          fusion_(options, interrupt),
+          reconstruction_(fusion_.reconstruction()),
+          dumps_(folder, fusion_.info().frames, options.dump_every) {}
 
     void fuse_all() {
-        Progress progress(info_.frames, options_.quiet);
-        for (uint32_t done = 0; done < info_.frames; ++done) {
-            stop_if_interrupted();
-            const auto reading = source_.next();
-            if (!reading) break;
-            ledger_.note(*reading);
-            if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
-                progress.say("frame " + std::to_string(skipped->index) + " is skipped: " + skipped->reason);
-            } else {
-                fuse(std::get<sensor::Frame>(*reading));
-            }
-            warn_when_full(progress);
-            progress.update(done + 1, fmt::format("{} blocks", blocks_used()));
+        try {
+            fusion_.fuse_all([this](const sensor::Frame& frame) { after(frame); });
+        } catch (const Interrupted&) {
+            dumps_.finish();
+            throw;
         }
-        reconstruction_.wait();
-        dumps_->finish();
-        if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
-        if (ledger_.used() == 0) {
-            throw Error("no frame of '", options_.sequence,
-                        "' could be used; the first was skipped because: ", ledger_.skipped().front().reason);
-        }
+        dumps_.finish();
         times_s_.emplace_back("frames", seconds_since(start_));
     }
 
@@ -164,112 +69,68 @@ class Run {
         const Mesh mesh = reconstruction_.extract_surface();
         times_s_.emplace_back("surface", seconds_since(start));
         check_validation();
-        stop_if_interrupted();
-        const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
-        folder_.publish("scene.glb");
-        folder_.write("trajectory.txt", trajectory_text(poses_));
-        if (!lights_.empty()) write_lights();
+        fusion_.stop_if_interrupted();
+        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(),
+                               options_.labels == "truth" ? fusion_.truth().names() : std::vector<std::string>());
+        const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
+        folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));
         if (!options_.dump_graph.empty()) {
             write_text(options_.dump_graph.string() + ".dot", graph_dot_);
             write_text(options_.dump_graph.string() + ".json", graph_json_);
         }
         times_s_.emplace_back("total", seconds_since(start_));
-        const RunRecord record = make_record(scene);
-        folder_.write("report.html", report_html(record, dumps_->previews()));
-        stop_if_interrupted();
+        RunRecord record = make_record(summary);
+        scene.tell(record);
+        folder_.write("report.html", report_html(record, dumps_.previews()));
+        fusion_.stop_if_interrupted();
         folder_.write("run.json", run_json(record));
         if (!options_.quiet) {
-            fmt::print("{} of {} frames, {} triangles in {}\n", ledger_.used(), info_.frames, scene.triangles,
-                       folder_.path().string());
+            fmt::print("{} of {} frames, {} triangles in {}\n", fusion_.ledger().used(), fusion_.info().frames,
+                       summary.triangles, folder_.path().string());
             for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
         }
     }
 
   private:
-    void prepare_reflectance(ReflectanceModel& reflectance) {
-        reflectance.set_lights(lights_);
-        if (!options_.truth_materials) return;
-        for (const sensor::Material& m : truth_.materials())
-            reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
-    }
-
-    void fuse(const sensor::Frame& frame) {
-        if (!frame.world_from_camera) {
-            ledger_.skip(frame.index, fmt::format("frame {} has no pose", frame.index));
-            return;
-        }
-        RgbdFrame rgbd = to_rgbd(info_, frame);
-        Image<uint16_t> labels;
-        if (settings_.segmentation && settings_.segmentation->given) {
-            labels = truth_.labels(frame.index, info_.depth.extent);
-            rgbd.labels = labels.pixels();
-        }
-        reconstruction_.add(rgbd);
-        ledger_.use(frame.index);
-        poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+    void after(const sensor::Frame& frame) {
         if (!options_.dump_graph.empty()) {
             const graph::CompiledFrame& compiled = reconstruction_.runner().last_frame();
             graph_dot_ = graph::to_dot(compiled.description, compiled.plan);
             graph_json_ = graph::to_json(compiled.description, compiled.plan);
         }
-        dumps_->after(reconstruction_, info_, frame);
-        if (ledger_.used() == 1) {
+        dumps_.after(reconstruction_, fusion_.info(), frame);
+        if (fusion_.ledger().used() == 1) {
             reconstruction_.wait();
             times_s_.emplace_back("first_fused_frame", seconds_since(start_));
         }
     }
 
-    void stop_if_interrupted() {
-        if (!interrupt_.requested()) return;
-        reconstruction_.wait();
-        dumps_->finish();
-        throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames; '",
-                          folder_.path().string(), "' holds what was complete, and no run.json");
-    }
-
-    void write_lights() {
-        std::vector<sensor::PointLight> lights;
-        for (const PointLight& light : lights_)
-            lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
-        sensor::write_lights(folder_.stage("lights.json"), lights);
-        folder_.publish("lights.json");
-    }
-
-    void check_validation() const {
-        if (const auto messages = device_.validation_messages(); !messages.empty()) {
+    void check_validation() {
+        if (const auto messages = fusion_.device().validation_messages(); !messages.empty()) {
             throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
         }
-    }
-
-    uint32_t blocks_used() { return options_.settings.map.capacity_blocks - reconstruction_.counters().free_blocks; }
-
-    void warn_when_full(Progress& progress) {
-        if (warned_full_ || reconstruction_.counters().refused_blocks == 0) return;
-        warned_full_ = true;
-        progress.say(fmt::format("warning: the voxel pool of {} blocks is full; new surface is left out from here on",
-                                 options_.settings.map.capacity_blocks));
     }
 
     RunRecord make_record(const GlbSummary& scene) {
         RunRecord record;
         record.version = kVersion;
-        const vulkan::DeviceCaps& caps = device_.caps();
+        const vulkan::DeviceCaps& caps = fusion_.device().caps();
         record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
         record.seed = options_.seed;
-        record.settings = settings_json(settings_);
-        record.settings["lights"] = lights_.size();
+        record.settings = settings_json(fusion_.settings());
+        record.settings["lights"] = fusion_.lights().size();
         record.settings["labels"] = options_.labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
         record.settings["dump_every"] = options_.dump_every;
-        record.sequence = info_;
-        record.frames = {ledger_.read(), ledger_.used(), ledger_.skipped()};
+        record.sequence = fusion_.info();
+        record.frames = {fusion_.ledger().read(), fusion_.ledger().used(), fusion_.ledger().skipped()};
         const gpu::MapCounters& counters = reconstruction_.counters();
         const uint64_t capacity = options_.settings.map.capacity_blocks;
-        record.voxel_pool = {blocks_used(), capacity, counters.refused_blocks};
+        record.voxel_pool = {fusion_.blocks_used(), capacity, counters.refused_blocks};
         for (const auto& pool : reconstruction_.map().memory()) {
-            record.memory.push_back({pool.name, pool.bytes, blocks_used(), capacity});
+            record.memory.push_back({pool.name, pool.bytes, fusion_.blocks_used(), capacity});
         }
         if (const SegmentationModel* segmentation = reconstruction_.segmentation()) {
             for (const auto& pool : segmentation->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
@@ -282,7 +143,7 @@ class Run {
                          {"triangles", scene.triangles},
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
-        if (settings_.segmentation) add_segment_totals(record);
+        if (reconstruction_.segmentation()) add_segment_totals(record);
         record.warnings = warnings(counters);
         for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
             if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
@@ -328,22 +189,13 @@ class Run {
     }
 
     const RunOptions& options_;
-    const InterruptGuard& interrupt_;
     OutputFolder& folder_;
-    vulkan::Device& device_;
-    sensor::Source& source_;
-    sensor::SequenceInfo info_;
     Clock::time_point start_ = Clock::now();
-    std::vector<PointLight> lights_;
-    const RunTruth& truth_;
-    ReconstructionSettings settings_;
-    Reconstruction reconstruction_;
-    sensor::Ledger ledger_;
-    std::optional<FrameDumps> dumps_;
-    std::vector<TimedPose> poses_;
+    SequenceFusion fusion_;
+    Reconstruction& reconstruction_;
+    FrameDumps dumps_;
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;
-    bool warned_full_ = false;
 };
 
 }  // namespace
@@ -352,18 +204,14 @@ void run(const RunOptions& options) {
     const InterruptGuard interrupt;  // from the first file to the last, so that none is left half-written
     OutputFolder folder(options.out);
     check_graph_folder(options.dump_graph);
-    std::optional<vulkan::Device> device;  // outlives the source, which may compute on it
-    std::unique_ptr<sensor::Source> recorded;
-    std::unique_ptr<sensor::SyntheticSource> rendered;
-    if (!is_synthetic(options)) recorded = open_recording(options);
-    std::vector<PointLight> lights = lights_of(options);
-    device.emplace(options.device);
-    if (is_synthetic(options)) rendered = open_synthetic(options, *device);
-    const RunTruth truth(options.sequence, rendered.get());
-    sensor::Source& source = recorded ? *recorded : *rendered;
-    Run job(options, interrupt, folder, *device, source, std::move(lights), truth);
-    job.fuse_all();
-    job.write_results();
+    try {
+        Run job(options, interrupt, folder);
+        job.fuse_all();
+        job.write_results();
+    } catch (const Interrupted& interrupted) {
+        throw Interrupted(interrupted.what(), "; '", folder.path().string(),
+                          "' holds what was complete, and no run.json");
+    }
 }
 
 }  // namespace patina::tools

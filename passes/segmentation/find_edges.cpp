@@ -1,5 +1,7 @@
 #include "passes/segmentation/find_edges.h"
 
+#include <cmath>
+
 #include "engine/core/error.h"
 #include "spirv/shaders.h"
 
@@ -24,8 +26,8 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
     gpu::FrameSurfaceParams params{};
     params.focal_center_px = camera.focal_center_px;
     params.extent = camera.extent;
-    params.jump_m = settings.jump.floor_m;
-    params.jump_slope = settings.jump.slope;
+    params.jump_m = settings.jump_m;
+    params.jump_slope = std::tan(glm::radians(settings.steepest_degrees)) / camera.focal_center_px.x;
     params.noise_floor_m = settings.noise.floor_m;
     params.noise_per_m = settings.noise.per_m;
     params.reach_px_m = settings.reach_m * camera.focal_center_px.x;

@@ -13,23 +13,19 @@ struct DepthNoise {
     float per_m = 0.00025f;  ///< 1 / m
 };
 
-/// Pixels that are k apart lie on one surface where their depths differ by at most floor_m + k slope z. At Kinect-like
-/// focal lengths a surface inclined by 75 degrees changes by 1 % of its depth from pixel to pixel.
-struct SurfaceJump {
-    float floor_m = 0.01f;
-    float slope = 0.015f;
-};
-
 /// What belongs together in a frame.
 struct EdgeSettings {
     DepthNoise noise;
-    SurfaceJump jump;
+    /// Pixels k apart lie on one surface where their depths differ by at most jump_m plus k times what a surface with
+    /// the steepest inclination changes from pixel to pixel.
+    float jump_m = 0.01f;
+    float steepest_degrees = 80;
     float reach_m =
         0.015f;  ///< normals come from pixels so far away on a surface seen head-on, and are compared there,
     uint32_t min_reach_px = 2;
     uint32_t max_reach_px = 4;
     float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
-    float crease_sigmas = 2;      ///< and so many times what noise does to the angle
+    float crease_sigmas = 0.5f;   ///< and so many times what noise does to the angle
     float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
     float claim_sigmas = 3;       ///< and so many sigmas of its depth,
     uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y

@@ -6,11 +6,11 @@
 
 namespace patina {
 
-Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_m, const SurfaceJump& jump) {
+Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_m, float jump_m, float jump_slope) {
     const Extent2D extent = frame.shape(inner_depth_m).extent;
     const uint32_t pixels = extent.width * extent.height, words = words_of(extent);
     const gpu::LabelComponentsParams params{
-        {extent.width, extent.height}, row_words_of(extent), jump.floor_m, jump.slope, 0, 0, 0};
+        {extent.width, extent.height}, row_words_of(extent), jump_m, jump_slope, 0, 0, 0};
 
     auto label = frame.compute("segmentation.label_runs", spirv::label_runs);
     label.read("inner_depth_m", inner_depth_m).push(params);

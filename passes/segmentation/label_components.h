@@ -1,7 +1,6 @@
 #pragma once
 
 #include "engine/graph/frame.h"
-#include "passes/segmentation/find_edges.h"
 
 namespace patina {
 
@@ -12,9 +11,9 @@ struct Components {
 };
 
 /// Labels connected components, with four neighbours, of the pixels whose `inner_depth_m` (W x H r32f) is above 0
-/// and without a jump between them.
+/// and whose depths differ by at most jump_m + jump_slope times the larger one.
 /// Union-find over runs (Komura 2015; Playne and Hawick 2018): the result does not depend on the order in which
 /// invocations run. Throws Error for pictures of 2^31 pixels or more.
-Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_m, const SurfaceJump& jump = {});
+Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_m, float jump_m, float jump_slope);
 
 }  // namespace patina

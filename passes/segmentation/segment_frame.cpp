@@ -21,7 +21,7 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
     const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
     graph::ImageId inner_depth_m = add_find_edges(frame, depth_m, normal, params);
     if (colors) inner_depth_m = add_cut_colors(frame, inner_depth_m, camera, *colors);
-    const auto [component, pixels] = add_label_components(frame, inner_depth_m, settings.edges.jump);
+    const auto [component, pixels] = add_label_components(frame, inner_depth_m, params.jump_m, params.jump_slope);
     const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
     return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
 }

@@ -9,7 +9,7 @@
 namespace patina {
 
 struct SegmentSettings {
-    EdgeSettings edges;
+    EdgeSettings edges{};
     uint32_t min_pixels = 60;     ///< smaller components are dropped
     uint32_t claim_reach_px = 6;  ///< how far from a segment pixels without one may join it
     uint32_t capacity = gpu::kMaxFrameSegments;

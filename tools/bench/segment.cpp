@@ -148,7 +148,7 @@ void run(const Options& options) {
                options.extent, options.frames);
     fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
     for (const graph::Timing& timing : timings) {
-        print(timing.name, distribution(timing.samples_ms));
+        if (timing.name.find("segmentation.") != std::string::npos) print(timing.name, distribution(timing.samples_ms));
     }
     print("processor time of a frame", with);
     print("the same without segments", without);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -21,9 +22,6 @@ sensor::SrgbPixel color_pixel(glm::vec3 linear);
 /// A unit normal as n / 2 + 1/2.
 sensor::SrgbPixel normal_pixel(glm::vec3 normal);
 
-/// A colour for each label, neighbours in number far apart; kNoValue for 0.
-sensor::SrgbPixel label_pixel(float label);
-
 /// Colour maps for 0..1; what lies outside is clipped, NaN is 0.
 enum class ColorMap {
     kTurbo,    ///< from blue to red: many steps can be told apart
@@ -31,6 +29,9 @@ enum class ColorMap {
     kInferno,  ///< from black to pale yellow; even to the eye, in grey print too
 };
 sensor::SrgbPixel map_pixel(ColorMap map, float value);
+
+/// A colour for a label, the same in every picture; neighbouring labels differ clearly. Label 0 is kNoValue.
+sensor::SrgbPixel label_pixel(uint32_t label);
 
 /// Turns every pixel into a colour with `to_pixel`; where `valid`, if given, is at most 1/2, into kNoValue.
 template <class Pixel, class ToPixel>
