@@ -34,6 +34,10 @@ void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera
     }
 }
 
+SurfaceView surface_of(const VisibleBlocks& visible, const RaycastImages& model) {
+    return {model.position_m, model.normal, visible.view, visible.grid};
+}
+
 /// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
 const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
@@ -49,6 +53,7 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 
 ModelView PendingView::get() const {
     ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
+    if (label_) view.label = label_->image<uint32_t>();
     if (reflectance_) {
         view.reflectance = {
             widened(reflectance_->kd),  widened(reflectance_->ks_alpha), reflectance_->label.image<uint32_t>(),
@@ -65,6 +70,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
+    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -90,15 +96,24 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
     add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
+    if (segmentation_) segmentation_->clear_new_blocks(graph, ids);
     const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
                   fusion.color ? std::optional(input.color) : std::nullopt);
-    if (reflectance_) observe(graph, ids, visible, input, slope, frame);
-    if (settings_.view_every_frame) {
+    if (segmentation_ || reflectance_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-        graph.keep(model.position_m);
-        graph.keep(model.normal);
+        ObservationInputs observed{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
+        if (segmentation_) observed.labels = segment(graph, ids, visible, model, input, frame);
+        if (segmentation_ && reflectance_) {
+            ObservationMapIds records = reflectance_->observations().import(graph);
+            segmentation_->add_records(graph, reflectance_->observations(), records, frames_);
+        }
+        if (reflectance_) observe(graph, ids, observed, frame);
+        if (settings_.view_every_frame) {
+            graph.keep(model.position_m);
+            graph.keep(model.normal);
+        }
     }
     if (settings_.remove_every > 0 && frames_ % settings_.remove_every == settings_.remove_every - 1) {
         add_remove_empty_blocks(graph, map_, ids, visible, params);
@@ -106,15 +121,22 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     return visible;
 }
 
-void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
-                             const InputImages& input, graph::ImageId slope, const RgbdFrame& frame) {
-    const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-    ObservationInputs inputs{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
-    if (!frame.labels.empty()) {
-        const std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
-        inputs.labels =
-            graph.upload("labels", {frame.depth.camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
+graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                                       const RaycastImages& model, const InputImages& input, const RgbdFrame& frame) {
+    SegmentationInputs inputs{surface_of(visible, model), input.filtered_depth_m, input.color, {}};
+    if (settings_.segmentation->given) {
+        const Extent2D extent = frame.depth.camera.extent;
+        std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());
+        words.resize(extent.area());
+        inputs.given = graph.upload("labels", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
     }
+    return segmentation_->add(
+        graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)), frames_);
+}
+
+void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs,
+                             const RgbdFrame& frame) {
     reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
                       make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
                       frames_);
@@ -142,13 +164,15 @@ void Reconstruction::add(const RgbdFrame& frame) {
         const glm::dvec3 center_m(frame.world_from_depth[3]);
         map_.reset(graph, center_m);
         if (reflectance_) reflectance_->reset(graph, center_m);
+        if (segmentation_) segmentation_->reset(graph);
         runner_.submit(std::move(graph));
     }
     graph::Frame graph = runner_.begin();
     VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = fuse(graph, ids, frame);
     VoxelMap::keep(graph, ids);
-    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t))});
+    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}});
+    if (segmentation_) pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
     runner_.submit(std::move(graph));
     ++frames_;
     take_counts();
@@ -165,6 +189,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.position_m_ = graph.read_back(model.position_m);
     pending.normal_ = graph.read_back(model.normal);
     pending.color_ = graph.read_back(color);
+    if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, surface_of(visible, model)));
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
         pending.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
@@ -189,6 +214,10 @@ void Reconstruction::take_counts() {
     while (!pending_counts_.empty() && pending_counts_.front().counters.ready()) {
         counters_ = pending_counts_.front().counters.as<gpu::MapCounters>().front();
         visible_blocks_ = pending_counts_.front().visible_blocks.as<uint32_t>().front();
+        if (const auto& segments = pending_counts_.front().segments) {
+            segment_counters_ = segments->as<gpu::SegmentCounters>().front();
+            label_stability_.add(segment_counters_);
+        }
         pending_counts_.pop_front();
     }
 }
@@ -196,6 +225,16 @@ void Reconstruction::take_counts() {
 const gpu::MapCounters& Reconstruction::counters() {
     take_counts();
     return counters_;
+}
+
+const LabelStability& Reconstruction::label_stability() {
+    take_counts();
+    return label_stability_;
+}
+
+const gpu::SegmentCounters& Reconstruction::segment_counters() {
+    take_counts();
+    return segment_counters_;
 }
 
 uint32_t Reconstruction::visible_blocks() {

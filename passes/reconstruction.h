@@ -14,6 +14,7 @@
 #include "passes/input/input.h"
 #include "passes/model/voxel_map.h"
 #include "passes/reflectance_model.h"
+#include "passes/segmentation_model.h"
 #include "passes/surface/mesh.h"
 #include "passes/surface/mesh_reflectance.h"
 
@@ -28,6 +29,8 @@ struct ReconstructionSettings {
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
     /// Observations and albedo beside the geometry; empty: none. Needs lights (Reconstruction::reflectance).
     std::optional<ReflectanceModelSettings> reflectance{};
+    /// Segments of the map; empty: none.
+    std::optional<SegmentationSettings> segmentation{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -37,7 +40,8 @@ struct RgbdFrame {
     ColorInput color;
     RigidTransform color_from_depth{1.0};
     RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
-    /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known.
+    /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known. Used where the
+    /// settings say that segments are given.
     std::span<const uint16_t> labels{};
 };
 
@@ -46,6 +50,7 @@ struct ModelView {
     Image<glm::vec4> position_m;  ///< world; w: depth along the optical axis, 0 where nothing was hit
     Image<glm::vec4> normal;      ///< world, unit length; 0 where nothing was hit
     Image<glm::vec4> color;       ///< linear; a = 0 where there is none
+    Image<uint32_t> label{};      ///< segment of the map, 0: none; empty without segmentation
 
     /// What the model reflects, where it has reflectance (shading/predict_radiance.h).
     struct Reflectance {
@@ -72,6 +77,7 @@ class PendingView {
         graph::Readback kd, ks_alpha, label, rgb, light, segments;
     };
     graph::Readback position_m_, normal_, color_;
+    std::optional<graph::Readback> label_;
     std::optional<Reflectance> reflectance_;
 };
 
@@ -108,6 +114,15 @@ class Reconstruction {
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
+    /// The segments' counters as of at most two frames ago; exact after wait(). Zero without segmentation.
+    const gpu::SegmentCounters& segment_counters();
+
+    /// How steady the segments' labels were in the frames that segment_counters() tells of.
+    const LabelStability& label_stability();
+
+    /// The segments of the map; null when the settings have none.
+    const SegmentationModel* segmentation() const { return segmentation_ ? &*segmentation_ : nullptr; }
+
     /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
     /// Without reflectance nothing changes. Throws Error as Lights::set does.
     void relight(std::span<const PointLight> lights);
@@ -123,8 +138,9 @@ class Reconstruction {
 
   private:
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
-    void observe(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible, const InputImages& input,
-                 graph::ImageId slope, const RgbdFrame& frame);
+    graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                           const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
+    void observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs, const RgbdFrame& frame);
     void check(const RgbdFrame& frame) const;
     void take_counts();
 
@@ -133,13 +149,17 @@ class Reconstruction {
     VoxelMap map_;
     MapAccess access_;
     std::optional<ReflectanceModel> reflectance_;
+    std::optional<SegmentationModel> segmentation_;
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;
+        std::optional<graph::Readback> segments;
     };
     std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
     uint32_t visible_blocks_ = 0;
+    gpu::SegmentCounters segment_counters_{};
+    LabelStability label_stability_;
 };
 
 }  // namespace patina

@@ -54,6 +54,9 @@ class ReflectanceModel {
     void add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
              const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index);
 
+    /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
+    const ObservationMap& observations() const { return observations_; }
+
     /// Brings every record up to date.
     void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);
 

@@ -54,6 +54,11 @@ FrameDump to_dump(const ModelView& view) {
         dump.rgb.pixels()[i] = glm::vec3(view.color.pixels()[i]);
     }
     if (view.reflectance) add_reflectance(dump, *view.reflectance);
+    if (!view.label.empty()) {
+        dump.label = Image<float>(extent);
+        std::transform(view.label.pixels().begin(), view.label.pixels().end(), dump.label.pixels().begin(),
+                       [](uint32_t label) { return static_cast<float>(label); });
+    }
     return dump;
 }
 

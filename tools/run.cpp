@@ -72,7 +72,7 @@ class Run {
         check_validation();
         fusion_.stop_if_interrupted();
         const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(), fusion_.illumination().ambient,
-                               options_.truth_labels ? fusion_.truth().names() : std::vector<std::string>());
+                               options_.labels == "truth" ? fusion_.truth().names() : std::vector<std::string>());
         const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
         folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));
         if (!options_.dump_graph.empty()) {
@@ -121,7 +121,7 @@ class Run {
         record.settings = settings_json(fusion_.settings());
         record.settings["lighting"] = options_.lighting;
         record.lights = lights_json(fusion_.illumination());
-        record.settings["truth_labels"] = options_.truth_labels;
+        record.settings["labels"] = options_.labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
@@ -134,6 +134,9 @@ class Run {
         for (const auto& pool : reconstruction_.map().memory()) {
             record.memory.push_back({pool.name, pool.bytes, fusion_.blocks_used(), capacity});
         }
+        if (const SegmentationModel* segmentation = reconstruction_.segmentation()) {
+            for (const auto& pool : segmentation->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
+        }
         if (ReflectanceModel* reflectance = reconstruction_.reflectance()) {
             for (const auto& pool : reflectance->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
         }
@@ -142,6 +145,7 @@ class Run {
                          {"triangles", scene.triangles},
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
+        if (reconstruction_.segmentation()) add_segment_totals(record);
         record.warnings = warnings(counters);
         for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
             if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
@@ -151,13 +155,28 @@ class Run {
         return record;
     }
 
-    std::vector<std::string> warnings(const gpu::MapCounters& counters) const {
+    void add_segment_totals(RunRecord& record) {
+        const gpu::SegmentCounters& segments = reconstruction_.segment_counters();
+        const LabelStability& stability = reconstruction_.label_stability();
+        record.totals.emplace_back("segments", segments.live);
+        record.totals.emplace_back("labels made", segments.created);
+        record.totals.emplace_back("labels merged", segments.merged);
+        record.totals.emplace_back("labels pruned", segments.pruned);
+        record.totals.emplace_back("votes for labels of voxels after the first frames", stability.voxels);
+        record.totals.emplace_back("of these, changes from one label to another", stability.flips);
+    }
+
+    std::vector<std::string> warnings(const gpu::MapCounters& counters) {
         std::vector<std::string> list;
         if (counters.refused_blocks > 0) {
             list.push_back(
                 fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
                             "map.capacity_blocks, or map.voxel_m",
                             counters.refused_blocks, options_.settings.map.capacity_blocks));
+        }
+        if (const uint32_t refused = reconstruction_.segment_counters().refused; refused > 0) {
+            list.push_back(fmt::format(
+                "{} segments of frames found all labels in use; raise segmentation.capacity_labels", refused));
         }
         if (counters.refused_samples > 0) {
             list.push_back(

@@ -32,6 +32,22 @@ void for_each_setting(Settings& s, Visit&& visit) {
     visit("view.near_m", s.near_m);
     visit("view.every_frame", s.view_every_frame);
     visit("map.remove_every", s.remove_every);
+    if (s.segmentation) {
+        visit("segmentation.capacity_labels", s.segmentation->capacity_labels);
+        visit("segmentation.min_pixels", s.segmentation->frame.min_pixels);
+        visit("segmentation.crease_degrees", s.segmentation->frame.edges.crease_degrees);
+        visit("segmentation.crease_sigmas", s.segmentation->frame.edges.crease_sigmas);
+        visit("segmentation.jump_m", s.segmentation->frame.edges.jump.floor_m);
+        visit("segmentation.jump_slope", s.segmentation->frame.edges.jump.slope);
+        visit("segmentation.inherit_share", s.segmentation->inherit_share);
+        visit("segmentation.inherit_pixels", s.segmentation->inherit_pixels);
+        visit("segmentation.new_pixels", s.segmentation->new_pixels);
+        visit("segmentation.merge_share", s.segmentation->merge_share);
+        visit("segmentation.merge_frames", s.segmentation->merge_frames);
+        visit("segmentation.merge_chroma", s.segmentation->merge_chroma);
+        visit("segmentation.prune_voxels", s.segmentation->prune_voxels);
+        visit("segmentation.prune_frames", s.segmentation->prune_frames);
+    }
     if (s.reflectance) {
         visit("reflectance.voxel_m", s.reflectance->voxel_m);
         visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
@@ -51,6 +67,7 @@ std::string known_keys() {
     std::string keys;
     ReconstructionSettings defaults;
     defaults.reflectance.emplace();
+    defaults.segmentation.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
@@ -75,6 +92,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
     if (!settings.reflectance && (key.starts_with("reflectance.") || key.starts_with("observe."))) {
         settings.reflectance.emplace();
     }
+    if (!settings.segmentation && key.starts_with("segmentation.")) settings.segmentation.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

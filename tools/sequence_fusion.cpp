@@ -42,11 +42,17 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& o
 ReconstructionSettings settings_of(const SequenceOptions& options, const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
     if (lights.empty()) {
-        const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
+        const bool asked = options.truth_materials || settings.reflectance;
         if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
+    if (options.labels == "off") {
+        settings.segmentation.reset();
+    } else if (!settings.segmentation) {
+        settings.segmentation.emplace();
+    }
+    if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
     return settings;
 }
 
@@ -123,7 +129,7 @@ void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(c
     }
     RgbdFrame rgbd = to_rgbd(info_, frame);
     Image<uint16_t> labels;
-    if (options_.truth_labels) {
+    if (options_.labels == "truth") {
         labels = truth_->labels(frame.index, info_.depth.extent);
         rgbd.labels = labels.pixels();
     }

@@ -31,8 +31,8 @@ struct SequenceOptions {
     /// in what they light in the main sequence; "none": no lights, and no reflectance. Empty: in the lighting sequence
     /// that the main sequence has, if it has one.
     std::string lighting;
-    bool truth_labels = false;     ///< segments are the objects of the sequence's truth/labels
-    bool truth_materials = false;  ///< ks and alpha are those of truth/materials.json, by label
+    std::string labels = "geometry";  ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
+    bool truth_materials = false;     ///< ks and alpha are those of truth/materials.json, by label
     vulkan::DeviceOptions device;
     ReconstructionSettings settings;
 };

@@ -14,12 +14,14 @@ constexpr uint32_t kGivenIds = 65536;
 }  // namespace
 
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::Camera& camera, const SegmentSettings& settings) {
+                                const gpu::Camera& camera, const SegmentSettings& settings,
+                                const std::optional<ColorGuide>& colors) {
     const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
     const graph::ImageId depth_m = add_choose_depth(frame, model_position_m, reading_m, params);
     const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
-    const auto [component, pixels] =
-        add_label_components(frame, add_find_edges(frame, depth_m, normal, params), params.jump_m, params.jump_slope);
+    graph::ImageId inner_depth_m = add_find_edges(frame, depth_m, normal, params);
+    if (colors) inner_depth_m = add_cut_colors(frame, inner_depth_m, camera, *colors);
+    const auto [component, pixels] = add_label_components(frame, inner_depth_m, params.jump_m, params.jump_slope);
     const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
     return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "passes/segmentation/cut_colors.h"
 #include "passes/segmentation/find_edges.h"
 #include "passes/segmentation/frame_segments.h"
 
@@ -14,10 +17,11 @@ struct SegmentSettings {
 
 /// Divides a frame into the smooth, convex parts of its surface: edges, connected components of what lies between them,
 /// and edge pixels given back to the neighbour whose tangent plane they lie on. `model_position_m` and `reading_m` as
-/// for add_choose_depth, `camera` the one that sees them. Throws Error for settings out of range, or when extents
-/// differ.
+/// for add_choose_depth, `camera` the one that sees them. With `colors` a change of colour closes gaps in edges. Throws
+/// Error for settings out of range, or when extents differ.
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::Camera& camera, const SegmentSettings& settings = {});
+                                const gpu::Camera& camera, const SegmentSettings& settings = {},
+                                const std::optional<ColorGuide>& colors = {});
 
 /// Makes a segment of all pixels with the same given id, connected or not: `given` is W x H r32ui, 0: unknown, at most
 /// 65535; larger ids count as unknown, as do pixels where `depth_m`, W x H r32f, is 0. gpu::FrameSegment::key holds the

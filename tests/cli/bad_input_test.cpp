@@ -124,7 +124,7 @@ TEST_F(BadInput, SynthOfWhatIsNotThere) {
 }
 
 TEST_F(BadInput, ReflectanceWithoutLights) {
-    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--labels", "truth", "--out", out(), "--quiet"})),
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--materials", "truth", "--out", out(), "--quiet"})),
                 HasSubstr("reflectance needs lights: give --lights FILE"));
 }
 

@@ -113,6 +113,8 @@ ReconstructionSettings small_settings_with_reflectance() {
     settings.reflectance->voxel_m = 0.04f;
     settings.reflectance->capacity_blocks = 16384;
     settings.reflectance->capacity_records = 65536;
+    settings.segmentation.emplace();
+    settings.segmentation->given = true;
     return settings;
 }
 

@@ -35,7 +35,11 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command.add_option("--lighting", options.lighting,
                        "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
                        "light; none: no reflectance; by default in the sequence's lighting/");
-    add_truth_option(command, "--labels", options.truth_labels, "Segments: truth takes those of truth/labels");
+    command
+        .add_option("--labels", options.labels,
+                    "Segments: geometry finds them, truth takes those of truth/labels, off does without")
+        ->check(CLI::IsMember({"off", "geometry", "truth"}))
+        ->capture_default_str();
     add_truth_option(command, "--materials", options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
     command.add_flag_callback(

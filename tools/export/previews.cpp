@@ -25,9 +25,7 @@ struct Panel {
     Drawing drawing;
 };
 
-/// Diffuse albedo, and segments where there are any.
-void add_reflectance_panels(const FrameDump& model, std::vector<Panel>& panels) {
-    panels.push_back({"diffuse albedo", draw(model.kd, &model.valid, color_pixel)});
+void add_segments_panel(const FrameDump& model, std::vector<Panel>& panels) {
     if (std::ranges::all_of(model.label.pixels(), [](float label) { return label == 0; })) return;
     const auto to_pixel = [](float label) { return label_pixel(static_cast<uint32_t>(label)); };
     panels.push_back({"segments", draw(model.label, &model.valid, to_pixel)});
@@ -102,14 +100,13 @@ std::string preview_png(const sensor::ColorImage& input, const FrameDump& model,
     check_extent("normal", model.normal.extent(), extent);
     check_extent("valid", model.valid.extent(), extent);
 
-    if (!model.kd.empty()) {
-        check_extent("albedo", model.kd.extent(), extent);
-        check_extent("label", model.label.extent(), extent);
-    }
+    if (!model.kd.empty()) check_extent("albedo", model.kd.extent(), extent);
+    if (!model.label.empty()) check_extent("label", model.label.extent(), extent);
     std::vector<Panel> panels = {
         {options.title.empty() ? "input" : "input, " + options.title, draw_input(input)},
         {model.kd.empty() ? "reconstruction" : "re-rendering", draw(model.rgb, &model.valid, color_pixel)}};
-    if (!model.kd.empty()) add_reflectance_panels(model, panels);
+    if (!model.kd.empty()) panels.push_back({"diffuse albedo", draw(model.kd, &model.valid, color_pixel)});
+    add_segments_panel(model, panels);
     panels.push_back({"normals", draw(model.normal, &model.valid, normal_pixel)});
     if (options.depth) {
         check_extent("depth", model.depth_m.extent(), extent);

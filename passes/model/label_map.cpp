@@ -1,0 +1,15 @@
+#include "passes/model/label_map.h"
+
+namespace patina {
+
+LabelMap::LabelMap(vulkan::Device& device, const VoxelMap& map)
+    : words_(device, "map.labels", map.settings().capacity_blocks, gpu::kBlockVoxels * sizeof(uint32_t),
+             uint64_t{1} << map.grid().chunk_shift, gpu::kMaxVoxelChunks),
+      stamps_(device.create_buffer({"map.label_stamps", map.settings().capacity_blocks * sizeof(uint32_t)})) {}
+
+void LabelMap::keep(graph::Frame& frame, const LabelMapIds& ids) {
+    frame.keep(ids.words);
+    frame.keep(ids.stamps);
+}
+
+}  // namespace patina

@@ -1,0 +1,17 @@
+#include "passes/model/segment_samples.h"
+
+namespace patina {
+
+SegmentSamples::SegmentSamples(vulkan::Device& device, uint32_t labels)
+    : labels_(labels),
+      counts_(device.create_buffer({"segments.sample_counts", labels * sizeof(gpu::SegmentSampleCount)})),
+      kept_(device.create_buffer({"segments.samples", uint64_t{labels} * gpu::kSegmentSamples * sizeof(uint32_t)})) {}
+
+void SegmentSamples::reset(graph::Frame& frame) const { frame.keep(frame.fill(frame.import(counts_), 0)); }
+
+void SegmentSamples::keep(graph::Frame& frame, const SegmentSampleIds& ids) {
+    frame.keep(ids.counts);
+    frame.keep(ids.kept);
+}
+
+}  // namespace patina

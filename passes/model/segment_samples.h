@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/graph/frame.h"
+#include "engine/vulkan/device.h"
+#include "shared/segment_samples.h"
+
+namespace patina {
+
+/// Versions of the samples' buffers within one frame.
+struct SegmentSampleIds {
+    graph::BufferId counts;  ///< gpu::SegmentSampleCount per label
+    graph::BufferId kept;    ///< u32 record ids, gpu::kSegmentSamples per label, in no order
+};
+
+/// References to records of an observation map by segment: all of them where there are at most gpu::kSegmentSamples,
+/// else between half as many and that, chosen by hashes of their voxels and a seed. So every eligible record is as
+/// likely to be among them as any other, whenever it came, and the same ones are in every run. Filled by
+/// segmentation/sample_records.h.
+class SegmentSamples {
+  public:
+    /// Throws Error when memory runs out.
+    SegmentSamples(vulkan::Device& device, uint32_t labels);
+
+    /// No segment has any; the first thing done with it.
+    void reset(graph::Frame& frame) const;
+
+    SegmentSampleIds import(graph::Frame& frame) const { return {frame.import(counts_), frame.import(kept_)}; }
+    static void keep(graph::Frame& frame, const SegmentSampleIds& ids);
+
+    uint32_t labels() const { return labels_; }
+    uint64_t bytes() const { return counts_->bytes() + kept_->bytes(); }
+
+  private:
+    uint32_t labels_;
+    vulkan::BufferRef counts_, kept_;
+};
+
+}  // namespace patina

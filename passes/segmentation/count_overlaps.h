@@ -1,0 +1,21 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/model/segment_table.h"
+#include "passes/segmentation/frame_segments.h"
+#include "passes/segmentation/segment_overlaps.h"
+
+namespace patina {
+
+/// Slots of the overlap table for pictures of this extent: a segment of which a label covers less than some pixels
+/// does not matter.
+uint32_t overlap_slots(Extent2D extent);
+
+/// Counts the pixels of `segments` by label in `map_label` (W x H r32ui), and adds chromaticities of `color_linear`
+/// (rgba16f, seen by gpu::SegmentationParams::color_camera) where clipping did not change them to the labels' sums.
+/// `params` holds gpu::SegmentationParams. Throws Error when images differ in extent.
+SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
+                                   graph::ImageId map_label, graph::ImageId position_m, graph::ImageId color_linear,
+                                   graph::BufferId params);
+
+}  // namespace patina

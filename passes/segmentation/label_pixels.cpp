@@ -1,0 +1,18 @@
+#include "passes/segmentation/label_pixels.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+graph::ImageId add_label_pixels(graph::Frame& frame, const FrameSegments& segments, graph::ImageId map_label,
+                                graph::BufferId parents, graph::BufferId segment_labels) {
+    const Extent2D extent = frame.common_extent({segments.segment, map_label});
+    auto pass = frame.compute("segmentation.label_pixels", spirv::label_pixels);
+    pass.read("segment", segments.segment).read("map_label", map_label);
+    pass.read("Parents", parents).read("SegmentLabels", segment_labels);
+    const graph::ImageId label = pass.create("label", {extent, vulkan::Format::kR32u});
+    pass.dispatch_covering(extent);
+    return label;
+}
+
+}  // namespace patina

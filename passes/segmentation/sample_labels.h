@@ -1,0 +1,16 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/model/label_map.h"
+#include "passes/model/map_access.h"
+#include "passes/segmentation/surface_view.h"
+
+namespace patina {
+
+/// Looks up the labels of the surface that a camera sees, and takes their roots in `parents` (SegmentTable). Where the
+/// voxel that holds the surface point has none, those behind and before it are asked. Returns W x H r32ui, 0 where
+/// there is none. Throws Error when the images of `surface` differ in extent.
+graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
+                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access);
+
+}  // namespace patina

@@ -1,0 +1,51 @@
+#include "passes/segmentation/sample_records.h"
+
+#include "engine/core/error.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+void add_sample_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+                        const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
+                        uint32_t seed) {
+    const uint32_t labels = samples.labels(), capacity = map.settings().capacity_records;
+    const gpu::SampleParams params{seed, labels, min_observations, 0};
+    const auto zeros = [&](const char* name, uint64_t words) {
+        return frame.fill(frame.create_buffer(name, words * sizeof(uint32_t)), 0);
+    };
+    auto count = frame.compute("segmentation.count_samples", spirv::count_samples);
+    count.read("RecordCounters", records.record_counters).read("Records", records.records).push(params);
+    const graph::BufferId levels =
+        count.modify("Levels", zeros("segmentation.sample_levels", uint64_t{labels} * gpu::kSampleLevels));
+    count.dispatch_covering(capacity);
+
+    auto choose = frame.compute("segmentation.choose_samples", spirv::choose_samples);
+    choose.read("Levels", levels).push(params);
+    ids.counts = choose.write("Counts", ids.counts);
+    choose.dispatch_covering(labels);
+
+    auto collect = frame.compute("segmentation.collect_samples", spirv::collect_samples);
+    collect.read("RecordCounters", records.record_counters).read("Records", records.records).push(params);
+    collect.read("Counts", ids.counts);
+    collect.modify("Filled", zeros("segmentation.samples_filled", labels));
+    ids.kept = collect.write("Kept", ids.kept);
+    collect.dispatch_covering(capacity);
+}
+
+graph::BufferId add_draw_samples(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
+                                 const SegmentSampleIds& ids, uint32_t draws, uint32_t seed) {
+    if (draws == 0 || draws > gpu::kSegmentSamples / 2) {
+        throw Error("the pass 'segmentation.draw_samples' is to draw ", draws,
+                    " records of a segment, it can draw 1 to ", gpu::kSegmentSamples / 2);
+    }
+    const uint64_t bytes = uint64_t{samples.labels()} * draws * sizeof(uint32_t);
+    const graph::BufferId none = frame.fill(frame.create_buffer("segmentation.drawn", bytes), gpu::kNoRecord);
+    auto pass = frame.compute("segmentation.draw_samples", spirv::draw_samples);
+    pass.read("Records", records.records).read("Counts", ids.counts).read("Kept", ids.kept);
+    pass.push(gpu::SampleParams{seed, samples.labels(), 0, draws});
+    const graph::BufferId drawn = pass.modify("Drawn", none);
+    pass.dispatch(gpu::kGroupsPerRow, (samples.labels() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
+    return drawn;
+}
+
+}  // namespace patina

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+
+namespace patina {
+
+/// The map's surface as one camera sees it, and where to look for its blocks.
+struct SurfaceView {
+    graph::ImageId position_m;  ///< W x H rgba32f: world; w is 0 where nothing was hit
+    graph::ImageId normal;      ///< W x H rgba16f: world, unit length; 0 where it is not known
+    graph::BufferId view;       ///< gpu::ViewParams of the camera
+    graph::BufferId view_grid;  ///< u32 per block of the box around the view: block id, or gpu::kNoBlock
+};
+
+/// Blocks that a frame's surface points lie in.
+struct SurfaceBlocks {
+    graph::BufferId list;       ///< u32: count, then block ids in no order
+    graph::BufferId arguments;  ///< dispatch of one group per listed block, in rows of gpu::kGroupsPerRow
+};
+
+}  // namespace patina

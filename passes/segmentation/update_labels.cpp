@@ -1,0 +1,21 @@
+#include "passes/segmentation/update_labels.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+                       SegmentTableIds& table, const SurfaceView& surface, const SurfaceBlocks& blocks,
+                       const FrameSegments& segments, graph::BufferId segment_labels) {
+    frame.common_extent({surface.position_m, surface.normal, segments.segment});
+    auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
+    pass.read("Surface", blocks.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
+    pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
+    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
+    pass.specialise("kVoxelChunks", map.chunks());
+    labels.words = pass.modify("Words", labels.words);
+    table.counters = pass.modify("Counters", table.counters);
+    pass.dispatch_indirect(blocks.arguments);
+}
+
+}  // namespace patina

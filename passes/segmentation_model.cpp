@@ -1,0 +1,104 @@
+#include "passes/segmentation_model.h"
+
+#include "passes/segmentation/assign_labels.h"
+#include "passes/segmentation/clear_labels.h"
+#include "passes/segmentation/count_overlaps.h"
+#include "passes/segmentation/label_pixels.h"
+#include "passes/segmentation/list_surface.h"
+#include "passes/segmentation/relabel_records.h"
+#include "passes/segmentation/sample_labels.h"
+#include "passes/segmentation/sample_records.h"
+#include "passes/segmentation/sweep_labels.h"
+#include "passes/segmentation/update_labels.h"
+
+namespace patina {
+
+SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
+                                     MapAccess access)
+    : map_(map),
+      settings_(settings),
+      access_(access),
+      labels_(device, map),
+      table_(device, settings.capacity_labels),
+      samples_(device, settings.capacity_labels) {}
+
+void SegmentationModel::reset(graph::Frame& frame) const {
+    table_.reset(frame);
+    samples_.reset(frame);
+}
+
+gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camera, Extent2D extent,
+                                                  uint32_t frame_index) const {
+    gpu::SegmentationParams params{};
+    params.color_camera = color_camera;
+    params.extent = {extent.width, extent.height};
+    params.stamp = frame_index + 1;
+    params.capacity = settings_.capacity_labels;
+    params.overlap_slots = overlap_slots(extent);
+    params.given = settings_.given ? 1 : 0;
+    params.inherit_share = settings_.inherit_share;
+    params.inherit_pixels = settings_.inherit_pixels;
+    params.merge_share = settings_.merge_share;
+    params.merge_count = settings_.merge_frames;
+    params.merge_chroma = settings_.merge_chroma;
+    params.new_pixels = settings_.new_pixels;
+    params.prune_voxels = settings_.prune_voxels;
+    params.prune_frames = settings_.prune_frames;
+    return params;
+}
+
+void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const {
+    LabelMapIds labels = labels_.import(frame);
+    add_clear_labels(frame, map_, voxels, labels);
+}
+
+FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
+                                          const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
+    const SegmentSettings& settings = settings_.frame;
+    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
+    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera, settings,
+                             ColorGuide{inputs.color_linear, color_camera});
+}
+
+graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
+                                      const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
+                                      uint32_t frame_index) const {
+    const SurfaceView& surface = inputs.surface;
+    const FrameSegments seen = segments(frame, inputs, depth_camera, color_camera);
+    const gpu::SegmentationParams values = params(color_camera, frame.shape(surface.position_m).extent, frame_index);
+    const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
+    LabelMapIds labels = labels_.import(frame);
+    SegmentTableIds table = table_.import(frame);
+    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, surface, access_);
+    const SegmentOverlaps overlaps =
+        add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
+    const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
+    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, surface, values.stamp);
+    add_update_labels(frame, map_, voxels, labels, table, surface, blocks, seen, assigned);
+    add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
+    LabelMap::keep(frame, labels);
+    SegmentTable::keep(frame, table);
+    return add_label_pixels(frame, seen, known, table.parents, assigned);
+}
+
+void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
+                                    uint32_t frame_index) const {
+    gpu::SegmentationParams values{};
+    values.stamp = frame_index + 1;
+    const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
+    add_relabel_records(frame, map, records, table_.import(frame), uniforms);
+    if (settings_.sample_every == 0 || frame_index % settings_.sample_every != settings_.sample_every - 1) return;
+    SegmentSampleIds ids = samples_.import(frame);
+    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations, settings_.sample_seed);
+    SegmentSamples::keep(frame, ids);
+}
+
+graph::ImageId SegmentationModel::add_view(graph::Frame& frame, const SurfaceView& surface) const {
+    return add_sample_labels(frame, map_, labels_.import(frame), table_.import(frame).parents, surface, access_);
+}
+
+std::vector<VoxelMap::PoolBytes> SegmentationModel::memory() const {
+    return {{"voxel labels", labels_.bytes()}, {"segments", table_.bytes()}, {"segment samples", samples_.bytes()}};
+}
+
+}  // namespace patina

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Chooses each segment's lowest level so that what is of it or above fits.
+#include "shared/segment_samples.h"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer Levels { uint levels[]; };
+layout(std430, binding = 1) writeonly buffer Counts { SegmentSampleCount counts[]; };
+layout(push_constant) uniform Push { SampleParams params; };
+
+void main() {
+    const uint label = gl_GlobalInvocationID.x;
+    if (label >= params.labels) return;
+    uint kept = 0u, eligible = 0u, lowest = kSampleLevels;
+    for (int i = int(kSampleLevels) - 1; i >= 0; --i) {
+        eligible += levels[label * kSampleLevels + uint(i)];
+        const bool fits = lowest == uint(i) + 1u && eligible <= kSegmentSamples;
+        kept = fits ? eligible : kept;
+        lowest = fits ? uint(i) : lowest;
+    }
+    counts[label] = SegmentSampleCount(kept, eligible, lowest, 0u);
+}

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Lists the records that each segment keeps, in no order.
+#include "lib/segment_samples.glsl"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
+layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 2) readonly buffer Counts { SegmentSampleCount counts[]; };
+layout(std430, binding = 3) buffer Filled { uint filled[]; };
+layout(std430, binding = 4) writeonly buffer Kept { uint kept[]; };  // kSegmentSamples per label
+layout(push_constant) uniform Push { SampleParams params; };
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x;
+    if (item >= counters.high_water) return;
+    const VoxelRecord record = records[item];
+    if (!is_eligible(record, params)) return;
+    const uint label = record_label(record);
+    if (sample_level(sample_hash(record, params.seed)) < counts[label].level) return;
+    kept[label * kSegmentSamples + atomicAdd(filled[label], 1u)] = item;
+}

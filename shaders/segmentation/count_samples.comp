@@ -1,0 +1,19 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Counts the eligible records of each segment by level.
+#include "lib/segment_samples.glsl"
+
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
+layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
+layout(std430, binding = 2) buffer Levels { uint levels[]; };  // kSampleLevels per label
+layout(push_constant) uniform Push { SampleParams params; };
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x;
+    if (item >= counters.high_water) return;
+    const VoxelRecord record = records[item];
+    if (!is_eligible(record, params)) return;
+    const uint level = sample_level(sample_hash(record, params.seed));
+    atomicAdd(levels[record_label(record) * kSampleLevels + level], 1u);
+}

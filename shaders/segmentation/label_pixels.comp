@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The label of each pixel: what the map says, else what its segment got.
+#include "shared/segments.h"
+
+layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;
+layout(binding = 0, r32ui) uniform readonly uimage2D segment;
+layout(binding = 1, r32ui) uniform readonly uimage2D map_label;
+layout(binding = 2, r32ui) uniform readonly uimageBuffer Parents;
+layout(binding = 3, r32ui) uniform readonly uimageBuffer SegmentLabels;
+layout(binding = 4, r32ui) uniform writeonly uimage2D label;
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(segment)))) return;
+    // Labels may have merged since the map was sampled.
+    const uint known = imageLoad(Parents, int(imageLoad(map_label, pixel).x)).x;
+    const uint assigned = imageLoad(SegmentLabels, int(imageLoad(segment, pixel).x)).x;
+    imageStore(label, pixel, uvec4(known != kNoLabel ? known : assigned));
+}

@@ -1,0 +1,98 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// One workgroup per block on the visible surface: each voxel near the surface looks up its segment's label in the
+// frame. An invocation takes four voxels along x at a time.
+#include "lib/camera.glsl"
+#include "lib/voxel_chunks.glsl"
+#include "lib/voxel_labels.glsl"
+#include "lib/voxel_map.glsl"
+#include "shared/visible_blocks.h"
+
+layout(local_size_x = kUpdateLabelsGroup) in;
+layout(std430, binding = 0) readonly buffer Surface { uint surface[]; };
+layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
+layout(std140, binding = 2) uniform View { ViewParams view; };
+layout(binding = 3, rgba32f) uniform readonly image2D position_m;
+layout(binding = 4, rgba16f) uniform readonly image2D normal;
+layout(binding = 5, r32ui) uniform readonly uimage2D segment;
+layout(binding = 6, r32ui) uniform readonly uimageBuffer SegmentLabels;
+layout(binding = 7, r32ui) uniform readonly uimageBuffer Parents;
+layout(std430, binding = 8) readonly buffer Tsdf { uvec4 quads[]; }
+tsdf[kMaxVoxelChunks];
+layout(std430, binding = 13) buffer Words { uvec4 quads[]; }
+words[kMaxVoxelChunks];
+layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
+
+const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
+const float kGrazingCosine = 0.2;  // of steeper views the pixels say little
+
+shared uint voted;
+shared uint flipped;
+
+// The label that a voxel's pixel gives it; 0 where it is hidden, or its pixel has none.
+uint seen_label(vec3 center_m, vec3 camera_m) {
+    const vec3 at = to_camera(view.camera, center_m);
+    if (at.z < view.near_m) return kNoLabel;
+    const ivec2 pixel = ivec2(floor(project(view.camera, at) + 0.5));
+    const uint here = imageLoad(segment, pixel).x;
+    if (here == 0u) return kNoLabel;
+    const vec3 point = imageLoad(position_m, pixel).xyz;
+    const vec3 facing = imageLoad(normal, pixel).xyz;
+    const vec3 toward = camera_m - center_m;
+    const bool grazing = dot(facing, toward) < kGrazingCosine * length(toward);
+    const bool apart = abs(dot(facing, center_m - point)) > kNearVox * view.grid.voxel_m;
+    return grazing || apart ? kNoLabel : imageLoad(SegmentLabels, int(here)).x;
+}
+
+uint updated(uint word, uint label, inout uint votes, inout uint flips) {
+    if (label == kNoLabel) return word;
+    const uint root = imageLoad(Parents, int(voxel_label(word))).x;
+    const uint known = root == kNoLabel ? 0u : label_word(root, word >> 16);
+    const uint next = voted_word(known, label);
+    ++votes;
+    flips += root != kNoLabel && voxel_label(next) != root ? 1u : 0u;
+    return next;
+}
+
+void main() {
+    const uint item = group_item(gl_WorkGroupID);
+    if (item >= surface[0]) return;
+    const uint block = surface[1u + item];
+    const uint lane = gl_LocalInvocationIndex;
+    if (lane == 0u) {
+        voted = 0u;
+        flipped = 0u;
+    }
+    barrier();
+    const ivec3 corner = block_of_key(view.grid, block_keys[block]) * int(kBlockEdge);
+    const uint first_quad = index_in_chunk(view.grid.chunk_shift, block) * (kBlockVoxels / 4u);
+    const vec3 camera_m = camera_center_m(view.camera);
+    uint votes = 0u, flips = 0u;
+    for (uint i = 0u; i < kLabelQuads; ++i) {
+        const uint quad = i * kUpdateLabelsGroup + lane;
+        uvec4 voxels;
+#define LOAD_TSDF(C) voxels = tsdf[C].quads[first_quad + quad]
+        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_TSDF)
+        bvec4 near;
+        [[unroll]] for (int j = 0; j < 4; ++j) near[j] =
+            voxel_weight(voxels[j]) > 0u && abs(voxel_sdf(voxels[j])) * kSdfRangeVox < kNearVox;
+        if (!any(near)) continue;
+        uvec4 known;
+#define LOAD_WORDS(C) known = words[C].quads[first_quad + quad]
+#define STORE_WORDS(C) words[C].quads[first_quad + quad] = known
+        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORDS)
+        const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
+        for (int j = 0; j < 4; ++j) {
+            const vec3 center_m = (vec3(corner + within + ivec3(j, 0, 0)) + 0.5) * view.grid.voxel_m;
+            const uint label = near[j] ? seen_label(center_m, camera_m) : kNoLabel;
+            known[j] = updated(known[j], label, votes, flips);
+        }
+        WITH_CHUNK(view.grid.chunk_shift, block, STORE_WORDS)
+    }
+    if (votes > 0u) atomicAdd(voted, votes);
+    if (flips > 0u) atomicAdd(flipped, flips);
+    barrier();
+    if (lane == 0u && voted > 0u) atomicAdd(counters.frame_voxels, voted);
+    if (lane == 0u && flipped > 0u) atomicAdd(counters.frame_flips, flipped);
+}

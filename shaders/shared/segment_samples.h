@@ -1,0 +1,28 @@
+// A fixed number of records per segment, chosen at random, from which random samples are drawn. See
+// passes/model/segment_samples.h.
+#ifndef PATINA_SHARED_SEGMENT_SAMPLES_H
+#define PATINA_SHARED_SEGMENT_SAMPLES_H
+#include "shared/observations.h"
+INTEROP_BEGIN
+
+INTEROP_CONST uint kSegmentSamples = 256u;  // records kept of a segment
+INTEROP_CONST uint kSampleLevels = 16u;     // a record's level is how many leading zeros its hash has, this at most - 1
+INTEROP_CONST uint kDrawGroup = 128u;       // invocations per segment
+
+// How many records of a segment were kept, and of how many.
+struct SegmentSampleCount {
+    uint kept;
+    uint eligible;
+    uint level;  // records of this level or above were kept
+    uint pad0;
+};
+
+struct SampleParams {
+    uint seed;
+    uint labels;            // label 0 included
+    uint min_observations;  // of an eligible record
+    uint draws;             // samples to draw from each segment
+};
+
+INTEROP_END
+#endif

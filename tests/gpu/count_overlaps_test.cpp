@@ -1,0 +1,97 @@
+#include "passes/segmentation/count_overlaps.h"
+
+#include <map>
+#include <random>
+
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/shader_camera.h"
+#include "tests/gpu/gpu_test.h"
+#include "tests/gpu/input_pictures.h"
+
+namespace patina {
+namespace {
+
+class CountOverlaps : public GpuTest {
+  protected:
+    using Counts = std::map<std::pair<uint32_t, uint32_t>, uint32_t>;  ///< pixels by segment and label
+
+    struct Result {
+        Counts counts;
+        bool overflow = false;
+        std::vector<gpu::SegmentLabel> labels;
+    };
+
+    Result count(const Image<uint32_t>& segment, const Image<uint32_t>& label, glm::vec4 color = {0, 0, 0, 0}) {
+        const Extent2D extent = segment.extent();
+        SegmentTable table(device(), 65535);
+        graph::Frame frame = runner().begin();
+        table.reset(frame);
+        SegmentTableIds ids = table.import(frame);
+        const auto upload = [&](const char* name, vulkan::Format format, const auto& pixels) {
+            return frame.upload(name, {extent, format}, std::as_bytes(std::span(pixels)));
+        };
+        gpu::SegmentationParams values{};
+        values.color_camera = make_camera(pinhole_camera(extent), RigidTransform(1.0));
+        values.extent = {extent.width, extent.height};
+        values.stamp = 4;
+        values.overlap_slots = overlap_slots(extent);
+        const auto params = frame.upload<gpu::SegmentationParams>("params", std::span(&values, 1));
+        const std::vector<glm::vec4> points(extent.area(), glm::vec4(0, 0, 1, 1));
+        const std::vector<uint64_t> colors(extent.area(), glm::packHalf4x16(color));
+        const FrameSegments segments{upload("segment", vulkan::Format::kR32u, segment.pixels()), {}, {}};
+        const SegmentOverlaps overlaps =
+            add_count_overlaps(frame, ids, segments, upload("label", vulkan::Format::kR32u, label.pixels()),
+                               upload("points", vulkan::Format::kRgba32f, points),
+                               upload("color", vulkan::Format::kRgba16f, colors), params);
+        const graph::Readback read_table = frame.read_back(overlaps.table), read_list = frame.read_back(overlaps.list),
+                              read_labels = frame.read_back(ids.labels);
+        run(std::move(frame));
+        const auto entries = read_table.as<gpu::SegmentOverlap>();
+        const auto list = read_list.as<uint32_t>();
+        Result result{{}, list[0] >= values.overlap_slots / 4 * 3, read_labels.as<gpu::SegmentLabel>()};
+        for (uint32_t i = 0; i < list[0] && !result.overflow; ++i) {
+            const gpu::SegmentOverlap entry = entries[list[1 + i]];
+            result.counts[{entry.key >> 16, entry.key & 0xffff}] += entry.pixels;
+        }
+        return result;
+    }
+};
+
+TEST_F(CountOverlaps, CountsEveryPixelOnceOnWholeStripsAndTails) {
+    std::mt19937 random(2);
+    for (const Extent2D extent : {Extent2D{1, 1}, {8, 4}, {13, 7}, {259, 33}}) {
+        Image<uint32_t> segment(extent), label(extent);
+        Counts expected;
+        for (uint32_t y = 0; y < extent.height; ++y) {
+            for (uint32_t x = 0; x < extent.width; ++x) {
+                segment.at(x, y) = (x / 5 + y / 3) % 4;  // runs, and no segment
+                label.at(x, y) = random() % 8 == 0 ? 65534 : x / 11 % 3;
+                if (segment.at(x, y) != 0 && label.at(x, y) != 0) ++expected[{segment.at(x, y), label.at(x, y)}];
+            }
+        }
+        EXPECT_EQ(count(segment, label).counts, expected) << extent;
+    }
+}
+
+TEST_F(CountOverlaps, ATableThatIsTooSmallSaysSo) {
+    const Extent2D extent{64, 32};
+    Image<uint32_t> segment(extent, 1), label(extent);
+    for (uint32_t i = 0; i < 767; ++i) label.pixels()[i] = i + 1;
+    EXPECT_FALSE(count(segment, label).overflow);
+    for (uint32_t i = 0; i < extent.area(); ++i) label.pixels()[i] = i + 1;
+    EXPECT_TRUE(count(segment, label).overflow);
+}
+
+TEST_F(CountOverlaps, CollectsTheChromaticityOfLabels) {
+    const Extent2D extent{64, 32};
+    const Image<uint32_t> segment(extent, 1), label(extent, 5);
+    const gpu::SegmentLabel seen = count(segment, label, {0.6f, 0.3f, 0.1f, 1.0f}).labels[5];
+    EXPECT_EQ(seen.chroma_samples, extent.area() / gpu::kStripPixels / 4);
+    EXPECT_NEAR(double(seen.chroma_r) / seen.chroma_samples, 0.6 * gpu::kChromaSteps, 1);
+    EXPECT_NEAR(double(seen.chroma_g) / seen.chroma_samples, 0.3 * gpu::kChromaSteps, 1);
+    EXPECT_EQ(count(segment, label, {0.6f, 0.3f, 0.1f, 0.5f}).labels[5].chroma_samples, 0u) << "clipped";
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,104 @@
+#include "tests/reference/segment_table.h"
+
+namespace patina::reference {
+
+namespace {
+
+struct Ranked {
+    uint32_t label = 0, pixels = 0;
+};
+
+/// The labels that a segment shares most pixels with, the smaller first of equal ones.
+std::pair<Ranked, Ranked> two_best(const SeenSegment& segment) {
+    Ranked best, second;
+    for (const auto& [label, pixels] : segment.shared) {
+        if (pixels > best.pixels) {
+            second = best;
+            best = {label, pixels};
+        } else if (pixels > second.pixels) {
+            second = {label, pixels};
+        }
+    }
+    return {best, second};
+}
+
+}  // namespace
+
+SegmentBook::SegmentBook(const Rules& rules) : rules_(rules) {
+    for (uint32_t label = 1; label < rules.capacity; ++label) free_.push_back(label);
+}
+
+uint32_t SegmentBook::root(uint32_t label) const {
+    for (auto it = merged_into_.find(label); it != merged_into_.end(); it = merged_into_.find(label))
+        label = it->second;
+    return live(label) ? label : 0;
+}
+
+std::vector<uint32_t> SegmentBook::assign(const std::vector<SeenSegment>& segments) {
+    counted_.clear();
+    std::vector<uint32_t> labels;
+    for (const SeenSegment& segment : segments) {
+        const Ranked best = two_best(segment).first;
+        const bool known = best.pixels >= rules_.inherit_pixels && best.pixels > rules_.inherit_share * segment.pixels;
+        labels.push_back(known ? best.label : 0);
+        if (known) live_[best.label].seen = now_;
+    }
+    for (size_t i = 0; i < segments.size(); ++i) {
+        if (labels[i] != 0 || segments[i].pixels < rules_.new_pixels || free_.empty()) continue;
+        labels[i] = free_.front();
+        free_.pop_front();
+        live_[labels[i]] = {now_, now_};
+    }
+    return labels;
+}
+
+std::vector<std::pair<uint32_t, uint32_t>> SegmentBook::joined(const std::vector<SeenSegment>& segments) const {
+    std::vector<std::pair<uint32_t, uint32_t>> pairs;
+    for (const SeenSegment& segment : segments) {
+        const auto [best, second] = two_best(segment);
+        if (best.pixels < rules_.inherit_pixels || second.pixels < rules_.inherit_pixels) continue;
+        if (best.pixels <= rules_.inherit_share * segment.pixels) continue;
+        if (second.pixels <= rules_.merge_share * segment.pixels) continue;
+        pairs.emplace_back(std::min(best.label, second.label), std::max(best.label, second.label));
+    }
+    return pairs;
+}
+
+void SegmentBook::merge(uint32_t low, uint32_t high) {
+    live_[low].since = std::min(live_[low].since, live_[high].since);
+    live_.erase(high);
+    retired_[high] = now_;
+    merged_into_[high] = low;
+}
+
+void SegmentBook::discount() {
+    for (auto it = pairs_.begin(); it != pairs_.end();) {
+        auto& [pair, count] = *it;
+        const bool both = live(pair.first) && live(pair.second);
+        if (both && !counted_.contains(pair) && live_[pair.first].seen == now_ && live_[pair.second].seen == now_)
+            --count;
+        it = !both || count == 0 ? pairs_.erase(it) : std::next(it);
+    }
+}
+
+void SegmentBook::end_sweep(const std::map<uint32_t, uint32_t>& voxels) {
+    for (auto it = retired_.begin(); it != retired_.end();) {
+        if (now_ - it->second <= rules_.sweep_frames) {
+            ++it;
+            continue;
+        }
+        free_.push_back(it->first);
+        merged_into_.erase(it->first);
+        it = retired_.erase(it);
+    }
+    for (auto it = live_.begin(); it != live_.end();) {
+        const auto& [label, age] = *it;
+        const auto found = voxels.find(label);
+        const bool lost = now_ - age.since > rules_.sweep_frames && now_ - age.seen > rules_.prune_frames &&
+                          (found == voxels.end() ? 0 : found->second) < rules_.prune_voxels;
+        if (lost) retired_[label] = now_;
+        it = lost ? live_.erase(it) : std::next(it);
+    }
+}
+
+}  // namespace patina::reference
