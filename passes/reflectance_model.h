@@ -78,7 +78,6 @@ class ReflectanceModel {
     std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
     const ReflectanceModelSettings& settings() const { return settings_; }
     const Lights& lights() const { return lights_; }
-    const ObservationMap& observations() const { return observations_; }
 
   private:
     ReflectanceModels models() { return {map_, observations_, lights_, materials_, state_}; }

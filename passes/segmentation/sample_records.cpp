@@ -9,7 +9,7 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
                         const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
                         uint32_t seed) {
     const uint32_t labels = samples.labels(), capacity = map.settings().capacity_records;
-    const gpu::SampleParams params{seed, labels, min_observations, 0};
+    const gpu::SegmentSampleParams params{seed, labels, min_observations, 0};
     const auto zeros = [&](const char* name, uint64_t words) {
         return frame.fill(frame.create_buffer(name, words * sizeof(uint32_t)), 0);
     };
@@ -42,7 +42,7 @@ graph::BufferId add_draw_records(graph::Frame& frame, const ObservationMapIds& r
     const graph::BufferId none = frame.fill(frame.create_buffer("segmentation.drawn", bytes), gpu::kNoRecord);
     auto pass = frame.compute("segmentation.draw_records", spirv::draw_records);
     pass.read("Records", records.records).read("Counts", ids.counts).read("Kept", ids.kept);
-    pass.push(gpu::SampleParams{seed, samples.labels(), 0, draws});
+    pass.push(gpu::SegmentSampleParams{seed, samples.labels(), 0, draws});
     const graph::BufferId drawn = pass.modify("Drawn", none);
     pass.dispatch(gpu::kGroupsPerRow, (samples.labels() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
     return drawn;
