@@ -37,8 +37,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("segmentation.min_pixels", s.segmentation->frame.min_pixels);
         visit("segmentation.crease_degrees", s.segmentation->frame.edges.crease_degrees);
         visit("segmentation.crease_sigmas", s.segmentation->frame.edges.crease_sigmas);
-        visit("segmentation.jump_m", s.segmentation->frame.edges.jump.floor_m);
-        visit("segmentation.jump_slope", s.segmentation->frame.edges.jump.slope);
+        visit("segmentation.jump_m", s.segmentation->frame.edges.jump_m);
         visit("segmentation.inherit_share", s.segmentation->inherit_share);
         visit("segmentation.inherit_pixels", s.segmentation->inherit_pixels);
         visit("segmentation.new_pixels", s.segmentation->new_pixels);
