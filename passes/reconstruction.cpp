@@ -33,6 +33,10 @@ void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera
     }
 }
 
+RigidTransform world_from_color_of(const RgbdFrame& frame) {
+    return frame.world_from_depth * rigid_inverse(frame.color_from_depth);
+}
+
 /// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
 const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
@@ -41,6 +45,9 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     check_range("fusion.allocation_stride_px", settings.fusion.allocation_stride_px, 64);
     check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
     check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
+    if (settings.gains && !settings.fusion.color) {
+        throw Error("gains are estimated from fused colours, but fusion.color is false");
+    }
     return settings;
 }
 
@@ -65,6 +72,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       runner_(device),
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
+    if (settings.gains) color_correction_.emplace(device, map_, *settings.gains, access_);
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
 }
 
@@ -82,20 +90,24 @@ void Reconstruction::check(const RgbdFrame& frame) const {
 
 VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame) {
     const gpu::Camera depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
-    const gpu::Camera color_camera =
-        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
-    const InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
+    const RigidTransform world_from_color = world_from_color_of(frame);
+    const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color);
+    InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
 
     const FusionSettings& fusion = settings_.fusion;
     const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
-    add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
     const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
+    if (color_correction_) {
+        input.color = color_correction_->add(graph, ids, input.color, frame.color.camera, world_from_color,
+                                             settings_.near_m, far_m);
+    }
+    add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
-                  fusion.color ? std::optional(input.color) : std::nullopt);
-    if (reflectance_) observe(graph, ids, visible, input, slope, frame);
+                  fusion.color && !frame.held_out ? std::optional(input.color) : std::nullopt);
+    if (reflectance_ && !frame.held_out) observe(graph, ids, visible, input, slope, frame);
     if (settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         graph.keep(model.position_m);
@@ -116,8 +128,12 @@ void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const 
         inputs.labels =
             graph.upload("labels", {frame.depth.camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
     }
-    reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
-                      make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
+    const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color_of(frame));
+    if (world_from_color_before_) {
+        inputs.motion = {make_camera(frame.color.camera, *world_from_color_before_).camera_from_world,
+                         frame.shutter_share};
+    }
+    reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth), color_camera,
                       frames_);
 }
 
@@ -134,6 +150,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
         graph::Frame graph = runner_.begin();
         const glm::dvec3 center_m(frame.world_from_depth[3]);
         map_.reset(graph, center_m);
+        if (color_correction_) color_correction_->reset(graph);
         if (reflectance_) reflectance_->reset(graph, center_m);
         runner_.submit(std::move(graph));
     }
@@ -143,6 +160,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
     VoxelMap::keep(graph, ids);
     pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t))});
     runner_.submit(std::move(graph));
+    world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
     take_counts();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/graph/runner.h"
+#include "passes/color_correction.h"
 #include "passes/fusion/allocate_blocks.h"
 #include "passes/fusion/raycast.h"
 #include "passes/input/input.h"
@@ -25,6 +26,9 @@ struct ReconstructionSettings {
     InputSettings input;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:
+    /// colours are taken as they are. Needs fusion.color.
+    std::optional<GainSettings> gains{};
     /// Observations and albedo beside the geometry; empty: none. Needs lights (Reconstruction::reflectance).
     std::optional<ReflectanceModelSettings> reflectance{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
@@ -38,6 +42,10 @@ struct RgbdFrame {
     RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
     /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known.
     std::span<const uint16_t> labels{};
+    /// Of the time since the frame before, the share in which the colour camera's shutter was open; 0: its pictures are
+    /// not blurred by motion.
+    float shutter_share = 0;
+    bool held_out = false;  ///< its colours are neither fused nor observed, its depth is fused
 };
 
 /// What a camera sees of the model; all pictures have its extent.
@@ -106,6 +114,11 @@ class Reconstruction {
     /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
 
+    /// The colour gains of the frames so far (ColorCorrection::gains); empty where the settings estimate none.
+    std::span<const gpu::ColorGains> gains() {
+        return color_correction_ ? std::span(color_correction_->gains()) : std::span<const gpu::ColorGains>();
+    }
+
     uint32_t frames() const { return frames_; }
     const ReconstructionSettings& settings() const { return settings_; }
     const VoxelMap& map() const { return map_; }
@@ -122,7 +135,9 @@ class Reconstruction {
     graph::Runner runner_;
     VoxelMap map_;
     MapAccess access_;
+    std::optional<ColorCorrection> color_correction_;
     std::optional<ReflectanceModel> reflectance_;
+    std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;

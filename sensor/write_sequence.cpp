@@ -151,16 +151,18 @@ void SequenceWriter::write_lists() const {
         exposures += text(i, " ", shortest(exposures_[i].exposure_s), " ", shortest(exposures_[i].gain), "\n");
     }
     if (!regular) write_bytes(partial_ / "timestamps.txt", timestamps);
-    const bool varies =
-        std::adjacent_find(exposures_.begin(), exposures_.end(), std::not_equal_to{}) != exposures_.end();
+    const bool varies = info_.exposure_known && std::adjacent_find(exposures_.begin(), exposures_.end(),
+                                                                   std::not_equal_to{}) != exposures_.end();
     if (varies) write_bytes(partial_ / "exposures.txt", exposures);
     if (!poses_.empty()) write_trajectory(partial_ / "trajectory.txt", poses_);
 }
 
 void SequenceWriter::write_sequence_file() const {
     Json color = to_json(info_.color);
-    color["exposure_s"] = exposures_.front().exposure_s;
-    color["gain"] = exposures_.front().gain;
+    if (info_.exposure_known) {
+        color["exposure_s"] = exposures_.front().exposure_s;
+        color["gain"] = exposures_.front().gain;
+    }
     Json depth = to_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;

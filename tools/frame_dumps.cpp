@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "tools/export/previews.h"
-#include "tools/export/write_exr.h"
 
 namespace patina::tools {
 
@@ -37,7 +36,8 @@ void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance)
     }
 }
 
-/// The model as a dump's planes: colour and depth of the camera that looks.
+}  // namespace
+
 FrameDump to_dump(const ModelView& view) {
     const Extent2D extent = view.position_m.extent();
     FrameDump dump{Image<glm::vec3>(extent), Image<float>(extent), Image<glm::vec3>(extent), Image<float>(extent)};
@@ -50,8 +50,6 @@ FrameDump to_dump(const ModelView& view) {
     if (view.reflectance) add_reflectance(dump, *view.reflectance);
     return dump;
 }
-
-}  // namespace
 
 FrameDumps::FrameDumps(OutputFolder& folder, uint32_t frames, uint32_t dump_every)
     : folder_(folder), dump_every_(dump_every) {

@@ -10,8 +10,12 @@
 #include "sensor/frame.h"
 #include "tools/export/output_folder.h"
 #include "tools/export/report.h"
+#include "tools/export/write_exr.h"
 
 namespace patina::tools {
+
+/// The model as a dump's planes: colour and depth of the camera that looks; rgb is the re-rendering where there is one.
+FrameDump to_dump(const ModelView& view);
 
 /// Renders the model at some frames' colour cameras while a run goes on, and writes what arrives: frames/NNNNNN.exr and
 /// previews/NNNNNN.png.

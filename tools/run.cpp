@@ -18,6 +18,7 @@
 #include "tools/export/trajectory.h"
 #include "tools/export/write_glb.h"
 #include "tools/frame_dumps.h"
+#include "tools/held_out.h"
 #include "tools/interrupt.h"
 #include "tools/lights.h"
 #include "tools/progress.h"
@@ -76,8 +77,12 @@ std::vector<PointLight> lights_of(const RunOptions& options) {
 }
 
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
-ReconstructionSettings settings_of(const RunOptions& options, const std::vector<PointLight>& lights) {
+ReconstructionSettings settings_of(const RunOptions& options, const sensor::SequenceInfo& info,
+                                   const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
+    const bool drifts = options.gains == GainMode::kAuto && !info.exposure_known && settings.fusion.color;
+    if (options.gains == GainMode::kOff) settings.gains.reset();
+    if ((drifts || options.gains == GainMode::kOn) && !settings.gains) settings.gains.emplace();
     if (lights.empty()) {
         const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
         if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
@@ -121,8 +126,9 @@ class Run {
           info_(source.info()),
           lights_(std::move(lights)),
           truth_(truth),
-          settings_(settings_of(options, lights_)),
-          reconstruction_(device, settings_) {
+          settings_(settings_of(options, info_, lights_)),
+          reconstruction_(device, settings_),
+          held_out_(options.hold_out) {
         if (reconstruction_.reflectance()) prepare_reflectance(*reconstruction_.reflectance());
         if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
         dumps_.emplace(folder, info_.frames, options.dump_every);
@@ -162,6 +168,8 @@ class Run {
         const GlbSummary scene = write_glb(folder_.stage("scene.glb"), mesh, {.version = kVersion, .name = info_.name});
         folder_.publish("scene.glb");
         folder_.write("trajectory.txt", trajectory_text(poses_));
+        if (settings_.gains) folder_.write("gains.txt", gains_text());
+        if (options_.hold_out > 0) compare_held_out();
         if (!lights_.empty()) write_lights();
         if (!options_.dump_graph.empty()) {
             write_text(options_.dump_graph.string() + ".dot", graph_dot_);
@@ -198,8 +206,12 @@ class Run {
             labels = truth_.labels(frame.index, info_.depth.extent);
             rgbd.labels = labels.pixels();
         }
+        rgbd.shutter_share = shutter_share(frame);
+        rgbd.held_out = held_out_.wants(frame.index);
+        if (rgbd.held_out) held_out_.keep(frame, reconstruction_.frames());
         reconstruction_.add(rgbd);
         ledger_.use(frame.index);
+        used_.push_back(frame.index);
         poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
         if (!options_.dump_graph.empty()) {
             const graph::CompiledFrame& compiled = reconstruction_.runner().last_frame();
@@ -211,6 +223,31 @@ class Run {
             reconstruction_.wait();
             times_s_.emplace_back("first_fused_frame", seconds_since(start_));
         }
+    }
+
+    /// Of the time since the frame before, in which the shutter was open. Where nobody knows, half a frame's time.
+    float shutter_share(const sensor::Frame& frame) const {
+        if (info_.rendered || poses_.empty()) return 0;
+        const double open_s = info_.exposure_known ? frame.exposure.exposure_s : 0.5 / info_.fps;
+        const double since_s = std::max(frame.timestamp_s - poses_.back().timestamp_s, 0.5 / info_.fps);
+        return static_cast<float>(std::min(open_s / since_s, 1.0));
+    }
+
+    std::string gains_text() {
+        std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
+        const auto gains = reconstruction_.gains();
+        for (size_t i = 0; i < gains.size(); ++i) {
+            const glm::vec4 gain = gains[i].gain;
+            lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+        }
+        return lines;
+    }
+
+    void compare_held_out() {
+        const auto start = Clock::now();
+        reconstruction_.refine_all();
+        held_out_record_ = held_out_.compare(reconstruction_, info_, folder_);
+        times_s_.emplace_back("held_out", seconds_since(start));
     }
 
     void stop_if_interrupted() {
@@ -256,6 +293,7 @@ class Run {
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
+        record.settings["hold_out"] = options_.hold_out;
         record.settings["dump_every"] = options_.dump_every;
         record.sequence = info_;
         record.frames = {ledger_.read(), ledger_.used(), ledger_.skipped()};
@@ -273,6 +311,8 @@ class Run {
                          {"triangles", scene.triangles},
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
+        record.color_gains = gain_ranges();
+        record.held_out = held_out_record_;
         record.warnings = warnings(counters);
         for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
             if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
@@ -280,6 +320,19 @@ class Run {
         record.passes.push_back(summarised(reconstruction_.runner().host_timing()));
         record.times_s = times_s_;
         return record;
+    }
+
+    /// Per channel; empty where no gains were estimated.
+    std::vector<ValueRange> gain_ranges() {
+        std::vector<ValueRange> ranges;
+        if (reconstruction_.gains().empty()) return ranges;
+        for (glm::length_t channel = 0; channel < 3; ++channel) {
+            std::vector<float> sorted;
+            for (const gpu::ColorGains& gains : reconstruction_.gains()) sorted.push_back(gains.gain[channel]);
+            std::sort(sorted.begin(), sorted.end());
+            ranges.push_back({sorted.front(), sorted[sorted.size() / 2], sorted.back()});
+        }
+        return ranges;
     }
 
     std::vector<std::string> warnings(const gpu::MapCounters& counters) const {
@@ -315,7 +368,10 @@ class Run {
     Reconstruction reconstruction_;
     sensor::Ledger ledger_;
     std::optional<FrameDumps> dumps_;
+    HeldOut held_out_;
+    std::optional<HeldOutRecord> held_out_record_;
     std::vector<TimedPose> poses_;
+    std::vector<uint32_t> used_;  ///< indices of the frames that were fused
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;
     bool warned_full_ = false;

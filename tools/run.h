@@ -9,6 +9,13 @@
 
 namespace patina::tools {
 
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class GainMode {
+    kAuto,  ///< where the recording does not tell the exposure
+    kOn,
+    kOff
+};
+
 /// What `patina run` was asked to do.
 struct RunOptions {
     std::string sequence;  ///< folder of a recording, or "synthetic:SCENE"
@@ -18,8 +25,10 @@ struct RunOptions {
     uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     uint64_t seed = 0;        ///< of everything that is drawn at random
     bool quiet = false;
-    std::filesystem::path lights;      ///< lights.json: with it the run estimates reflectance too
-    std::string lighting;              ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    std::filesystem::path lights;  ///< lights.json: with it the run estimates reflectance too
+    std::string lighting;          ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    uint32_t hold_out = 0;         ///< every so many-th picture is kept out of the model and compared in the end
+    GainMode gains = GainMode::kAuto;
     bool truth_labels = false;         ///< segments are the objects of the sequence's truth/labels
     bool truth_materials = false;      ///< ks and alpha are those of truth/materials.json, by label
     std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last fused frame; empty writes none

@@ -32,6 +32,12 @@ void for_each_setting(Settings& s, Visit&& visit) {
     visit("view.near_m", s.near_m);
     visit("view.every_frame", s.view_every_frame);
     visit("map.remove_every", s.remove_every);
+    if (s.gains) {
+        visit("gains.reduction", s.gains->reduction);
+        visit("gains.max_angle_degrees", s.gains->max_angle_degrees);
+        visit("gains.min_samples", s.gains->min_samples);
+        visit("gains.leak", s.gains->leak);
+    }
     if (s.reflectance) {
         visit("reflectance.voxel_m", s.reflectance->voxel_m);
         visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
@@ -44,12 +50,14 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("observe.max_angle_degrees", s.reflectance->observe.max_angle_degrees);
         visit("observe.depth_tolerance_m", s.reflectance->observe.depth_tolerance_m);
         visit("observe.edge_margin_px", s.reflectance->observe.edge_margin_px);
+        visit("observe.max_blur_px", s.reflectance->observe.max_blur_px);
     }
 }
 
 std::string known_keys() {
     std::string keys;
     ReconstructionSettings defaults;
+    defaults.gains.emplace();
     defaults.reflectance.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
@@ -75,6 +83,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
     if (!settings.reflectance && (key.starts_with("reflectance.") || key.starts_with("observe."))) {
         settings.reflectance.emplace();
     }
+    if (!settings.gains && key.starts_with("gains.")) settings.gains.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

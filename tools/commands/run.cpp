@@ -1,5 +1,6 @@
 #include "tools/run.h"
 
+#include <map>
 #include <memory>
 
 #include "sensor/synthetic/scene_file.h"
@@ -62,6 +63,15 @@ void add_run(CLI::App& app) {
             },
             "Size of the voxels of reflectance, 20 or 10")
         ->check(CLI::IsMember({10, 20}));
+    command
+        ->add_option("--gains", run_options.gains,
+                     "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
+                     "recording does not tell the exposure), on, off")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, GainMode>{{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
+        ->option_text("auto|on|off");
+    command->add_option("--hold-out", run_options.hold_out,
+                        "Keep the colours of every so many-th frame out of the model, and compare them in the end");
     command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")
         ->capture_default_str();
     command->add_flag("--quiet", run_options.quiet, "Print nothing but errors");

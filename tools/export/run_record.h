@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sensor/source.h"
+#include "tools/export/picture_score.h"
 
 namespace patina {
 
@@ -50,6 +52,18 @@ struct PassTime {
     double max_ms = 0;
 };
 
+/// Where values lie.
+struct ValueRange {
+    double min = 0, median = 0, max = 0;
+};
+
+/// What held-out pictures say of a finished model, in medians over them.
+struct HeldOutRecord {
+    size_t pictures = 0;
+    PictureScore mean_color;                    ///< of the fused colour, as if it were painted on
+    std::optional<PictureScore> reflectance{};  ///< of the re-rendering, where the model has reflectance
+};
+
 /// Everything that run.json and report.html say about a finished run. Durations belong into `passes` and `times_s`
 /// only: all the rest is equal between two runs of the same input on the same device.
 struct RunRecord {
@@ -62,6 +76,8 @@ struct RunRecord {
     VoxelPoolRecord voxel_pool;
     std::vector<MemoryRecord> memory;
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
+    std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none
+    std::optional<HeldOutRecord> held_out;  ///< empty where no picture was held out
     std::vector<std::string> warnings;
     std::vector<PassTime> passes;                         ///< in the order of execution
     std::vector<std::pair<std::string, double>> times_s;  ///< wall times in seconds, as {"reading", 1.5}
