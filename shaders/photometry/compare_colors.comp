@@ -45,14 +45,17 @@ void main() {
     if (point.w <= 0.0 || known.a <= 0.0 || dot(n, toward) < params.least_cosine * length(toward)) return;
     if (!is_even(pixel, point, n)) return;
 
-    const ivec2 low = ivec2(floor((vec2(pixel) + 0.5) * params.color_per_px - 0.5));
+    const vec2 center = (vec2(pixel) + 0.5) * params.color_per_px - 0.5;
+    const vec2 t = fract(center);
     vec4 seen = vec4(0.0);
     vec3 least = vec3(kBrightest), most = vec3(0.0);
     bool valid = true;
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        const vec4 tap = imageLoad(color_linear, low + ivec2(i & 1, i >> 1));
+        const ivec2 corner = ivec2(i & 1, i >> 1);
+        const vec4 tap = imageLoad(color_linear, ivec2(floor(center)) + corner);
+        const vec2 share = mix(1.0 - t, t, vec2(corner));
         valid = valid && tap.a == 1.0;
-        seen += 0.25 * tap;
+        seen += tap * (share.x * share.y);
         least = min(least, tap.rgb);
         most = max(most, tap.rgb);
     }

@@ -11,12 +11,15 @@ layout(std430, binding = 1) buffer Gains { ColorGains gains; };
 layout(push_constant) uniform Push { SettleGainsParams params; };
 
 const uint kOwnBins = kGainBins / kSettleGainsGroup;
-const float kLeastReach = 6.0;        // bins, 3 %: a biweight mean of less would follow single bins
-const float kReachOfQuartiles = 4.0;  // half the quartiles' distance is 0.67 of a normal distribution's sigma
+const float kLeastReach = 6.0;  // bins, 3 %: a biweight mean of less would follow single bins
+// Quantiles this far to both sides of the median: a third of the samples may lie far off to one side. Of a normal
+// distribution they are 0.385 sigma away, so that the mean reaches to 2.7 sigma.
+const float kQuantileStep = 0.15;
+const float kReachOfQuantiles = 7.0;
 const uint kSteps = 3u;
 
 shared uint ends[kSettleGainsGroup];  // the weight of an invocation's bins and those before
-shared float quantiles[3];            // quarter, half, three quarters, in bins
+shared float quantiles[3];            // the middle one is the median; in bins
 shared vec2 sums[kSettleGainsGroup];
 
 uint own[kOwnBins];
@@ -36,7 +39,7 @@ void find_quantiles(uint total) {
     const uint lane = gl_LocalInvocationIndex;
     const uint begin = lane > 0u ? ends[lane - 1u] : 0u;
     [[unroll]] for (uint q = 0u; q < 3u; ++q) {
-        const float rank = float(total) * (0.25 * float(q + 1u));
+        const float rank = float(total) * (0.5 + kQuantileStep * (float(q) - 1.0));
         float below = float(begin);
         [[unroll]] for (uint i = 0u; i < kOwnBins; ++i) {
             const float weight = float(own[i]);
@@ -89,7 +92,7 @@ void main() {
     const uint samples = weights[3u * kGainBins + channel];
     if (samples >= params.min_samples) {
         find_quantiles(ends[kSettleGainsGroup - 1u]);
-        const float reach = max(0.5 * kReachOfQuartiles * (quantiles[2] - quantiles[0]), kLeastReach);
+        const float reach = max(0.5 * kReachOfQuantiles * (quantiles[2] - quantiles[0]), kLeastReach);
         const float bin = biweight_mean(quantiles[1], reach);
         const float stops = (bin / kGainBinsPerStop - kGainRangeStops) * (1.0 - params.leak);
         if (lane == 0u) gains.gain[channel] = exp2(stops);

@@ -23,18 +23,23 @@ bool same_plane(const ComparedColors& frame, glm::ivec2 at, glm::ivec2 there) {
     return other.w > 0 && std::abs(off) <= 0.01 + 0.01 * here.w;
 }
 
-/// The four pixels of the picture around the centre of a pixel of the cast.
-std::array<glm::dvec4, 4> pixels_at(const ComparedColors& frame, glm::uvec2 at) {
+/// The four pixels of the picture around the centre of a pixel of the cast, and their mean by distance.
+struct Pixels {
+    std::array<glm::dvec4, 4> all{};
+    glm::dvec4 mean{0};
+};
+
+Pixels pixels_at(const ComparedColors& frame, glm::uvec2 at) {
     const Extent2D cast = frame.position_m.extent(), extent = frame.color.extent();
-    const auto low = [](uint32_t p, uint32_t of, uint32_t pixels) {
-        return static_cast<int>(std::floor((p + 0.5) * pixels / of - 0.5));
-    };
-    const int x = low(at.x, cast.width, extent.width), y = low(at.y, cast.height, extent.height);
-    std::array<glm::dvec4, 4> pixels{};
+    const glm::dvec2 center((at.x + 0.5) * extent.width / cast.width - 0.5,
+                            (at.y + 0.5) * extent.height / cast.height - 0.5);
+    Pixels pixels;
     for (size_t i = 0; i < 4; ++i) {
-        const int px = x + static_cast<int>(i % 2), py = y + static_cast<int>(i / 2);
-        if (extent.contains(px, py))
-            pixels[i] = glm::dvec4(frame.color.at(static_cast<uint32_t>(px), static_cast<uint32_t>(py)));
+        const glm::ivec2 p = glm::ivec2(glm::floor(center)) + glm::ivec2(i % 2, i / 2);
+        if (!extent.contains(p.x, p.y)) continue;
+        const glm::dvec2 share = 1.0 - glm::abs(center - glm::dvec2(p));
+        pixels.all[i] = glm::dvec4(frame.color.at(static_cast<uint32_t>(p.x), static_cast<uint32_t>(p.y)));
+        pixels.mean += share.x * share.y * pixels.all[i];
     }
     return pixels;
 }
@@ -48,16 +53,16 @@ void add_samples(std::array<std::vector<Sample>, 3>& samples, const ComparedColo
     for (const glm::ivec2 side : {glm::ivec2(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
         if (!same_plane(frame, here, here + side)) return;
     }
-    const std::array<glm::dvec4, 4> pixels = pixels_at(frame, at);
-    for (const glm::dvec4& pixel : pixels) {
+    const Pixels pixels = pixels_at(frame, at);
+    for (const glm::dvec4& pixel : pixels.all) {
         if (pixel.a != 1) return;
     }
     for (glm::length_t c = 0; c < 3; ++c) {
         const auto channel = [&](const auto& a, const auto& b) { return a[c] < b[c]; };
-        const auto [low, high] = std::minmax_element(pixels.begin(), pixels.end(), channel);
+        const auto [low, high] = std::minmax_element(pixels.all.begin(), pixels.all.end(), channel);
         if (std::min((*low)[c], model[c]) < 0.015 || std::max((*high)[c], model[c]) > 0.7) continue;
         if ((*high)[c] > 1.25 * (*low)[c]) continue;
-        const double mean = (pixels[0][c] + pixels[1][c] + pixels[2][c] + pixels[3][c]) / 4;
+        const double mean = pixels.mean[c];
         const double stops = std::log2(mean / model[c]);
         if (std::abs(stops) < 2)
             samples[static_cast<size_t>(c)].push_back({stops, 64 * std::sqrt(mean * model[c]) + 0.5});
@@ -77,7 +82,7 @@ double quantile(const std::vector<Sample>& sorted, double share) {
 double robust_center(std::vector<Sample> samples) {
     std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.stops < b.stops; });
     double center = quantile(samples, 0.5);
-    const double reach = std::max(2 * (quantile(samples, 0.75) - quantile(samples, 0.25)), 6 / 128.0);
+    const double reach = std::max(3.5 * (quantile(samples, 0.65) - quantile(samples, 0.35)), 6 / 128.0);
     for (int step = 0; step < 3; ++step) {
         double sum = 0, weights = 0;
         for (const Sample& s : samples) {
