@@ -11,6 +11,7 @@
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/visible_blocks.h"
+#include "passes/sample_mesh.h"
 #include "passes/surface/extract_surface.h"
 
 namespace patina {
@@ -56,11 +57,9 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 ModelView PendingView::get() const {
     ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
     if (reflectance_) {
-        view.reflectance = {widened(reflectance_->kd),
-                            widened(reflectance_->ks_alpha),
-                            reflectance_->label.image<uint32_t>(),
-                            widened(reflectance_->rgb),
-                            {}};
+        view.reflectance = {
+            widened(reflectance_->kd),  widened(reflectance_->ks_alpha), reflectance_->label.image<uint32_t>(),
+            widened(reflectance_->rgb), widened(reflectance_->light),    {}};
         for (const auto& segment : reflectance_->segments.as<gpu::SegmentAlbedo>())
             view.reflectance->segment_kd.push_back(kd_of(segment));
     }
@@ -144,6 +143,14 @@ void Reconstruction::refine_all() {
     runner_.submit(std::move(graph));
 }
 
+void Reconstruction::relight(std::span<const PointLight> lights) {
+    if (!reflectance_ || frames_ == 0) return;
+    refine_all();
+    graph::Frame graph = runner_.begin();
+    reflectance_->relight(graph, map_.import(graph), lights);
+    runner_.submit(std::move(graph));
+}
+
 void Reconstruction::add(const RgbdFrame& frame) {
     check(frame);
     if (frames_ == 0) {
@@ -178,8 +185,8 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.color_ = graph.read_back(color);
     if (reflectance_) {
         const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
-        pending.reflectance_ = {graph.read_back(seen.kd), graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
-                                graph.read_back(seen.rgb), graph.read_back(segments)};
+        pending.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
+                                graph.read_back(seen.rgb), graph.read_back(seen.light),    graph.read_back(segments)};
     }
     runner_.submit(std::move(graph));
     return pending;
@@ -188,6 +195,12 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
 Mesh Reconstruction::extract_surface() {
     if (frames_ == 0) return {};
     return patina::extract_surface(runner_, map_);
+}
+
+MeshReflectance Reconstruction::sample_reflectance(const Mesh& mesh) {
+    if (!reflectance_ || frames_ == 0) return {};
+    refine_all();
+    return sample_mesh(runner_, *reflectance_, mesh);
 }
 
 void Reconstruction::take_counts() {

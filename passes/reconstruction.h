@@ -16,6 +16,7 @@
 #include "passes/model/voxel_map.h"
 #include "passes/reflectance_model.h"
 #include "passes/surface/mesh.h"
+#include "passes/surface/mesh_reflectance.h"
 
 namespace patina {
 
@@ -60,6 +61,7 @@ struct ModelView {
         Image<glm::vec4> ks_alpha;                         ///< of the segment
         Image<uint32_t> label;                             ///< 0: none
         Image<glm::vec4> rgb;                              ///< linear re-rendering; a = 1 where kd is known
+        Image<glm::vec4> light;                            ///< what kd multiplies in rgb; a: the part shadows leave
         std::vector<std::optional<glm::vec3>> segment_kd;  ///< by label: the mean albedo of the whole segment
     };
     std::optional<Reflectance> reflectance{};
@@ -75,7 +77,7 @@ class PendingView {
   private:
     friend class Reconstruction;
     struct Reflectance {
-        graph::Readback kd, ks_alpha, label, rgb, segments;
+        graph::Readback kd, ks_alpha, label, rgb, light, segments;
     };
     graph::Readback position_m_, normal_, color_;
     std::optional<Reflectance> reflectance_;
@@ -101,6 +103,10 @@ class Reconstruction {
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
 
+    /// What a mesh of the surface and all segments reflect, brought up to date before; waits. Empty without
+    /// reflectance.
+    MeshReflectance sample_reflectance(const Mesh& mesh);
+
     /// The map's counters as of at most two frames ago; exact after wait().
     const gpu::MapCounters& counters();
 
@@ -109,6 +115,10 @@ class Reconstruction {
 
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
+
+    /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
+    /// Without reflectance nothing changes. Throws Error as Lights::set does.
+    void relight(std::span<const PointLight> lights);
 
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
     /// any time.

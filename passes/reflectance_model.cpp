@@ -1,5 +1,6 @@
 #include "passes/reflectance_model.h"
 
+#include "passes/shading/pack_records.h"
 #include "shared/voxel_map.h"
 
 namespace patina {
@@ -51,6 +52,12 @@ void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels
     ObservationMap::keep(frame, records);
 }
 
+void ReflectanceModel::relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights) {
+    lights_.set(lights);
+    settings_.refine.albedo = false;
+    refine_all(frame, voxels);
+}
+
 PredictedView ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast) {
     PredictRadianceInputs inputs;
@@ -67,6 +74,23 @@ PredictedView ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapI
     inputs.access = access_.voxels;
     return {add_predict_radiance(frame, map_, voxels, observations_, records, state_.import(frame), inputs),
             inputs.segments};
+}
+
+SegmentIds ReflectanceModel::add_segments(graph::Frame& frame) {
+    return {add_average_segments(frame, observations_, observations_.import(frame), materials_.capacity()),
+            materials_.import(frame)};
+}
+
+graph::BufferId ReflectanceModel::add_sample(graph::Frame& frame, graph::BufferId positions_m, graph::BufferId normals,
+                                             uint32_t points) {
+    const ObservationMapIds records = observations_.import(frame);
+    const SampleReflectanceInputs inputs{positions_m,
+                                         normals,
+                                         add_pack_records(frame, observations_, records, state_.import(frame)),
+                                         add_average_segments(frame, observations_, records, materials_.capacity()),
+                                         points,
+                                         materials_.capacity()};
+    return add_sample_reflectance(frame, observations_, records, inputs);
 }
 
 }  // namespace patina

@@ -9,6 +9,7 @@
 #include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
+#include "passes/shading/sample_reflectance.h"
 
 namespace patina {
 
@@ -26,6 +27,12 @@ struct ReflectanceModelSettings {
 struct PredictedView {
     PredictedImages images;
     graph::BufferId segments;  ///< gpu::SegmentAlbedo per label
+};
+
+/// What is known of the segments, by label.
+struct SegmentIds {
+    graph::BufferId albedo;     ///< gpu::SegmentAlbedo per label
+    graph::BufferId materials;  ///< gpu::SegmentMaterial per label
 };
 
 /// What a surface reflects, beside the voxel map that says where it is: observations by voxel, the lights, materials by
@@ -50,9 +57,20 @@ class ReflectanceModel {
     /// Brings every record up to date.
     void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);
 
+    /// Puts the model under other lights than those it was observed under: their visibility is found, kd stays. Nothing
+    /// may be added or refined after that.
+    void relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights);
+
     /// What a camera sees that was cast into the model.
     PredictedView add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,
                               const RaycastImages& cast);
+
+    /// What is known of each segment.
+    SegmentIds add_segments(graph::Frame& frame);
+
+    /// What is known of points of the surface: gpu::SampledReflectance[points]; see add_sample_reflectance.
+    graph::BufferId add_sample(graph::Frame& frame, graph::BufferId positions_m, graph::BufferId normals,
+                               uint32_t points);
 
     std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
     const ReflectanceModelSettings& settings() const { return settings_; }

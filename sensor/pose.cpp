@@ -137,4 +137,17 @@ std::vector<std::optional<size_t>> associate(std::span<const double> a, std::spa
     return partner;
 }
 
+std::vector<StampedPose> read_trajectory(const std::filesystem::path& file) {
+    std::vector<double> timestamps_s;
+    for (const TextLine& line : read_lines(file)) timestamps_s.push_back(line.finite(0));
+    if (timestamps_s.empty()) throw Error(file.string(), " has no poses");
+    const FramePoses poses(file, timestamps_s, 0);
+    std::vector<StampedPose> trajectory;
+    // Its own timestamps being the frames', every frame has a pose.
+    for (uint32_t i = 0; i < timestamps_s.size(); ++i) {
+        trajectory.push_back({timestamps_s[i], poses.of_frame(i).value().transform});
+    }
+    return trajectory;
+}
+
 }  // namespace patina::sensor

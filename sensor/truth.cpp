@@ -48,7 +48,9 @@ double read_alpha(const JsonValue& value) {
 void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights) {
     Json list = Json::array();
     for (const PointLight& light : lights) {
-        list.push_back({{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}});
+        Json entry{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
+        if (light.radius_m > 0) entry["radius"] = light.radius_m;
+        list.push_back(std::move(entry));
     }
     write_bytes(file, Json{{"lights", list}}.dump(2) + "\n");
 }
@@ -67,8 +69,11 @@ void write_materials(const std::filesystem::path& file, std::span<const Material
 
 std::vector<PointLight> read_lights(const std::filesystem::path& file) {
     std::vector<PointLight> lights;
-    for (const JsonValue& light : JsonValue::read(file).at("lights").elements())
-        lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity"))});
+    for (const JsonValue& light : JsonValue::read(file).at("lights").elements()) {
+        const auto radius = light.find("radius");
+        lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity")),
+                          radius ? radius->not_negative() : 0});
+    }
     return lights;
 }
 

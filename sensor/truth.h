@@ -14,7 +14,7 @@ namespace patina::sensor {
 struct PointLight {
     glm::dvec3 position_m{0};  ///< world
     glm::dvec3 intensity{0};   ///< RGB
-    double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for, 0 when it is a point; not in files
+    double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for, 0 when it is a point or unknown
 };
 
 /// A Ward material (paper, Eq. 2-4).
@@ -30,9 +30,9 @@ struct Material {
 void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights);
 void write_materials(const std::filesystem::path& file, std::span<const Material> materials);
 
-/// Read what write_lights and write_materials write; radius_m is 0. Throw Error when the file is missing or no JSON, a
-/// member is missing, no finite number, or outside what it may be: an intensity below 0, an id of 0 or another
-/// material's, kd or ks outside 0 .. 1, alpha outside (0, 1].
+/// Read what write_lights and write_materials write. Throw Error when the file is missing or no JSON, a
+/// member is missing, no finite number, or outside what it may be: an intensity or a radius below 0, an id of 0 or
+/// another material's, kd or ks outside 0 .. 1, alpha outside (0, 1].
 std::vector<PointLight> read_lights(const std::filesystem::path& file);
 std::vector<Material> read_materials(const std::filesystem::path& file);
 

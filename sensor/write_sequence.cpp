@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "sensor/exr_file.h"
 #include "sensor/picture_file.h"
@@ -59,18 +58,6 @@ void expect_extent(const fs::path& stem, const Picture& picture, Extent2D expect
         throw Error(stem.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
 }
 
-fs::path without_trailing_slash(const fs::path& folder) {
-    const fs::path absolute = fs::absolute(folder).lexically_normal();
-    return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
-void expect_free(const fs::path& folder) {
-    if (!fs::exists(folder)) return;
-    if (!fs::is_directory(folder)) throw Error(folder.string(), " is a file, so that no sequence can be written there");
-    if (!fs::is_empty(folder))
-        throw Error(folder.string(), " exists and is not empty; a sequence is written to a new folder");
-}
-
 Json to_json(const Intrinsics& camera) {
     return {{"width", camera.extent.width},
             {"height", camera.extent.height},
@@ -89,35 +76,25 @@ Json to_json(const RigidTransform& transform) {
 
 }  // namespace
 
-SequenceWriter::SequenceWriter(fs::path folder, SequenceInfo info, LinearColor linear_color)
-    : folder_(without_trailing_slash(folder)),
-      partial_(text(folder_.string(), ".partial-", getpid())),
-      info_(std::move(info)),
-      linear_color_(linear_color) {
-    expect_free(folder_);
-    if (fs::exists(partial_))
-        throw Error(partial_.string(), " exists already: another writer's, or left over; remove it");
+SequenceWriter::SequenceWriter(const fs::path& folder, SequenceInfo info, LinearColor linear_color)
+    : folder_(folder), info_(std::move(info)), linear_color_(linear_color) {
     std::error_code failure;
     for (const char* part : {"color", "depth"}) {
-        fs::create_directories(partial_ / part, failure);
-        if (failure) throw Error((partial_ / part).string(), " cannot be created: ", failure.message());
+        fs::create_directories(partial_folder() / part, failure);
+        if (failure) throw Error((partial_folder() / part).string(), " cannot be created: ", failure.message());
     }
 }
 
-SequenceWriter::~SequenceWriter() {
-    background_.abandon();
-    std::error_code ignored;
-    if (!finished_) fs::remove_all(partial_, ignored);
-}
+SequenceWriter::~SequenceWriter() { background_.abandon(); }
 
 void SequenceWriter::write(Frame frame) {
-    PATINA_ASSERT(!finished_, "frame ", frame.index, " of ", folder_.string());
+    PATINA_ASSERT(!finished_, "frame ", frame.index, " of ", folder_.path().string());
     if (frame.index != timestamps_s_.size()) {
-        throw Error(folder_.string(), ": frame ", frame.index, " was to be written, but ", timestamps_s_.size(),
+        throw Error(folder_.path().string(), ": frame ", frame.index, " was to be written, but ", timestamps_s_.size(),
                     " is next");
     }
-    const fs::path color = partial_ / "color" / picture_stem(frame.index);
-    const fs::path depth = partial_ / "depth" / picture_stem(frame.index);
+    const fs::path color = partial_folder() / "color" / picture_stem(frame.index);
+    const fs::path depth = partial_folder() / "depth" / picture_stem(frame.index);
     expect_extent(color, frame.color, info_.color.extent);
     expect_extent(depth, frame.depth, info_.depth.extent);
     timestamps_s_.push_back(frame.timestamp_s);
@@ -130,14 +107,12 @@ void SequenceWriter::write(Frame frame) {
 }
 
 void SequenceWriter::finish() {
-    PATINA_ASSERT(!finished_, folder_.string());
-    if (timestamps_s_.empty()) throw Error(folder_.string(), " would have 0 frames; at least 1 must be written");
+    PATINA_ASSERT(!finished_, folder_.path().string());
+    if (timestamps_s_.empty()) throw Error(folder_.path().string(), " would have 0 frames; at least 1 must be written");
     background_.finish();
     write_lists();
     write_sequence_file();
-    std::error_code failure;
-    fs::rename(partial_, folder_, failure);
-    if (failure) throw Error(partial_.string(), " cannot be renamed to ", folder_.string(), ": ", failure.message());
+    folder_.finish();
     finished_ = true;
 }
 
@@ -150,19 +125,17 @@ void SequenceWriter::write_lists() const {
         timestamps += text(i, " ", shortest(timestamps_s_[i]), "\n");
         exposures += text(i, " ", shortest(exposures_[i].exposure_s), " ", shortest(exposures_[i].gain), "\n");
     }
-    if (!regular) write_bytes(partial_ / "timestamps.txt", timestamps);
+    if (!regular) write_bytes(partial_folder() / "timestamps.txt", timestamps);
     const bool varies = info_.exposure_known && std::adjacent_find(exposures_.begin(), exposures_.end(),
                                                                    std::not_equal_to{}) != exposures_.end();
-    if (varies) write_bytes(partial_ / "exposures.txt", exposures);
-    if (!poses_.empty()) write_trajectory(partial_ / "trajectory.txt", poses_);
+    if (varies) write_bytes(partial_folder() / "exposures.txt", exposures);
+    if (!poses_.empty()) write_trajectory(partial_folder() / "trajectory.txt", poses_);
 }
 
 void SequenceWriter::write_sequence_file() const {
     Json color = to_json(info_.color);
-    if (info_.exposure_known) {
-        color["exposure_s"] = exposures_.front().exposure_s;
-        color["gain"] = exposures_.front().gain;
-    }
+    color["exposure_s"] = exposures_.front().exposure_s;
+    color["gain"] = exposures_.front().gain;
     Json depth = to_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;
@@ -174,7 +147,7 @@ void SequenceWriter::write_sequence_file() const {
                     {"color", color},
                     {"depth", depth},
                     {"depth_to_color", to_json(info_.color_from_depth)}};
-    write_bytes(partial_ / "sequence.json", root.dump(2) + "\n");
+    write_bytes(partial_folder() / "sequence.json", root.dump(2) + "\n");
 }
 
 }  // namespace patina::sensor

@@ -7,6 +7,7 @@
 
 #include "sensor/background_work.h"
 #include "sensor/frame.h"
+#include "sensor/new_folder.h"
 #include "sensor/pose.h"
 
 namespace patina::sensor {
@@ -15,15 +16,15 @@ namespace patina::sensor {
 /// Pictures of 8-bit codes are PNG either way.
 enum class LinearColor { kPng, kExr };
 
-/// Writes a sequence folder in Patina's own format. Files go to NAME.partial-PID beside the folder, which finish()
-/// renames: the folder appears whole or not at all. Pictures are encoded and written on other threads. The same frames
-/// give the same bytes.
+/// Writes a sequence folder in Patina's own format; it appears whole or not at all (NewFolder). Pictures are encoded
+/// and written on other threads. The same frames give the same bytes.
 class SequenceWriter {
   public:
     /// `info` gives name, fps, cameras, metres_per_unit, max_metres and color_from_depth; its frame count is not
     /// used, exposures are written where it says that they are known.
     /// Throws Error when the folder exists and is not empty, or its place cannot be written.
-    SequenceWriter(std::filesystem::path folder, SequenceInfo info, LinearColor linear_color = LinearColor::kPng);
+    SequenceWriter(const std::filesystem::path& folder, SequenceInfo info,
+                   LinearColor linear_color = LinearColor::kPng);
     SequenceWriter(const SequenceWriter&) = delete;
     SequenceWriter& operator=(const SequenceWriter&) = delete;
 
@@ -36,7 +37,7 @@ class SequenceWriter {
     void write(Frame frame);
 
     /// Where further files, such as truth/, are written before finish(): the folder under its passing name.
-    const std::filesystem::path& partial_folder() const { return partial_; }
+    const std::filesystem::path& partial_folder() const { return folder_.partial_path(); }
 
     /// Where the writing of further files may be started; finish() waits for it.
     BackgroundWork& background() { return background_; }
@@ -49,8 +50,7 @@ class SequenceWriter {
     void write_lists() const;
     void write_sequence_file() const;
 
-    std::filesystem::path folder_;
-    std::filesystem::path partial_;
+    NewFolder folder_;
     SequenceInfo info_;
     LinearColor linear_color_;
     std::vector<double> timestamps_s_;

@@ -26,13 +26,19 @@ void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance)
     dump.rgb = rgb_of(reflectance.rgb);
     dump.alpha = Image<float>(dump.kd.extent());
     dump.label = Image<float>(dump.kd.extent());
-    dump.kd_segment = Image<glm::vec3>(dump.kd.extent());
+    dump.visibility = Image<float>(dump.kd.extent());
+    dump.kd_segment = dump.rgb_segment = Image<glm::vec3>(dump.kd.extent());
     for (size_t i = 0; i < dump.kd.extent().area(); ++i) {
         dump.alpha.pixels()[i] = reflectance.ks_alpha.pixels()[i].a;
         const uint32_t label = reflectance.label.pixels()[i];
         dump.label.pixels()[i] = static_cast<float>(label);
         if (label < reflectance.segment_kd.size())
             dump.kd_segment.pixels()[i] = reflectance.segment_kd[label].value_or(glm::vec3(0));
+        // Of the radiance, kd makes up this much; the rest is the highlight.
+        const glm::vec4 light = reflectance.light.pixels()[i];
+        const glm::vec3 exchanged = dump.kd_segment.pixels()[i] - dump.kd.pixels()[i];
+        dump.rgb_segment.pixels()[i] = glm::max(dump.rgb.pixels()[i] + exchanged * glm::vec3(light), 0.0f);
+        dump.visibility.pixels()[i] = light.a;
     }
 }
 

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     tools::add_info(app);
     tools::add_synth(app);
     tools::add_run(app);
+    tools::add_render(app);
     tools::add_eval(app);
     tools::add_lights(app);
     try {

@@ -21,4 +21,14 @@ std::vector<sensor::Material> RunTruth::materials() const {
     return rendered_ ? sensor::materials_of(rendered_->scene()) : sensor::read_materials(folder_ / "materials.json");
 }
 
+std::vector<std::string> RunTruth::names() const {
+    std::vector<std::string> names;
+    if (!rendered_ && !std::filesystem::exists(folder_ / "materials.json")) return names;
+    for (const sensor::Material& material : materials()) {
+        if (material.id >= names.size()) names.resize(material.id + size_t{1});
+        names[material.id] = material.name;
+    }
+    return names;
+}
+
 }  // namespace patina::tools

@@ -25,6 +25,10 @@ class RunTruth {
     /// All materials. Throws Error when the file is missing or wrong.
     std::vector<sensor::Material> materials() const;
 
+    /// The objects' names by label, empty where there is none; none at all without a file of materials. Throws Error
+    /// when that is wrong.
+    std::vector<std::string> names() const;
+
   private:
     std::filesystem::path folder_;
     const sensor::SyntheticSource* rendered_;

@@ -12,6 +12,7 @@ namespace patina {
 
 /// The mean albedo of each segment over its records, each weighted by its certainty: what a surface point has that no
 /// record knows. Returns gpu::SegmentAlbedo[labels], zero where a segment has no records; kd above 1 counts as 1.
+/// Counts of records and observations include those that know nothing.
 graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
                                      uint32_t labels);
 

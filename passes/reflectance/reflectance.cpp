@@ -34,7 +34,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
 
 RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
                               ObservationMapIds& records, const RecordList& changed, const ReflectanceAccess& access,
-                              const gpu::ReflectanceParams& params) {
+                              const gpu::ReflectanceParams& params, bool albedo) {
     ReflectanceStateIds state = models.state.import(frame);
     ReflectanceFrame reflectance{models.voxel_map,
                                  voxels,
@@ -47,7 +47,7 @@ RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& mode
                                  params};
     DueRecords due = add_find_due_records(frame, reflectance, changed);
     add_find_visibility(frame, reflectance, due);
-    add_refine_albedo(frame, reflectance, due.refine);
+    if (albedo) add_refine_albedo(frame, reflectance, due.refine);
     ReflectanceState::keep(frame, state);
     return {due.march, due.refine};
 }
@@ -67,7 +67,7 @@ RefinedReflectance add_refine_reflectance(graph::Frame& frame, const Reflectance
     check_budget("refreshed_records", settings.refreshed_records);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
     return add_update(frame, models, voxels, records, changed, access,
-                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)));
+                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)), settings.albedo);
 }
 
 RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
@@ -77,7 +77,7 @@ RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const Reflect
     all.marched_records = all.refreshed_records = kEverything;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
-    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets));
+    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets), settings.albedo);
 }
 
 }  // namespace patina

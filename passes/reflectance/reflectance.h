@@ -9,6 +9,7 @@ namespace patina {
 /// How much of the reflectance is brought up to date in a frame.
 struct ReflectanceSettings {
     bool shadows = true;               ///< false: every light reaches every surface, as in the paper
+    bool albedo = true;                ///< false: only visibility is found, under lights that never shone
     uint32_t marched_records = 1024;   ///< changed records whose lights are marched in a frame at most, about
     uint32_t refreshed_records = 512;  ///< and others, looked at again in turn, about
 };

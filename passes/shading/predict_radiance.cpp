@@ -1,5 +1,6 @@
 #include "passes/shading/predict_radiance.h"
 
+#include "passes/shading/pack_records.h"
 #include "shared/predict_radiance.h"
 #include "spirv/shaders.h"
 
@@ -27,17 +28,6 @@ graph::BufferId add_index_records(graph::Frame& frame, const VoxelMap& voxel_map
     return entries;
 }
 
-graph::BufferId add_pack_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                 const ReflectanceStateIds& state) {
-    const uint32_t capacity = map.settings().capacity_records;
-    auto pass = frame.compute("shading.pack_records", spirv::pack_records);
-    pass.read("RecordCounters", records.record_counters).read("Status", state.status);
-    pass.read("Records", records.records).read("Albedo", records.albedo).read("Visibility", records.visibility);
-    const graph::BufferId packed = pass.create("Packed", uint64_t{capacity} * sizeof(glm::uvec4));
-    pass.dispatch_covering(capacity);
-    return packed;
-}
-
 }  // namespace
 
 PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
@@ -59,6 +49,7 @@ PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});
     out.ks_alpha = pass.create("ks_alpha", {extent, vulkan::Format::kRgba16f});
     out.rgb = pass.create("rgb", {extent, vulkan::Format::kRgba16f});
+    out.light = pass.create("light", {extent, vulkan::Format::kRgba16f});
     pass.push(gpu::PredictRadianceParams{map.settings().voxel_m, map.edge_shift(), inputs.material_count,
                                          inputs.shadows ? 1u : 0u});
     pass.dispatch_covering(extent);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Sums up the albedo of each segment over its records.
+// Sums up the albedo of each segment over its records, and counts these and their observations.
 #include "lib/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
@@ -15,6 +15,8 @@ void main() {
     if (record >= counters.high_water) return;
     const uint label = record_label(records[record]);
     if (label == 0u || label >= uint(segments.length())) return;
+    atomicAdd(segments[label].kd.w, 1u);
+    atomicAdd(segments[label].weight.w, observation_count(records[record]));
     const uvec2 stored = albedo[record];
     const uvec3 weight = uvec3(round(albedo_certainty(stored) * kCertaintySteps));
     const uvec3 kd = uvec3(round(clamp(albedo_kd(stored), 0.0, 1.0) * kAlbedoSteps)) * weight;
@@ -23,5 +25,4 @@ void main() {
         atomicAdd(segments[label].kd[c], kd[c]);
         atomicAdd(segments[label].weight[c], weight[c]);
     }
-    atomicAdd(segments[label].kd.w, 1u);
 }

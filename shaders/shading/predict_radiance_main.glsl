@@ -4,8 +4,8 @@
 //   CELL(i)      uint, the block id in a cell of the view grid
 //   ENTRY(i)     uint, an entry of the table of records by voxel of each block
 //   PACKED(i)    uvec4, a packed record
+#include "lib/blend_records.glsl"
 #include "lib/camera.glsl"
-#include "lib/packed_records.glsl"
 #include "lib/view_grid.glsl"
 #include "lib/ward.glsl"
 #include "shared/predict_radiance.h"
@@ -25,27 +25,15 @@ layout(binding = 10, rgba16f) uniform writeonly image2D kd;        // a = 1 wher
 layout(binding = 11, r32ui) uniform writeonly uimage2D label;      // 0: none
 layout(binding = 12, rgba16f) uniform writeonly image2D ks_alpha;  // rgb, Ward roughness
 layout(std430, binding = 14) readonly buffer Segments { SegmentAlbedo segments[]; };
-layout(binding = 13, rgba16f) uniform writeonly image2D rgb;  // linear pixel value; a = 1 where kd is known
+layout(binding = 13, rgba16f) uniform writeonly image2D rgb;    // linear pixel value; a = 1 where kd is known
+layout(binding = 15, rgba16f) uniform writeonly image2D light;  // irradiance / pi; a: the part that shadows leave
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
-// A record belongs to the surface point's own surface where their normals agree and its tangent plane passes near the
-// point. Between the two values the weight falls linearly.
-const float kAgreeingCosine = 0.75;
-const float kOtherCosine = 0.25;
-const float kOnPlaneVox = 0.5;
-const float kOffPlaneVox = 1.0;
-const float kLeastWeight = 1e-6;  // trilinear shares below it are none
 const float kLeastAlpha = 0.01;
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
 ivec3 grid_low;
 uvec3 grid_size;
-
-struct SurfacePoint {
-    vec3 at_vox;  // in voxels of the observations, whose centres are at integers
-    vec3 normal;  // 0 where it is not known
-    vec3 to_viewer;
-};
 
 uint find_record(uint cell, uint voxel) {
     const uint block = CELL(cell == kOutsideGrid ? 0u : cell);
@@ -53,35 +41,15 @@ uint find_record(uint cell, uint voxel) {
     return ENTRY(block << 3u * params.edge_shift | voxel);
 }
 
-// How much the surface of a record is that of the point, 0 to 1; `surface` is packed_surface.
-float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
-    const bool known = point.normal != vec3(0.0);
-    // Where the model has no normal, all that faces the viewer will do.
-    const float cosine = known ? dot(point.normal, surface.xyz) : dot(point.to_viewer, surface.xyz) > 0.0 ? 1.0 : 0.0;
-    const float off = abs(dot(surface.xyz, away_vox) - surface.w);
-    return clamp((cosine - kOtherCosine) / (kAgreeingCosine - kOtherCosine), 0.0, 1.0) *
-           clamp((kOffPlaneVox - off) / (kOffPlaneVox - kOnPlaneVox), 0.0, 1.0);
-}
-
 uint near_record[8];    // the records around the point
 float share_of[8];      // their parts of what reaches the point of the lights; 0: not known
 uvec2 visible_from[8];  // a bit per light
-
-struct Reflectance {
-    vec3 kd;
-    vec3 weights;  // of kd's channels, 1 where all records are certain
-    bool known;
-    vec3 normal;    // of the records
-    uint labelled;  // the nearest record with a label, or kNoRecord
-};
 
 // The trilinear mean over the eight records around the point, without those that are unknown or of another surface.
 Reflectance interpolate(SurfacePoint point) {
     const ivec3 low = ivec3(floor(point.at_vox));
     const vec3 t = point.at_vox - vec3(low);
-    vec3 sum = vec3(0.0), weights = vec3(0.0), normals = vec3(0.0);
-    float nearest = 1e9;
-    uint labelled = kNoRecord;
+    RecordSums sums = no_records();
     // What addresses of the corners have in common is computed once per axis.
     const uvec3 mask = uvec3((1u << params.edge_shift) - 1u);
     const uvec3 strides = uvec3(1u, grid_size.x, grid_size.x * grid_size.y);
@@ -101,67 +69,32 @@ Reflectance interpolate(SurfacePoint point) {
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
-        const vec4 surface = packed_surface(content);
-        const vec3 away = t - vec3(corner);
-        const float same = have ? same_surface(point, away, surface) : 0.0;
-        const float weight = same * max(share.x * share.y * share.z, kLeastWeight);
-        const vec3 certain = weight * packed_certainty(content);
-        sum += certain * packed_kd(content);
-        weights += certain;
-        normals += weight * surface.xyz;
-        const float distance2 = same > 0.0 && packed_has_label(content) ? dot(away, away) : 1e9;
-        labelled = distance2 < nearest ? record : labelled;
-        nearest = min(distance2, nearest);
+        const float weight = add_record(sums, point, record, content, t - vec3(corner), share.x * share.y * share.z);
         near_record[i] = have ? record : 0u;
         share_of[i] = packed_marched(content) ? weight : 0.0;
         visible_from[i] = uvec2(content.w, 0u);
     }
-    const bool known = max(max(weights.r, weights.g), weights.b) > 0.0;
-    return Reflectance(sum / max(weights, 1e-20), weights, known, normals, labelled);
+    return mean_of(sums);
 }
 
 // Where none of the eight is known: what the nearest known record of the same surface within one voxel more has.
 Reflectance fill(SurfacePoint point, Reflectance found) {
     const ivec3 low = ivec3(floor(point.at_vox)) - 1;
-    float nearest = 1e9, nearest_label = found.labelled == kNoRecord ? 1e9 : -1.0;
-    uvec4 content = uvec4(0u);
-    uint chosen = kNoRecord;
+    NearestRecords nearest = nearest_after(found);
     for (int i = 0; i < 64; ++i) {
         const ivec3 voxel = low + ivec3(i & 3, i >> 2 & 3, i >> 4);
         const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
         const uint record = find_record(cell, voxel_number(voxel, params.edge_shift));
-        if (record == kNoRecord) continue;
-        const uvec4 its = PACKED(record);
-        const vec3 away = point.at_vox - vec3(voxel);
-        const float distance2 = same_surface(point, away, packed_surface(its)) > 0.0 ? dot(away, away) : 1e9;
-        if (distance2 < nearest && packed_certainty(its) != vec3(0.0)) {
-            nearest = distance2;
-            content = its;
-            chosen = record;
-        }
-        if (distance2 < nearest_label && packed_has_label(its)) {
-            nearest_label = distance2;
-            found.labelled = record;
-        }
+        if (record != kNoRecord) look_at_record(nearest, point, record, PACKED(record), point.at_vox - vec3(voxel));
     }
-    if (chosen == kNoRecord) return found;
     float marched = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) marched += share_of[i];
-    if (marched == 0.0) {
-        near_record[0] = chosen;
+    if (nearest.known != kNoRecord && marched == 0.0) {
+        near_record[0] = nearest.known;
         share_of[0] = 1.0;
-        visible_from[0] = uvec2(content.w, 0u);
+        visible_from[0] = uvec2(nearest.content.w, 0u);
     }
-    return Reflectance(packed_kd(content), packed_certainty(content), true, packed_surface(content).xyz,
-                       found.labelled);
-}
-
-// What the records do not know, or not surely, is what the rest of their segment has.
-Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
-    const float weight = segment.a * kSegmentWeight;
-    const vec3 kd = (found.weights * found.kd + weight * segment.rgb) / max(found.weights + weight, 1e-20);
-    return Reflectance(kd, found.weights, found.known || segment.a > 0.0, found.known ? found.normal : normal,
-                       found.labelled);
+    return filled(found, nearest);
 }
 
 // Makes the shares sum to 1.
@@ -185,14 +118,31 @@ void load_further_visibility() {
     [[unroll]] for (int i = 0; i < 8; ++i) visible_from[i].y = visibility[near_record[i]].y;
 }
 
-vec3 radiance(vec3 point_m, vec3 normal, vec3 to_viewer, vec3 kd, vec4 gloss) {
-    vec3 sum = header.ambient.rgb * kd;
-    const uint count = header.count;
+struct Shade {
+    vec3 rgb;       // radiance towards the viewer
+    vec3 light;     // of it what kd multiplies: irradiance / pi
+    float arrives;  // the part of the lamps' unshadowed light that arrives
+};
+
+Shade shade(vec3 point_m, vec3 normal, vec3 to_viewer, vec3 kd, vec4 gloss) {
+    vec3 diffuse = header.ambient.rgb, glossy = vec3(0.0);
+    float arriving = 0.0, all = 0.0;
+    // Below the viewer's horizon an interpolated normal shows nothing of the lamps.
+    const uint count = dot(normal, to_viewer) > 0.0 ? header.count : 0u;
     for (uint i = 0u; i < count; ++i) {
-        sum += share_lit(i) * ward_point_light(kd, gloss.rgb, max(gloss.w, kLeastAlpha), normal,
-                                               lights[i].position_m.xyz - point_m, lights[i].intensity.rgb, to_viewer);
+        const vec3 offset = lights[i].position_m.xyz - point_m;
+        const float distance2 = dot(offset, offset);
+        const vec3 to_light = offset * inversesqrt(max(distance2, 1e-20));
+        const vec3 unshadowed = lights[i].intensity.rgb * (max(dot(normal, to_light), 0.0) / max(distance2, 1e-20));
+        const float lit = share_lit(i);
+        const vec3 received = lit * unshadowed;
+        diffuse += received * (1.0 / kWardPi);
+        glossy += received * ward_lobe(max(gloss.w, kLeastAlpha), normal, to_light, to_viewer);
+        const float strength = unshadowed.r + unshadowed.g + unshadowed.b;
+        arriving += lit * strength;
+        all += strength;
     }
-    return sum;
+    return Shade(kd * diffuse + gloss.rgb * glossy, diffuse, all > 0.0 ? arriving / all : 0.0);
 }
 
 void main() {
@@ -201,7 +151,7 @@ void main() {
     grid_low = view.grid_low.xyz;
     grid_size = view.grid_size.xyz;
     const vec4 hit = imageLoad(position_m, pixel);
-    vec4 known_kd = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0);
+    vec4 known_kd = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
     uint segment = 0u;
     if (hit.w > 0.0) {
         const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, imageLoad(normal, pixel).xyz,
@@ -217,11 +167,14 @@ void main() {
             normalise_shares();
             const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
             known_kd = vec4(found.kd, 1.0);
-            shaded = vec4(radiance(hit.xyz, facing, point.to_viewer, found.kd, gloss), 1.0);
+            const Shade seen = shade(hit.xyz, facing, point.to_viewer, found.kd, gloss);
+            shaded = vec4(seen.rgb, 1.0);
+            received = vec4(seen.light, seen.arrives);
         }
     }
     imageStore(kd, pixel, known_kd);
     imageStore(label, pixel, uvec4(segment));
     imageStore(ks_alpha, pixel, gloss);
     imageStore(rgb, pixel, shaded);
+    imageStore(light, pixel, received);
 }

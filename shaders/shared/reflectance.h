@@ -19,8 +19,8 @@ struct SegmentMaterial {
 
 // A segment's albedo: sums over its records, whole numbers, so that the order of arrival does not matter.
 struct SegmentAlbedo {
-    uvec4 kd;      // rgb: certainty times kd (up to 1), in steps of 1 / (kCertaintySteps kAlbedoSteps); w: records
-    uvec4 weight;  // rgb: certainty, in steps of 1 / kCertaintySteps; w unused
+    uvec4 kd;      // rgb: certainty times kd (up to 1), in steps of 1 / (kCertaintySteps kAlbedoSteps); w: all records
+    uvec4 weight;  // rgb: certainty, in steps of 1 / kCertaintySteps; w: observations
 };
 INTEROP_CONST float kAlbedoSteps = 1023.0f;  // 32 bits hold the sums of 1.3 M records
 INTEROP_CONST float kCertaintySteps = 3.0f;

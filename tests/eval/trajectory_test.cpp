@@ -147,7 +147,7 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
     const test::TemporaryFolder folder;
     const std::vector<StampedPose> path = winding_path();
     sensor::write_trajectory(folder / "trajectory.txt", path);
-    const std::vector<StampedPose> read = read_trajectory(folder / "trajectory.txt");
+    const std::vector<StampedPose> read = sensor::read_trajectory(folder / "trajectory.txt");
     ASSERT_EQ(read.size(), path.size());
     for (size_t i = 0; i < path.size(); ++i) {
         EXPECT_EQ(read[i].timestamp_s, path[i].timestamp_s);
@@ -155,8 +155,9 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
         EXPECT_EQ(read[i].world_from_camera[3], path[i].world_from_camera[3]);
     }
     sensor::write_trajectory(folder / "empty.txt", {});
-    EXPECT_THAT([&] { read_trajectory(folder / "empty.txt"); }, test::throws_error_with("empty.txt has no poses"));
-    EXPECT_THAT([&] { read_trajectory(folder / "none.txt"); }, test::throws_error_with("none.txt is missing"));
+    EXPECT_THAT([&] { sensor::read_trajectory(folder / "empty.txt"); },
+                test::throws_error_with("empty.txt has no poses"));
+    EXPECT_THAT([&] { sensor::read_trajectory(folder / "none.txt"); }, test::throws_error_with("none.txt is missing"));
 }
 
 }  // namespace

@@ -47,9 +47,10 @@ class KhronosValidator : public testing::Test {
         }
     }
 
-    void expect_valid(const Mesh& mesh) {
+    void expect_valid(const Mesh& mesh) { expect_valid(GlbScene{mesh}); }
+    void expect_valid(const GlbScene& scene) {
         const fs::path file = folder_ / "scene.glb";
-        write_glb(file, mesh, {.version = "0.0"});
+        write_glb(file, scene, {.version = "0.0"});
         const Outcome outcome = validate(file);
         EXPECT_EQ(outcome.status, 0) << outcome.output;
         EXPECT_NE(outcome.output.find(" 0 errors, 0 warnings,"), std::string::npos) << outcome.output;
@@ -79,9 +80,24 @@ TEST_F(KhronosValidator, AcceptsDegenerateInput) {
     expect_valid(mesh);
 }
 
+TEST_F(KhronosValidator, AcceptsSegmentsMaterialsAndLights) {
+    const Mesh mesh = wavy_sheet(7, 9);
+    MeshReflectance reflectance;
+    for (uint32_t i = 0; i < 63; ++i) {
+        reflectance.kd.emplace_back(0.01f * static_cast<float>(i), 0.5f, 0.9f, i % 7 == 0 ? 0 : 1);
+        reflectance.labels.push_back(i / 16);
+    }
+    reflectance.segments.resize(4);
+    reflectance.segments[1].gloss = WardGloss{glm::vec3(0.2f, 0.1f, 0.05f), 0.1f};
+    reflectance.segments[2] = {glm::vec3(0.01f), WardGloss{glm::vec3(0.8f), 0.2f}, 1, 1, 1};  // a metal
+    const std::vector<std::string> names{"", "glossy", "metal", "diffuse \"one\""};
+    const std::vector<sensor::PointLight> lights{{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}};
+    expect_valid({mesh, &reflectance, names, lights});
+}
+
 TEST_F(KhronosValidator, RejectsADamagedScene) {
     const fs::path file = folder_ / "scene.glb";
-    write_glb(file, wavy_sheet(3, 3), {.version = "0.0"});
+    write_glb(file, GlbScene{wavy_sheet(3, 3)}, {.version = "0.0"});
     std::string bytes = test::bytes_of(file);
     const size_t at = bytes.find("\"max\":[");
     ASSERT_NE(at, std::string::npos);

@@ -63,6 +63,23 @@ TEST(Previews, DepthRunsFromBlueToRed) {
     EXPECT_EQ(pixel(sheet, 120, 3, 100, 40), kGrey);
 }
 
+TEST(Previews, ReflectanceHasPanelsOfItsOwn) {
+    FrameDump frame = half_seen(kExtent);
+    frame.kd = Image<glm::vec3>(kExtent, {0, 0.215861f, 1});
+    frame.label = Image<float>(kExtent, 0.0f);
+    EXPECT_EQ(decode(preview_png(input_of(kExtent), frame)).cols, 4 * 120 + 3 * kGap) << "no segments, no panel";
+    for (uint32_t y = 0; y < 40; ++y) {
+        for (uint32_t x = 0; x < 120; ++x) frame.label.at(x, y) = x < 30 ? 1.0f : 2.0f;
+    }
+    const cv::Mat sheet = decode(preview_png(input_of(kExtent), frame));
+    ASSERT_EQ(sheet.cols, 5 * 120 + 4 * kGap);
+    EXPECT_EQ(pixel(sheet, 120, 1, 59, 79), glm::u8vec3(128, 255, 0)) << "re-rendering";
+    EXPECT_EQ(pixel(sheet, 120, 2, 10, 10), glm::u8vec3(0, 128, 255)) << "albedo";
+    EXPECT_EQ(pixel(sheet, 120, 3, 10, 60), kGrey) << "no label";
+    EXPECT_NE(pixel(sheet, 120, 3, 10, 10), pixel(sheet, 120, 3, 40, 10));
+    EXPECT_EQ(pixel(sheet, 120, 4, 0, 0), glm::u8vec3(128, 128, 0)) << "normals";
+}
+
 TEST(Previews, EveryPanelHasACaption) {
     const cv::Mat sheet = decode(preview_png(input_of(kExtent), half_seen(kExtent), {.depth = true}));
     for (int panel = 0; panel < 4; ++panel) {

@@ -57,6 +57,18 @@ TEST(Report, SaysWhatTheRunDid) {
     EXPECT_THAT(html, HasSubstr("&quot;voxel_mm&quot;: 5"));
 }
 
+TEST(Report, ListsLightsAndMaterials) {
+    RunRecord record = test::full_record();
+    record.lamps = {{{1, -2.5, 3}, {4, 5, 6}, 0.05}};
+    record.segments = {{3, "<floor>", {glm::vec3(0.25f), WardGloss{glm::vec3(0.125f), 0.2f}, 1234, 5, 0.5f}}};
+    const std::string html = report_html(record, {});
+    for (const char* part : {"Lights", "1.000 -2.500 3.000", "4.000 5.000 6.000", "5.0</td>", "Materials",
+                             "&lt;floor&gt;", "0.250 0.250 0.250", "0.125 0.125 0.125", "0.200", "1&#8239;234"}) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    EXPECT_THAT(report(), Not(HasSubstr("Materials")));
+}
+
 TEST(Report, BarsAreInProportion) {
     // The longest median, 24.125 ms, takes half the width; fusion.integrate's 4.75 ms the corresponding part.
     EXPECT_THAT(report(), HasSubstr("width='50.00' height='6'"));

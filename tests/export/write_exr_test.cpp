@@ -81,6 +81,7 @@ TEST(WriteExr, FurtherGroupsJoinTheFrame) {
     };
     frame.kd = colors(0.1f), frame.ks = colors(0.2f), frame.kd_segment = colors(0.3f);
     frame.alpha = Image<float>(extent, 0.4f), frame.label = Image<float>(extent, 7.0f);
+    frame.visibility = Image<float>(extent, 0.25f);
     write_exr(folder / "a.exr", channels_of(frame));
     auto planes = read_exr(folder / "a.exr");
     EXPECT_EQ(planes.size(), 8u + 11u) << "rgb_segment is empty, and left out";
@@ -88,6 +89,7 @@ TEST(WriteExr, FurtherGroupsJoinTheFrame) {
         for (int i = 0; i < 3; ++i) EXPECT_EQ(planes[std::string(name) + "." + "RGB"[i]], component(*image, i)) << name;
     EXPECT_EQ(planes["alpha"], frame.alpha.pixels());
     EXPECT_EQ(planes["label"], frame.label.pixels());
+    EXPECT_EQ(planes["visibility"], frame.visibility.pixels());
     frame.rgb_segment = frame.kd;
     write_exr(folder / "b.exr", channels_of(frame));
     EXPECT_EQ(read_exr(folder / "b.exr")["rgb_segment.B"], component(frame.kd, 2));

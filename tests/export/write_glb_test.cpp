@@ -31,7 +31,7 @@ struct Scene {
 Scene written_and_read(const Mesh& mesh, const GlbInfo& info = kInfo) {
     const TemporaryFolder folder;
     Scene scene;
-    scene.summary = write_glb(folder / "a.glb", mesh, info);
+    scene.summary = write_glb(folder / "a.glb", GlbScene{mesh}, info);
     std::string error, warning;
     EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&scene.model, &error, &warning, folder / "a.glb")) << error;
     EXPECT_EQ(error + warning, "");
@@ -202,8 +202,8 @@ TEST(WriteGlb, WithoutATriangleTheSurfaceNodeHasNoMesh) {
 
 TEST(WriteGlb, TheSameMeshGivesTheSameBytes) {
     const TemporaryFolder folder;
-    write_glb(folder / "a.glb", wavy_sheet(40, 30), kInfo);
-    write_glb(folder / "b.glb", wavy_sheet(40, 30), kInfo);
+    write_glb(folder / "a.glb", GlbScene{wavy_sheet(40, 30)}, kInfo);
+    write_glb(folder / "b.glb", GlbScene{wavy_sheet(40, 30)}, kInfo);
     const std::string bytes = bytes_of(folder / "a.glb");
     EXPECT_EQ(bytes, bytes_of(folder / "b.glb"));
     EXPECT_EQ(bytes.size() % 4, 0u);
@@ -215,15 +215,15 @@ TEST(WriteGlb, RefusesWhatIsNotFinite) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     Mesh mesh = wavy_sheet(2, 2);
     mesh.positions_m[3].y = nan;
-    EXPECT_THAT([&] { write_glb(folder / "a.glb", mesh, kInfo); },
+    EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{mesh}, kInfo); },
                 throws_error_with("position of vertex 3 of 4 is not finite"));
     mesh = wavy_sheet(2, 2);
     mesh.normals[1].x = infinity;
-    EXPECT_THAT([&] { write_glb(folder / "a.glb", mesh, kInfo); },
+    EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{mesh}, kInfo); },
                 throws_error_with("normal of vertex 1 of 4 is not finite"));
     mesh = wavy_sheet(2, 2);
     mesh.colors[0].z = nan;
-    EXPECT_THAT([&] { write_glb(folder / "a.glb", mesh, kInfo); },
+    EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{mesh}, kInfo); },
                 throws_error_with("colour of vertex 0 of 4 is not finite"));
     EXPECT_FALSE(std::filesystem::exists(folder / "a.glb"));
 }
@@ -232,21 +232,30 @@ TEST(WriteGlb, RefusesIndicesBeyondTheVertices) {
     const TemporaryFolder folder;
     Mesh mesh = wavy_sheet(2, 2);
     mesh.triangles.push_back({0, 1, 4});
-    EXPECT_THAT([&] { write_glb(folder / "a.glb", mesh, kInfo); }, throws_error_with("a triangle names vertex 4 of 4"));
+    EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{mesh}, kInfo); },
+                throws_error_with("a triangle names vertex 4 of 4"));
 }
 
 TEST(WriteGlb, RefusesMoreThanAGlbCanHold) {
-    EXPECT_EQ(glb_buffer_bytes(4, 2), 4u * 32 + 2 * 6);
-    EXPECT_EQ(glb_buffer_bytes(65536, 2), 65536u * 32 + 2 * 12);
-    EXPECT_EQ(glb_buffer_bytes(70'000'000, 140'000'000), 3'920'000'000u);
-    EXPECT_THAT([] { glb_buffer_bytes(80'000'000, 160'000'000); }, throws_error_with("need 4480000000"));
-    EXPECT_THAT([] { glb_buffer_bytes(uint64_t{1} << 62, 1); }, throws_error_with("at most"));
+    const auto bytes = [](std::vector<GlbPartSize> parts) { return glb_buffer_bytes(parts); };
+    EXPECT_EQ(bytes({{4, 2}}), 4u * 32 + 2 * 6);
+    EXPECT_EQ(bytes({{65536, 2}}), 65536u * 32 + 2 * 12);
+    EXPECT_EQ(bytes({{3, 1}, {4, 2, 60}}), 3u * 32 + 8 + 4 * 60 + 12) << "indices are padded to four bytes";
+    EXPECT_EQ(bytes({{70'000'000, 140'000'000}}), 3'920'000'000u);
+    EXPECT_THAT([&] { bytes({{80'000'000, 160'000'000}}); }, throws_error_with("need 4480000000"));
+    EXPECT_THAT(
+        [&] {
+            bytes({{40'000'000, 80'000'000}, {40'000'000, 80'000'000}});
+        },
+        throws_error_with("80000000 vert"));
+    EXPECT_THAT([&] { bytes({{uint64_t{1} << 62, 1}}); }, throws_error_with("at most"));
 }
 
 TEST(WriteGlb, SaysThatTheDiskRefused) {
-    EXPECT_THAT([] { write_glb("/dev/full", wavy_sheet(2, 2), kInfo); },
+    EXPECT_THAT([] { write_glb("/dev/full", GlbScene{wavy_sheet(2, 2)}, kInfo); },
                 throws_error_with("\"/dev/full\": the scene cannot"));
-    EXPECT_THAT([] { write_glb("/proc/a.glb", {}, kInfo); }, throws_error_with("\"/proc/a.glb\": the scene cannot"));
+    EXPECT_THAT([] { write_glb("/proc/a.glb", GlbScene{Mesh{}}, kInfo); },
+                throws_error_with("\"/proc/a.glb\": the scene cannot"));
 }
 
 }  // namespace

@@ -19,17 +19,22 @@ class AverageSegments : public GpuTest {
 
 TEST_F(AverageSegments, IsTheMeanOfWhatItsRecordsAreSureOf) {
     // Half of segment 1 is dark, half bright; what is uncertain may hold anything. Segment 2 knows nothing.
-    size_t dark = 0, bright = 0;
+    size_t dark = 0, bright = 0, unknown = 0, observations = 0;
     rig_.paint([&](const RecordPlace& place) {
         ShadedRecord record;
         record.label = place.voxel[1] < 0 ? 1 : 2;
         record.kd = glm::dvec3(place.voxel[0] < 0 ? 0.25 : 0.75);
         if (record.label == 1) ++(place.voxel[0] < 0 ? dark : bright);
         if (record.label == 2) record.certainty = glm::dvec3(0);
+        unknown += record.label == 2;
+        if (record.label == 1) observations += place.observations;
         return record;
     });
     const auto sums = rig_.average_segments();
     EXPECT_EQ(sums[1].kd.w, dark + bright);
+    EXPECT_EQ(sums[2].kd.w, unknown) << "all records count";
+    EXPECT_GT(observations, 0u);
+    EXPECT_EQ(sums[1].weight.w, observations);
     const auto kd = kd_of(sums[1]);
     ASSERT_TRUE(kd);
     const double expected = (0.25 * dark + 0.75 * bright) / (dark + bright);

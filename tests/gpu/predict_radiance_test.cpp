@@ -85,6 +85,9 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
             ASSERT_LT(off(view.kd.at(x, y), gloss.kd), kHalf) << x << ' ' << y;
             ASSERT_EQ(view.rgb.at(x, y).a, 1);
             ASSERT_LT(off(view.rgb.at(x, y), expected), (known ? kHalf : 0.05) * max_of(expected)) << x << ' ' << y;
+            ASSERT_LT(off(view.light.at(x, y), diffuse / gloss.kd),
+                      (known ? kHalf : 0.05) * max_of(diffuse / gloss.kd));
+            ASSERT_NEAR(view.light.at(x, y).a, 1, kHalf) << "nothing is in shadow";
             ASSERT_EQ(view.ks_alpha.at(x, y), glm::vec4(gloss.ks, gloss.alpha));
             ASSERT_EQ(view.label.at(x, y), 3u);
             brightest = std::max(brightest, max_of(expected / diffuse));
@@ -208,6 +211,7 @@ TEST_F(PredictRadiance, TheEdgeOfAShadowIsOneVoxelWide) {
         const double lit = std::clamp(0.5 - double{view.position_m.at(x, y).x} / 0.02, 0.0, 1.0);
         const glm::dvec3 ambient = kAmbient * kd, direct = glm::dvec3(without.rgb.at(x, y)) - ambient;
         ASSERT_GT(direct.r, 0.01);
+        ASSERT_NEAR(view.light.at(x, y).a, lit, 2 * kHalf);
         ASSERT_LT(off(view.rgb.at(x, y), ambient + lit * direct), 2 * kHalf * max_of(ambient + direct))
             << x << ' ' << y;
     });

@@ -4,7 +4,9 @@
 
 #include "engine/core/shader_camera.h"
 #include "passes/reflectance/average_segments.h"
+#include "passes/shading/pack_records.h"
 #include "passes/shading/predict_radiance.h"
+#include "passes/shading/sample_reflectance.h"
 
 namespace patina {
 
@@ -112,8 +114,8 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
         const reference::ShadedRecord surface = unpack_surface(record);
         const std::array<int, 3> voxel = voxel_of(record, observations_.map());
         const glm::dvec3 center_vox = glm::dvec3(voxel[0], voxel[1], voxel[2]) + 0.5;
-        reference::ShadedRecord painted =
-            paint({voxel, (center_vox + surface.normal * surface.offset_vox) * voxel_m_, surface.normal});
+        reference::ShadedRecord painted = paint(
+            {voxel, (center_vox + surface.normal * surface.offset_vox) * voxel_m_, surface.normal, record.state & 31});
         painted.normal = surface.normal;
         painted.offset_vox = surface.offset_vox;
         const uint32_t kd = glm::packF3x9_E1x5(glm::vec3(painted.kd));
@@ -149,11 +151,33 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
                           kd = frame.read_back(predicted.kd), label = frame.read_back(predicted.label),
-                          gloss = frame.read_back(predicted.ks_alpha), rgb = frame.read_back(predicted.rgb);
+                          gloss = frame.read_back(predicted.ks_alpha), rgb = frame.read_back(predicted.rgb),
+                          light = frame.read_back(predicted.light);
     runner_.submit(std::move(frame));
     runner_.wait();
     return {position.image<glm::vec4>(),    widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
-            widen(gloss.image<uint64_t>()), widen(rgb.image<uint64_t>()),    label.image<uint32_t>()};
+            widen(gloss.image<uint64_t>()), widen(rgb.image<uint64_t>()),    widen(light.image<uint64_t>()),
+            label.image<uint32_t>()};
+}
+
+std::vector<gpu::SampledReflectance> ShadingRig::sample(const std::vector<glm::vec3>& points_m,
+                                                        const std::vector<glm::vec3>& normals) {
+    graph::Frame frame = runner_.begin();
+    const ObservationMap& map = observations_.map();
+    const ObservationMapIds records = map.import(frame);
+    const auto upload = [&](const char* name, const std::vector<glm::vec3>& vectors) {
+        return frame.upload<float>(name, std::span(&vectors.front().x, 3 * vectors.size()));
+    };
+    const SampleReflectanceInputs inputs{upload("points", points_m),
+                                         upload("normals", normals),
+                                         add_pack_records(frame, map, records, state_.import(frame)),
+                                         add_average_segments(frame, map, records, materials.capacity()),
+                                         static_cast<uint32_t>(points_m.size()),
+                                         materials.capacity()};
+    const graph::Readback samples = frame.read_back(add_sample_reflectance(frame, map, records, inputs));
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    return samples.as<gpu::SampledReflectance>();
 }
 
 std::vector<gpu::SegmentAlbedo> ShadingRig::average_segments() {

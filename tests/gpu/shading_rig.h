@@ -7,6 +7,7 @@
 #include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
 #include "shared/reflectance.h"
+#include "shared/sample_reflectance.h"
 #include "tests/gpu/observation_rig.h"
 #include "tests/reference/predict_radiance.h"
 
@@ -17,11 +18,12 @@ struct RecordPlace {
     std::array<int, 3> voxel{};
     glm::dvec3 point_m{0};  ///< of its surface, below the voxel's centre
     glm::dvec3 normal{0};
+    uint32_t observations = 0;
 };
 
 /// What the shading makes of a view.
 struct ShadedView {
-    Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb;
+    Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb, light;
     Image<uint32_t> label;
 };
 
@@ -38,6 +40,10 @@ class ShadingRig {
     void paint(const std::function<reference::ShadedRecord(const RecordPlace&)>& paint);
 
     ShadedView predict(const Intrinsics& camera, const RigidTransform& world_from_camera, bool shadows = true);
+
+    /// What the model knows of these points, of these normals.
+    std::vector<gpu::SampledReflectance> sample(const std::vector<glm::vec3>& points_m,
+                                                const std::vector<glm::vec3>& normals);
 
     /// The sums of the first 64 segments.
     std::vector<gpu::SegmentAlbedo> average_segments();

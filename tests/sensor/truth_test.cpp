@@ -38,7 +38,7 @@ TEST(Truth, WhatIsWrittenReadsBackTheSame) {
     for (size_t i = 0; i < read.size(); ++i) {
         EXPECT_EQ(read[i].position_m, lights[i].position_m);
         EXPECT_EQ(read[i].intensity, lights[i].intensity);
-        EXPECT_EQ(read[i].radius_m, 0);
+        EXPECT_EQ(read[i].radius_m, lights[i].radius_m);
     }
     const auto read_back = read_materials(folder / "materials.json");
     ASSERT_EQ(read_back.size(), 2u);

@@ -156,7 +156,7 @@ TEST(SequenceWriter, RefusesWhatItCannotWrite) {
     write_native(folder / "a", 1);
     write_text(folder / "file", "x");
     EXPECT_EQ(error_of([&] { SequenceWriter(folder / "a", test_info()); }),
-              (folder / "a").string() + " exists and is not empty; a sequence is written to a new folder");
+              (folder / "a").string() + " exists and is not empty; the result is written to a new folder");
     EXPECT_THAT(error_of([&] { SequenceWriter(folder / "file", test_info()); }), HasSubstr("file is a file"));
     EXPECT_THAT(error_of([&] { SequenceWriter(folder / "file/a", test_info()); }), HasSubstr("cannot be created"));
     fs::create_directory(folder / "empty");

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "engine/vulkan/device.h"
+#include "tools/sequence_fusion.h"
 
 namespace patina::tools {
 
@@ -19,11 +21,24 @@ struct DeviceArguments {
     vulkan::DeviceOptions options() const;
 };
 
+/// What run and render take to make a reconstruction, the device included.
+struct SequenceArguments {
+    DeviceArguments device;
+    std::string settings_file;
+    std::vector<std::string> assignments;
+
+    /// Adds the options. Both this and `options` must outlive the parsing.
+    void add_to(CLI::App& command, SequenceOptions& options);
+    /// Brings settings and device into the options, once the command line is parsed.
+    void finish(SequenceOptions& options) const;
+};
+
 /// Each adds one subcommand with its options; the work happens in its callback. Errors are thrown.
 void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_run(CLI::App& app);
+void add_render(CLI::App& app);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);
 

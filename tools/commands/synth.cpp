@@ -1,42 +1,16 @@
 #include "tools/synth.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include "sensor/synthetic/noise.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 
 namespace patina::tools {
 namespace {
-
-/// Parses all of `text` as a number.
-template <class Number>
-bool parse(std::string_view text, Number& number) {
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return failure == std::errc{} && end == text.data() + text.size();
-}
-
-/// Two numbers with `separator` between them.
-template <class Number>
-bool parse_pair(std::string_view text, char separator, Number& first, Number& second) {
-    const size_t at = text.find(separator);
-    return at != text.npos && parse(text.substr(0, at), first) && parse(text.substr(at + 1), second);
-}
-
-Extent2D parse_extent(const std::string& text) {
-    constexpr uint32_t kMost =
-        8192;  // pixels of random numbers are told apart by 16 bits, and devices hold images of it
-    Extent2D extent;
-    if (!parse_pair(text, 'x', extent.width, extent.height) || extent.area() == 0 ||
-        std::max(extent.width, extent.height) > kMost) {
-        throw CLI::ValidationError("--extent", patina::text("'", text, "' is not WIDTHxHEIGHT of 1 to ", kMost,
-                                                            " pixels each, such as 512x424"));
-    }
-    return extent;
-}
 
 PoseNoise parse_pose_noise(const std::string& text) {
     PoseNoise noise;

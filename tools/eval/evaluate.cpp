@@ -66,8 +66,8 @@ std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& r
 std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "trajectory.txt", run_file = run / "trajectory.txt";
     if (!fs::exists(truth_file) || !fs::exists(run_file)) return {};
-    const std::vector<sensor::StampedPose> truth = read_trajectory(truth_file);
-    std::vector<PosePair> pairs = pair_poses(truth, read_trajectory(run_file), kPoseLimit_s);
+    const std::vector<sensor::StampedPose> truth = sensor::read_trajectory(truth_file);
+    std::vector<PosePair> pairs = pair_poses(truth, sensor::read_trajectory(run_file), kPoseLimit_s);
     if (pairs.empty()) {
         throw Error(run_file.string(), " has no pose within ", kPoseLimit_s, " s of one of ", truth_file.string());
     }

@@ -132,19 +132,6 @@ IndexPairs a_second_apart(std::span<const PosePair> poses) {
 
 }  // namespace
 
-std::vector<sensor::StampedPose> read_trajectory(const std::filesystem::path& file) {
-    std::vector<double> timestamps_s;
-    for (const sensor::TextLine& line : sensor::read_lines(file)) timestamps_s.push_back(line.finite(0));
-    if (timestamps_s.empty()) throw Error(file.string(), " has no poses");
-    const sensor::FramePoses poses(file, timestamps_s, 0);
-    std::vector<sensor::StampedPose> trajectory;
-    // Its own timestamps being the frames', every frame has a pose.
-    for (uint32_t i = 0; i < timestamps_s.size(); ++i) {
-        trajectory.push_back({timestamps_s[i], poses.of_frame(i).value().transform});
-    }
-    return trajectory;
-}
-
 std::vector<PosePair> pair_poses(std::span<const sensor::StampedPose> truth, std::span<const sensor::StampedPose> run,
                                  double limit_s) {
     const auto timestamps = [](std::span<const sensor::StampedPose> poses) {

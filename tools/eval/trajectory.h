@@ -18,9 +18,6 @@ struct PosePair {
     RigidTransform run{1.0};
 };
 
-/// All poses of a trajectory in TUM's format, in its order. Throws Error when the file is missing or damaged.
-std::vector<sensor::StampedPose> read_trajectory(const std::filesystem::path& file);
-
 /// The true poses that have one of the run at their time, at most `limit_s` apart, in the order of `truth`.
 std::vector<PosePair> pair_poses(std::span<const sensor::StampedPose> truth, std::span<const sensor::StampedPose> run,
                                  double limit_s);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -61,6 +62,18 @@ sensor::SrgbPixel map_pixel(ColorMap map, float value) {
     static const std::array<Levels, 3> kLevels{levels_of(cv::COLORMAP_TURBO), levels_of(cv::COLORMAP_VIRIDIS),
                                                levels_of(cv::COLORMAP_INFERNO)};
     return kLevels[static_cast<size_t>(map)][to_byte(value)];
+}
+
+sensor::SrgbPixel label_pixel(uint32_t label) {
+    if (label == 0) return kNoValue;
+    // Steps of the golden ratio spread any number of hues evenly; three lightnesses tell neighbouring hues apart.
+    const double turn = std::fmod(label * 0.61803398875, 1.0);
+    const double lightness = 0.55 + 0.15 * (label % 3);
+    const auto channel = [&](double phase) {
+        const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (turn - phase));
+        return static_cast<float>(lightness * (0.25 + 0.75 * wave));
+    };
+    return to_pixel({channel(0), channel(1.0 / 3), channel(2.0 / 3)});
 }
 
 Drawing scaled_to(const Drawing& drawing, Extent2D extent) {

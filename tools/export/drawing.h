@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -31,6 +32,9 @@ enum class ColorMap {
     kInferno,  ///< from black to pale yellow; even to the eye, in grey print too
 };
 sensor::SrgbPixel map_pixel(ColorMap map, float value);
+
+/// A colour for a label, the same in every picture; neighbouring labels differ clearly. Label 0 is kNoValue.
+sensor::SrgbPixel label_pixel(uint32_t label);
 
 /// Turns every pixel into a colour with `to_pixel`; where `valid`, if given, is at most 1/2, into kNoValue.
 template <class Pixel, class ToPixel>

@@ -25,6 +25,14 @@ struct Panel {
     Drawing drawing;
 };
 
+/// Diffuse albedo, and segments where there are any.
+void add_reflectance_panels(const FrameDump& model, std::vector<Panel>& panels) {
+    panels.push_back({"diffuse albedo", draw(model.kd, &model.valid, color_pixel)});
+    if (std::ranges::all_of(model.label.pixels(), [](float label) { return label == 0; })) return;
+    const auto to_pixel = [](float label) { return label_pixel(static_cast<uint32_t>(label)); };
+    panels.push_back({"segments", draw(model.label, &model.valid, to_pixel)});
+}
+
 Drawing draw_input(const sensor::ColorImage& input) {
     if (const auto* srgb = std::get_if<Drawing>(&input)) return *srgb;
     return draw(std::get<Image<glm::vec3>>(input), nullptr, color_pixel);
@@ -94,9 +102,15 @@ std::string preview_png(const sensor::ColorImage& input, const FrameDump& model,
     check_extent("normal", model.normal.extent(), extent);
     check_extent("valid", model.valid.extent(), extent);
 
-    std::vector<Panel> panels = {{options.title.empty() ? "input" : "input, " + options.title, draw_input(input)},
-                                 {"reconstruction", draw(model.rgb, &model.valid, color_pixel)},
-                                 {"normals", draw(model.normal, &model.valid, normal_pixel)}};
+    if (!model.kd.empty()) {
+        check_extent("albedo", model.kd.extent(), extent);
+        check_extent("label", model.label.extent(), extent);
+    }
+    std::vector<Panel> panels = {
+        {options.title.empty() ? "input" : "input, " + options.title, draw_input(input)},
+        {model.kd.empty() ? "reconstruction" : "re-rendering", draw(model.rgb, &model.valid, color_pixel)}};
+    if (!model.kd.empty()) add_reflectance_panels(model, panels);
+    panels.push_back({"normals", draw(model.normal, &model.valid, normal_pixel)});
     if (options.depth) {
         check_extent("depth", model.depth_m.extent(), extent);
         panels.push_back(depth_panel(model));

@@ -15,10 +15,10 @@ struct PreviewOptions {
 };
 
 /// A PNG file (its bytes) with panels side by side under small captions: the input colour, the model's colour as the
-/// same camera sees it (sRGB-encoded), its world normals as n / 2 + 1/2, and on request its depth from near (blue) to
-/// far (red). All panels have the extent of `model.rgb`, scaled down where wider than asked for; the input is resampled
-/// to it. Where the model was not hit, panels are dark grey. Throws Error when the pictures of `model` differ in extent
-/// or any is empty.
+/// same camera sees it (sRGB-encoded), where the model has reflectance its diffuse albedo and its segments, its world
+/// normals as n / 2 + 1/2, and on request its depth from near (blue) to far (red). All panels have the extent of
+/// `model.rgb`, scaled down where wider than asked for; the input is resampled to it. Where the model was not hit,
+/// panels are dark grey. Throws Error when the pictures of `model` differ in extent or any is empty.
 std::string preview_png(const sensor::ColorImage& input, const FrameDump& model, const PreviewOptions& options = {});
 
 }  // namespace patina

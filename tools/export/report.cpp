@@ -92,6 +92,44 @@ std::string memory_table(const std::vector<MemoryRecord>& pools) {
                     mebibytes(bytes)));
 }
 
+std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
+
+std::string light_table(const std::vector<sensor::PointLight>& lights) {
+    if (lights.empty()) return {};
+    std::string rows;
+    for (const sensor::PointLight& light : lights) {
+        rows += fmt::format("<tr><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td></tr>\n",
+                            vector_text(light.position_m), vector_text(light.intensity),
+                            light.radius_m > 0 ? fmt::format("{:.1f}", 100 * light.radius_m) : "");
+    }
+    return report_table(
+        "<th class='number'>Position, m</th><th class='number'>Intensity, RGB</th><th class='number'>Radius, cm</th>",
+        rows);
+}
+
+std::string segment_row(const SegmentRecord& segment) {
+    const SegmentReflectance& known = segment.reflectance;
+    return fmt::format(
+        "<tr><td class='number'>{}</td><td>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
+        "<td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{:.2f}</td>"
+        "</tr>\n",
+        segment.id, html_escaped(segment.name), known.kd ? vector_text(glm::dvec3(*known.kd)) : "",
+        known.gloss ? vector_text(glm::dvec3(known.gloss->ks)) : "",
+        known.gloss ? fmt::format("{:.3f}", known.gloss->alpha) : "", grouped(known.voxels),
+        grouped(known.observations), known.confidence);
+}
+
+std::string segment_table(const std::vector<SegmentRecord>& segments) {
+    if (segments.empty()) return {};
+    std::string rows;
+    for (const SegmentRecord& segment : segments) rows += segment_row(segment);
+    return report_table(
+        "<th class='number'>Segment</th><th>Name</th><th class='number'>kd</th><th class='number'>ks</th>"
+        "<th class='number'>alpha</th><th class='number'>Voxels</th><th class='number'>Observations</th>"
+        "<th class='number'>Confidence</th>",
+        rows);
+}
+
 std::string skipped_table(const std::vector<sensor::Skipped>& skipped) {
     if (skipped.empty()) return {};
     std::string rows;
@@ -121,6 +159,8 @@ std::string report_html(const RunRecord& record, std::span<const ReportPicture> 
     html += facts(record);
     html += report_section("Warnings", report_warnings(record.warnings));
     html += report_section("Pictures", report_figures(pictures));
+    html += report_section("Lights", light_table(record.lamps));
+    html += report_section("Materials", segment_table(record.segments));
     html += report_section("GPU time per pass", pass_table(record.passes));
     html += report_section("Device memory", memory_table(record.memory));
     html += report_section("Skipped frames", skipped_table(record.frames.skipped));

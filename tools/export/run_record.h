@@ -8,7 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "passes/surface/mesh_reflectance.h"
 #include "sensor/source.h"
+#include "sensor/truth.h"
 #include "tools/export/picture_score.h"
 
 namespace patina {
@@ -64,6 +66,13 @@ struct HeldOutRecord {
     std::optional<PictureScore> reflectance{};  ///< of the re-rendering, where the model has reflectance
 };
 
+/// A segment that the run told apart.
+struct SegmentRecord {
+    uint32_t id = 0;
+    std::string name;
+    SegmentReflectance reflectance;
+};
+
 /// Everything that run.json and report.html say about a finished run. Durations belong into `passes` and `times_s`
 /// only: all the rest is equal between two runs of the same input on the same device.
 struct RunRecord {
@@ -78,6 +87,8 @@ struct RunRecord {
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
     std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none
     std::optional<HeldOutRecord> held_out;  ///< empty where no picture was held out
+    std::vector<sensor::PointLight> lamps;  ///< like the segments for report.html: they have files of their own
+    std::vector<SegmentRecord> segments;
     std::vector<std::string> warnings;
     std::vector<PassTime> passes;                         ///< in the order of execution
     std::vector<std::pair<std::string, double>> times_s;  ///< wall times in seconds, as {"reading", 1.5}

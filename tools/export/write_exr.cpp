@@ -94,6 +94,7 @@ std::vector<ExrChannel> channels_of(const FrameDump& frame) {
     if (!frame.kd_segment.empty()) append(rgb_channels("kd_segment", frame.kd_segment));
     if (!frame.rgb_segment.empty()) append(rgb_channels("rgb_segment", frame.rgb_segment));
     if (!frame.label.empty()) append({scalar_channel("label", frame.label)});
+    if (!frame.visibility.empty()) append({scalar_channel("visibility", frame.visibility)});
     return channels;
 }
 

@@ -45,10 +45,11 @@ struct FrameDump {
     Image<glm::vec3> kd_segment{};   ///< diffuse albedo of the whole segment: before refinement
     Image<glm::vec3> rgb_segment{};  ///< rgb as kd_segment gives it
     Image<float> label{};            ///< segment or object, a whole number; 0 = none
+    Image<float> visibility{};       ///< of the lamps' light, the part that shadows leave; 0 where none shines
 };
 
 /// The channels of a frame: rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid, and those of kd, ks, alpha,
-/// kd_segment, rgb_segment and label that are not empty.
+/// kd_segment, rgb_segment, label and visibility that are not empty.
 std::vector<ExrChannel> channels_of(const FrameDump& frame);
 
 }  // namespace patina

@@ -6,30 +6,26 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
+#include "tools/export/gltf_arrays.h"
+#include "tools/export/gltf_material.h"
+#include "tools/export/mesh_parts.h"
 
 namespace patina {
 namespace {
 
 using Triangle = std::array<uint32_t, 3>;
-using Color = std::array<uint16_t, 4>;
+using Value = tinygltf::Value;
 
-static_assert(sizeof(glm::vec3) == 12 && sizeof(Triangle) == 12 && sizeof(Color) == 8,
-              "glTF wants them tightly packed");
-
-constexpr uint64_t kVertexBytes = sizeof(glm::vec3) + sizeof(glm::vec3) + sizeof(Color);
-/// Left for the headers and the JSON, whose size does not depend on the mesh.
-constexpr uint64_t kJsonAllowance = 1 << 20;
-/// 65535 restarts a primitive, so no vertex may have it as its index.
-constexpr uint64_t kMostVerticesOfShortIndices = 65535;
-
-bool short_indices(uint64_t vertices) { return vertices <= kMostVerticesOfShortIndices; }
+/// Left for the headers and the JSON, whose size depends on the number of segments and lights alone.
+constexpr uint64_t kJsonAllowance = 1 << 24;
+constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kLights = "KHR_lights_punctual";
+constexpr const char* kSurface = "surface";
 
 bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -40,13 +36,20 @@ void check_finite(const std::filesystem::path& path, const char* what, std::span
                 bad->x, ", ", bad->y, ", ", bad->z, ")");
 }
 
-void check_mesh(const std::filesystem::path& path, const Mesh& mesh) {
+void check_scene(const std::filesystem::path& path, const GlbScene& scene) {
+    const Mesh& mesh = scene.mesh;
     const size_t vertices = mesh.positions_m.size();
     PATINA_ASSERT(mesh.normals.size() == vertices && mesh.colors.size() == vertices, "positions ", vertices,
                   ", normals ", mesh.normals.size(), ", colors ", mesh.colors.size());
     check_finite(path, "position", mesh.positions_m);
     check_finite(path, "normal", mesh.normals);
     check_finite(path, "colour", mesh.colors);
+    if (scene.reflectance) {
+        const auto& [kd, labels, segments] = *scene.reflectance;
+        PATINA_ASSERT(kd.size() == labels.size() && (kd.empty() || kd.size() == vertices), "vertices ", vertices,
+                      ", kd ", kd.size(), ", labels ", labels.size());
+        check_finite(path, "albedo", std::vector<glm::vec3>(kd.begin(), kd.end()));
+    }
     for (const Triangle& triangle : mesh.triangles) {
         const uint32_t largest = std::ranges::max(triangle);
         if (largest >= vertices) throw Error(path, ": a triangle names vertex ", largest, " of ", vertices);
@@ -95,7 +98,7 @@ std::vector<glm::vec3> unit_normals(const Mesh& mesh, std::span<const Triangle> 
     return normals;
 }
 
-Color encode(glm::vec3 linear) {
+GltfColor encode(glm::vec3 linear) {
     const auto channel = [](float v) {
         return static_cast<uint16_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
     };
@@ -104,125 +107,209 @@ Color encode(glm::vec3 linear) {
 
 bool displayable(glm::vec3 linear) { return linear == glm::clamp(linear, 0.0f, 1.0f); }
 
-/// How an array's elements are stored and what they are for.
-struct ElementFormat {
-    int component;
-    int type;
-    int target;
-    bool normalized = false;
-};
-constexpr ElementFormat kFloat3{TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER};
-constexpr ElementFormat kColor{TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, TINYGLTF_TARGET_ARRAY_BUFFER,
-                               true};
-constexpr ElementFormat kShortIndex{TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR,
-                                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER};
-constexpr ElementFormat kIndex{TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                               TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER};
+Value array_of(glm::dvec3 v) { return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)}); }
 
-int add_view(tinygltf::Model& model, const char* name, std::span<const std::byte> bytes, int target) {
-    std::vector<unsigned char>& data = model.buffers[0].data;
-    tinygltf::BufferView view;
-    view.name = name;
-    view.buffer = 0;
-    view.byteOffset = data.size();
-    view.byteLength = bytes.size();
-    view.target = target;
-    const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
-    data.insert(data.end(), first, first + bytes.size());
-    model.bufferViews.push_back(std::move(view));
-    return static_cast<int>(model.bufferViews.size()) - 1;
+Value ward_extras(const WardGloss& gloss) {
+    Value::Object ward{{"variant", Value(std::string("ward"))}, {"exposureScale", Value(1.0)}};
+    ward["ks"] = array_of(glm::dvec3(gloss.ks));
+    ward["alpha"] = Value(double{gloss.alpha});
+    return Value(Value::Object{{"ward", Value(std::move(ward))}});
 }
 
-/// Appends `count` elements to the model's one buffer, with a view and an accessor of their own; returns the accessor.
-int add_array(tinygltf::Model& model, const char* name, std::span<const std::byte> bytes, size_t count,
-              ElementFormat format) {
-    tinygltf::Accessor accessor;
-    accessor.name = name;
-    accessor.bufferView = add_view(model, name, bytes, format.target);
-    accessor.componentType = format.component;
-    accessor.type = format.type;
-    accessor.count = count;
-    accessor.normalized = format.normalized;
-    model.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model.accessors.size()) - 1;
-}
-
+/// A part's vertices out of an array of the whole mesh.
 template <class Element>
-int add_vertices(tinygltf::Model& model, const char* name, const std::vector<Element>& elements, ElementFormat format) {
-    return add_array(model, name, std::as_bytes(std::span(elements)), elements.size(), format);
+std::vector<Element> gathered(const std::vector<Element>& all, const MeshPart& part) {
+    std::vector<Element> elements;
+    elements.reserve(part.vertices.size());
+    for (const uint32_t vertex : part.vertices) elements.push_back(all[vertex]);
+    return elements;
 }
 
-int add_positions(tinygltf::Model& model, const std::vector<glm::vec3>& positions_m) {
-    const int index = add_vertices(model, "POSITION", positions_m, kFloat3);
-    glm::vec3 low = positions_m.front(), high = low;
-    for (const glm::vec3& position : positions_m) {
-        low = glm::min(low, position);
-        high = glm::max(high, position);
+/// Puts a scene into a model, part by part.
+class GlbBuilder {
+  public:
+    GlbBuilder(const GlbScene& scene, const GlbInfo& info, std::span<const Triangle> triangles)
+        : scene_(scene),
+          reflectance_(scene.reflectance && !scene.reflectance->kd.empty() ? scene.reflectance : nullptr),
+          parts_(parts_by_label(
+              static_cast<uint32_t>(scene.mesh.positions_m.size()), triangles,
+              reflectance_ ? std::span<const uint32_t>(reflectance_->labels) : std::span<const uint32_t>())) {
+        add_root(info);
+        if (triangles.empty()) {
+            add_node(kSurface);
+        } else {
+            normals_ = unit_normals(scene.mesh, triangles);
+            model_.buffers.resize(1);
+            model_.buffers[0].data.reserve(buffer_bytes());
+            for (const MeshPart& part : parts_) add_part(part);
+        }
+        for (const sensor::PointLight& light : scene.lights) add_light(light);
     }
-    tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
-    accessor.minValues = {low.x, low.y, low.z};
-    accessor.maxValues = {high.x, high.y, high.z};
-    return index;
-}
 
-int add_indices(tinygltf::Model& model, std::span<const Triangle> triangles, uint64_t vertices) {
-    const size_t count = triangles.size() * 3;
-    if (!short_indices(vertices)) return add_array(model, "indices", std::as_bytes(triangles), count, kIndex);
-    std::vector<uint16_t> indices;
-    indices.reserve(count);
-    for (const Triangle& triangle : triangles) {
-        for (uint32_t vertex : triangle) indices.push_back(static_cast<uint16_t>(vertex));
+    const tinygltf::Model& model() const { return model_; }
+    const GlbSummary& summary() const { return summary_; }
+
+  private:
+    const SegmentReflectance& segment(uint32_t label) const {
+        static const SegmentReflectance kNone;
+        return label < reflectance_->segments.size() ? reflectance_->segments[label] : kNone;
     }
-    return add_array(model, "indices", std::as_bytes(std::span(indices)), count, kShortIndex);
-}
 
-/// Adds the mesh "surface" and its material.
-void add_surface(tinygltf::Model& model, const Mesh& mesh, std::span<const Triangle> triangles) {
-    std::vector<Color> colors(mesh.colors.size());
-    std::ranges::transform(mesh.colors, colors.begin(), encode);
+    bool has_gloss(const MeshPart& part) const { return reflectance_ && segment(part.label).gloss; }
 
-    model.buffers.resize(1);
-    model.buffers[0].data.reserve(glb_buffer_bytes(colors.size(), triangles.size()));
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
-    primitive.attributes["POSITION"] = add_positions(model, mesh.positions_m);
-    primitive.attributes["NORMAL"] = add_vertices(model, "NORMAL", unit_normals(mesh, triangles), kFloat3);
-    primitive.attributes["COLOR_0"] = add_vertices(model, "COLOR_0", colors, kColor);
-    primitive.indices = add_indices(model, triangles, colors.size());
+    uint64_t buffer_bytes() const {
+        std::vector<GlbPartSize> sizes;
+        for (const MeshPart& part : parts_) {
+            GlbPartSize size{part.vertices.size(), part.triangles.size()};
+            if (reflectance_) size.vertex_bytes += sizeof(glm::vec3);
+            if (has_gloss(part)) size.vertex_bytes += sizeof(glm::vec3) + sizeof(float);
+            sizes.push_back(size);
+        }
+        return glb_buffer_bytes(sizes);
+    }
 
-    tinygltf::Mesh surface;
-    surface.name = "surface";
-    surface.primitives.push_back(std::move(primitive));
-    model.meshes.push_back(std::move(surface));
+    std::string name_of(uint32_t label) const {
+        if (label == 0) return kSurface;
+        const bool named = label < scene_.segment_names.size() && !scene_.segment_names[label].empty();
+        return named ? scene_.segment_names[label] : "segment " + std::to_string(label);
+    }
 
-    tinygltf::Material material;
-    material.name = "surface";
-    material.pbrMetallicRoughness.metallicFactor = 0;
-    material.pbrMetallicRoughness.roughnessFactor = 1;
-    model.materials.push_back(std::move(material));
-}
+    void add_root(const GlbInfo& info) {
+        const glm::dquat turn = glm::normalize(info.y_up_from_world);
+        tinygltf::Node root;
+        root.name = info.name;
+        root.rotation = {turn.x, turn.y, turn.z, turn.w};
+        model_.nodes.push_back(std::move(root));
+        tinygltf::Scene scene;
+        scene.name = info.name;
+        scene.nodes = {0};
+        model_.scenes.push_back(std::move(scene));
+        model_.defaultScene = 0;
+        model_.asset.version = "2.0";
+        model_.asset.generator = "Patina " + info.version;
+    }
 
-/// The scene: a root node that turns the world upright, and the node "surface" below it.
-void add_scene(tinygltf::Model& model, const GlbInfo& info) {
-    const glm::dquat turn = glm::normalize(info.y_up_from_world);
-    tinygltf::Node root;
-    root.name = info.name;
-    root.rotation = {turn.x, turn.y, turn.z, turn.w};
-    root.children = {1};
-    tinygltf::Node surface;
-    surface.name = "surface";
-    if (!model.meshes.empty()) surface.mesh = 0;
-    model.nodes = {std::move(root), std::move(surface)};
+    /// Below the root.
+    tinygltf::Node& add_node(const std::string& name) {
+        model_.nodes.front().children.push_back(static_cast<int>(model_.nodes.size()));
+        tinygltf::Node& node = model_.nodes.emplace_back();
+        node.name = name;
+        return node;
+    }
 
-    tinygltf::Scene scene;
-    scene.name = info.name;
-    scene.nodes = {0};
-    model.scenes.push_back(std::move(scene));
-    model.defaultScene = 0;
-    model.asset.version = "2.0";
-    model.asset.generator = "Patina " + info.version;
-}
+    void use_extension(const char* name) {
+        auto& used = model_.extensionsUsed;
+        if (std::ranges::find(used, name) == used.end()) used.emplace_back(name);
+    }
+
+    void add_part(const MeshPart& part) {
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.material = static_cast<int>(model_.materials.size());
+        primitive.attributes["POSITION"] = add_positions(model_, gathered(scene_.mesh.positions_m, part));
+        primitive.attributes["NORMAL"] = add_vertices(model_, "NORMAL", gathered(normals_, part));
+        tinygltf::Material material;
+        material.name = name_of(part.label);
+        material.pbrMetallicRoughness.metallicFactor = 0;
+        material.pbrMetallicRoughness.roughnessFactor = 1;
+        if (reflectance_) {
+            add_reflectance(part, primitive, material);
+        } else {
+            add_colors(primitive, gathered(scene_.mesh.colors, part));
+        }
+        primitive.indices = add_indices(model_, part.triangles, part.vertices.size());
+        model_.materials.push_back(std::move(material));
+
+        add_node(name_of(part.label)).mesh = static_cast<int>(model_.meshes.size());
+        tinygltf::Mesh mesh;
+        mesh.name = name_of(part.label);
+        mesh.primitives.push_back(std::move(primitive));
+        model_.meshes.push_back(std::move(mesh));
+        summary_.vertices += part.vertices.size();
+        summary_.triangles += part.triangles.size();
+    }
+
+    void add_colors(tinygltf::Primitive& primitive, const std::vector<glm::vec3>& linear) {
+        std::vector<GltfColor> colors(linear.size());
+        std::ranges::transform(linear, colors.begin(), encode);
+        primitive.attributes["COLOR_0"] = add_vertices(model_, "COLOR_0", colors);
+        summary_.clamped_colors += static_cast<uint64_t>(std::ranges::count_if(linear, std::not_fn(displayable)));
+    }
+
+    std::vector<glm::vec3> albedo_of(const MeshPart& part) {
+        const auto& mean = segment(part.label).kd;
+        std::vector<glm::vec3> albedo;
+        albedo.reserve(part.vertices.size());
+        for (const uint32_t vertex : part.vertices) {
+            const glm::vec4 known = reflectance_->kd[vertex];
+            summary_.unknown_albedo += known.a == 0 && !mean;
+            const glm::vec3 fallback = mean ? *mean : glm::min(scene_.mesh.colors[vertex], 1.0f);
+            albedo.push_back(known.a > 0 ? glm::vec3(known) : fallback);
+        }
+        return albedo;
+    }
+
+    void add_reflectance(const MeshPart& part, tinygltf::Primitive& primitive, tinygltf::Material& material) {
+        const SegmentReflectance& own = segment(part.label);
+        const std::vector<glm::vec3> albedo = albedo_of(part);
+        // A segment without a material has no highlight at all, which is what ks = 0 becomes.
+        const GltfMaterial shown = gltf_material(own.gloss.value_or(WardGloss{}), own.kd.value_or(glm::vec3(1)));
+        primitive.attributes["_KD"] = add_vertices(model_, "_KD", albedo);
+        set_material(shown, material);
+        if (!shown.metal) {
+            std::vector<glm::vec3> base(albedo.size());
+            std::ranges::transform(albedo, base.begin(), [&](glm::vec3 kd) { return base_color_of(shown, kd); });
+            add_colors(primitive, base);
+        }
+        if (!own.gloss) return;
+        const size_t count = part.vertices.size();
+        primitive.attributes["_KS"] = add_vertices(model_, "_KS", std::vector<glm::vec3>(count, own.gloss->ks));
+        primitive.attributes["_WARD_ALPHA"] =
+            add_vertices(model_, "_WARD_ALPHA", std::vector<float>(count, own.gloss->alpha));
+        material.extras = ward_extras(*own.gloss);
+    }
+
+    void set_material(const GltfMaterial& shown, tinygltf::Material& material) {
+        tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
+        pbr.roughnessFactor = double{shown.roughness};
+        if (shown.metal) {
+            pbr.metallicFactor = 1;
+            pbr.baseColorFactor = {shown.base_color.r, shown.base_color.g, shown.base_color.b, 1};
+            return;
+        }
+        Value::Object specular{{"specularFactor", Value(double{shown.specular})}};
+        if (shown.specular > 0) specular["specularColorFactor"] = array_of(glm::dvec3(shown.specular_color));
+        material.extensions[kSpecular] = Value(std::move(specular));
+        use_extension(kSpecular);
+    }
+
+    void add_light(const sensor::PointLight& light) {
+        const double strongest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
+        const glm::dvec3 color = strongest > 0 ? light.intensity / strongest : glm::dvec3(1);
+        const int index = static_cast<int>(model_.lights.size());
+        tinygltf::Light lamp;
+        lamp.name = "light " + std::to_string(index + 1);
+        lamp.type = "point";
+        lamp.color = {color.r, color.g, color.b};
+        lamp.intensity = strongest;
+        Value::Object extras{{"calibrated", Value(false)},
+                             {"unit", Value(std::string("linear pixel value times square metre"))}};
+        if (light.radius_m > 0) extras["radius_m"] = Value(light.radius_m);
+        lamp.extras = Value(std::move(extras));
+        tinygltf::Node& node = add_node(lamp.name);
+        node.translation = {light.position_m.x, light.position_m.y, light.position_m.z};
+        node.extensions[kLights] = Value(Value::Object{{"light", Value(index)}});
+        model_.lights.push_back(std::move(lamp));
+        use_extension(kLights);
+    }
+
+    const GlbScene& scene_;
+    const MeshReflectance* reflectance_;
+    std::vector<MeshPart> parts_;
+    std::vector<glm::vec3> normals_;  ///< of the whole mesh, unit length
+    tinygltf::Model model_;
+    GlbSummary summary_;
+};
 
 void write_model(const std::filesystem::path& path, const tinygltf::Model& model) {
     constexpr bool kPretty = false, kBinary = true;
@@ -234,29 +321,31 @@ void write_model(const std::filesystem::path& path, const tinygltf::Model& model
 
 }  // namespace
 
-uint64_t glb_buffer_bytes(uint64_t vertices, uint64_t triangles) {
+uint64_t glb_buffer_bytes(std::span<const GlbPartSize> parts) {
     constexpr uint64_t kMost = std::numeric_limits<uint32_t>::max() - kJsonAllowance;
-    const uint64_t bytes = vertices * kVertexBytes + triangles * 3 * (short_indices(vertices) ? 2 : 4);
-    if (vertices > kMost || triangles > kMost || bytes > kMost) {
+    uint64_t bytes = 0, vertices = 0, triangles = 0;
+    for (const GlbPartSize& part : parts) {
+        // Cut off at kMost, beyond which the answer is no and products would overflow.
+        const uint64_t some_vertices = std::min(part.vertices, kMost), some_triangles = std::min(part.triangles, kMost);
+        const uint64_t index_bytes = some_vertices <= kMostVerticesOfShortIndices ? 2 : 4;
+        bytes += some_vertices * part.vertex_bytes + (some_triangles * 3 * index_bytes + 3) / 4 * 4;
+        vertices += some_vertices;
+        triangles += some_triangles;
+    }
+    if (bytes > kMost) {
         throw Error("a GLB file holds at most ", kMost, " bytes, but ", vertices, " vertices and ", triangles,
                     " triangles need ", bytes);
     }
     return bytes;
 }
 
-GlbSummary write_glb(const std::filesystem::path& path, const Mesh& mesh, const GlbInfo& info) {
-    check_mesh(path, mesh);
-    const std::vector<Triangle> triangles = drawable_triangles(mesh);
-    tinygltf::Model model;
-    GlbSummary summary{.degenerate_triangles = mesh.triangles.size() - triangles.size()};
-    if (!triangles.empty()) {
-        add_surface(model, mesh, triangles);
-        summary.vertices = mesh.positions_m.size();
-        summary.triangles = triangles.size();
-        summary.clamped_colors = static_cast<uint64_t>(std::ranges::count_if(mesh.colors, std::not_fn(displayable)));
-    }
-    add_scene(model, info);
-    write_model(path, model);
+GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info) {
+    check_scene(path, scene);
+    const std::vector<Triangle> triangles = drawable_triangles(scene.mesh);
+    const GlbBuilder builder(scene, info, triangles);
+    write_model(path, builder.model());
+    GlbSummary summary = builder.summary();
+    summary.degenerate_triangles = scene.mesh.triangles.size() - triangles.size();
     return summary;
 }
 

@@ -1,0 +1,62 @@
+#include <memory>
+
+#include "sensor/synthetic/scene_file.h"
+#include "tools/commands/commands.h"
+#include "tools/run_settings.h"
+
+namespace patina::tools {
+
+namespace {
+
+ReflectanceModelSettings& reflectance_of(ReconstructionSettings& settings) {
+    return settings.reflectance ? *settings.reflectance : settings.reflectance.emplace();
+}
+
+void add_truth_option(CLI::App& command, const std::string& name, bool& wanted, const std::string& help) {
+    command
+        .add_option_function<std::string>(
+            name, [&wanted](const std::string&) { wanted = true; }, help)
+        ->check(CLI::IsMember({"truth"}));
+}
+
+}  // namespace
+
+void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
+    command
+        .add_option("sequence", options.sequence,
+                    "Folder of a sequence, or synthetic:SCENE, rendered as it is used; SCENE is a JSON file or one "
+                    "of: " +
+                        sensor::scene_names())
+        ->required();
+    command.add_option("--format", options.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
+    command.add_option("--frames", options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
+    command.add_option("--lights", options.lights,
+                       "lights.json: estimate what surfaces reflect under these lights, not only where they are");
+    command.add_option("--lighting", options.lighting,
+                       "Sequence of low exposure, or one that holds lighting/, in which the lights are found");
+    add_truth_option(command, "--labels", options.truth_labels, "Segments: truth takes those of truth/labels");
+    add_truth_option(command, "--materials", options.truth_materials,
+                     "Specular materials by label: truth takes those of truth/materials.json");
+    command.add_flag_callback(
+        "--no-shadows", [&options] { reflectance_of(options.settings).refine.shadows = false; },
+        "Every light reaches every surface, as in the paper");
+    command
+        .add_option_function<uint32_t>(
+            "--observation-mm",
+            [&options](uint32_t mm) { reflectance_of(options.settings).voxel_m = static_cast<float>(mm) / 1000; },
+            "Size of the voxels of reflectance, 20 or 10")
+        ->check(CLI::IsMember({10, 20}));
+    command.add_flag("--quiet", options.quiet, "Print nothing but errors");
+    command.add_option("--settings", settings_file, "TOML file with settings");
+    command.add_option("--set", assignments, "One setting as KEY=VALUE, such as fusion.max_depth_m=3; may be repeated")
+        ->take_all();
+    device.add_to(command);
+}
+
+void SequenceArguments::finish(SequenceOptions& options) const {
+    if (!settings_file.empty()) load_settings(options.settings, settings_file);
+    for (const std::string& assignment : assignments) apply_setting(options.settings, assignment);
+    options.device = device.options();
+}
+
+}  // namespace patina::tools

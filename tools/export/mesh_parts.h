@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace patina {
+
+/// The triangles of one segment with the vertices they use.
+struct MeshPart {
+    uint32_t label = 0;
+    std::vector<uint32_t> vertices;                  ///< of the whole mesh
+    std::vector<std::array<uint32_t, 3>> triangles;  ///< of the numbers within `vertices`
+};
+
+/// Divides triangles by their segment, in ascending order of labels: the label that two of a triangle's vertices agree
+/// on, else that of its first one. Where segments meet, each has its own copy of the vertices between them. Empty
+/// `labels` (by vertex): one part of all `vertex_count` vertices, label 0.
+std::vector<MeshPart> parts_by_label(uint32_t vertex_count, std::span<const std::array<uint32_t, 3>> triangles,
+                                     std::span<const uint32_t> labels);
+
+}  // namespace patina

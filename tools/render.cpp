@@ -1,0 +1,160 @@
+#include "tools/render.h"
+
+#include <deque>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sensor/new_folder.h"
+#include "sensor/picture_file.h"
+#include "sensor/pose.h"
+#include "sensor/text_file.h"
+#include "tools/export/drawing.h"
+#include "tools/export/video.h"
+#include "tools/frame_dumps.h"
+#include "tools/orbit.h"
+#include "tools/progress.h"
+
+namespace patina::tools {
+
+namespace {
+
+/// The colour camera for pictures of another extent: the vertical field of view stays.
+Intrinsics resized(const Intrinsics& camera, Extent2D extent) {
+    const double scale = static_cast<double>(extent.height) / camera.extent.height;
+    const auto moved = [&](double center, uint32_t from, uint32_t to) {
+        return (center + 0.5 - 0.5 * from) * scale + 0.5 * to - 0.5;
+    };
+    Intrinsics result = camera;
+    result.extent = extent;
+    result.fx *= scale;
+    result.fy *= scale;
+    result.cx = moved(camera.cx, camera.extent.width, extent.width);
+    result.cy = moved(camera.cy, camera.extent.height, extent.height);
+    return result;
+}
+
+Drawing draw_view(const ModelView& view, Show show, float exposure) {
+    const FrameDump seen = to_dump(view);
+    switch (show) {
+        case Show::kKd: return draw(seen.kd, &seen.valid, color_pixel);
+        case Show::kNormals: return draw(seen.normal, &seen.valid, normal_pixel);
+        case Show::kLabels:
+            return draw(seen.label, &seen.valid, [](float label) { return label_pixel(static_cast<uint32_t>(label)); });
+        case Show::kRgb: break;
+    }
+    return draw(seen.rgb, &seen.valid, [exposure](glm::vec3 linear) { return color_pixel(exposure * linear); });
+}
+
+/// What can be told to be wrong before the work starts.
+void check(const RenderOptions& options) {
+    if (options.out.empty() && options.video.empty())
+        throw Error("render needs a place to write to: give --out FOLDER or --video FILE");
+    const bool needs_reflectance =
+        options.show == Show::kKd || options.show == Show::kLabels || !options.relight.empty();
+    if (needs_reflectance && options.lights.empty() && options.lighting.empty()) {
+        throw Error(options.relight.empty() ? "albedo and segments need" : "other lights need",
+                    " a reconstruction with lights: give --lights FILE or --lighting SEQUENCE");
+    }
+}
+
+/// Where finished pictures go.
+class PictureSink {
+  public:
+    /// A folder that cannot be written to is told at once; a video needs to know its pictures first.
+    explicit PictureSink(const RenderOptions& options) {
+        if (!options.out.empty()) folder_.emplace(options.out);
+    }
+
+    void open_video(const std::filesystem::path& file, Extent2D extent, double fps) {
+        video_.emplace(file, extent, fps);
+    }
+
+    void write(const Drawing& picture) {
+        if (folder_) {
+            const std::string name = sensor::picture_stem(count_) + ".png";
+            sensor::write_bytes(folder_->partial_path() / name, png_of(picture));
+        }
+        if (video_) video_->write(picture);
+        ++count_;
+    }
+
+    void finish() {
+        if (video_) video_->finish();
+        if (folder_) folder_->finish();
+    }
+
+  private:
+    std::optional<sensor::NewFolder> folder_;
+    std::optional<VideoWriter> video_;
+    uint32_t count_ = 0;
+};
+
+/// Of the colour camera, world_from_camera.
+std::vector<RigidTransform> colour_camera_poses(const sensor::SequenceInfo& info,
+                                                const std::vector<RigidTransform>& depth_camera_poses) {
+    std::vector<RigidTransform> poses;
+    for (const RigidTransform& pose : depth_camera_poses) poses.push_back(pose * rigid_inverse(info.color_from_depth));
+    return poses;
+}
+
+std::vector<RigidTransform> view_poses(const RenderOptions& options, SequenceFusion& fusion,
+                                       const std::vector<RigidTransform>& given) {
+    if (!given.empty()) return colour_camera_poses(fusion.info(), given);
+    std::vector<RigidTransform> recorded;
+    for (const TimedPose& pose : fusion.poses()) recorded.push_back(pose.world_from_camera);
+    recorded = colour_camera_poses(fusion.info(), recorded);
+    if (options.orbit == 0) return recorded;
+    const Mesh mesh = fusion.reconstruction().extract_surface();
+    if (mesh.positions_m.empty()) throw Error("an orbit needs a surface to go around, but none was reconstructed");
+    return orbit_poses(recorded, median_point(mesh.positions_m), options.orbit);
+}
+
+void render_views(const RenderOptions& options, SequenceFusion& fusion, const Intrinsics& camera,
+                  const std::vector<RigidTransform>& poses, PictureSink& sink) {
+    Reconstruction& reconstruction = fusion.reconstruction();
+    Progress progress(static_cast<uint32_t>(poses.size()), options.quiet);
+    std::deque<PendingView> owed;
+    uint32_t done = 0;
+    const auto write_first = [&] {
+        sink.write(draw_view(owed.front().get(), options.show, options.exposure));
+        owed.pop_front();
+        progress.update(++done, "views");
+    };
+    for (const RigidTransform& pose : poses) {
+        fusion.stop_if_interrupted();
+        owed.push_back(reconstruction.view(camera, pose));
+        while (!owed.empty() && owed.front().ready()) write_first();
+    }
+    reconstruction.wait();
+    while (!owed.empty()) write_first();
+}
+
+}  // namespace
+
+void render(const RenderOptions& options) {
+    const InterruptGuard interrupt;
+    check(options);
+    PictureSink sink(options);
+    std::vector<RigidTransform> given;
+    if (!options.poses.empty()) {
+        for (const sensor::StampedPose& pose : sensor::read_trajectory(options.poses))
+            given.push_back(pose.world_from_camera);
+    }
+    const std::vector<PointLight> other_lights =
+        options.relight.empty() ? std::vector<PointLight>() : lights_from_file(options.relight);
+    SequenceFusion fusion(options, interrupt);
+    const Intrinsics& recorded = fusion.info().color;
+    const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
+    const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : fusion.info().fps;
+    if (!options.video.empty()) sink.open_video(options.video, camera.extent, fps);
+    fusion.fuse_all([](const sensor::Frame&) {});
+    fusion.reconstruction().refine_all();
+    const std::vector<RigidTransform> poses = view_poses(options, fusion, given);
+    if (!options.relight.empty()) fusion.reconstruction().relight(other_lights);
+    render_views(options, fusion, camera, poses, sink);
+    sink.finish();
+    if (!options.quiet) fmt::print("{} views\n", poses.size());
+}
+
+}  // namespace patina::tools

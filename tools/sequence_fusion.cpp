@@ -1,0 +1,178 @@
+#include "tools/sequence_fusion.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "sensor/open.h"
+#include "sensor/prefetch.h"
+#include "sensor/synthetic/scene_file.h"
+#include "tools/lights.h"
+#include "tools/progress.h"
+#include "tools/rgbd_frame.h"
+
+namespace patina::tools {
+
+namespace {
+
+constexpr std::string_view kSynthetic = "synthetic:";
+constexpr uint32_t kSyntheticFrames = 120;
+
+bool is_synthetic(const SequenceOptions& options) { return options.sequence.starts_with(kSynthetic); }
+
+std::unique_ptr<sensor::Source> open_recording(const SequenceOptions& options) {
+    auto source = sensor::open_sequence(options.sequence, options.format);
+    if (!source->info().has_poses) {
+        throw Error(
+            "the sequence '", options.sequence,
+            "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
+    }
+    return std::make_unique<sensor::PrefetchSource>(std::move(source));
+}
+
+std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& options, vulkan::Device& device) {
+    const uint32_t frames = options.frames > 0 ? options.frames : kSyntheticFrames;
+    return std::make_unique<sensor::SyntheticSource>(device,
+                                                     sensor::load_scene(options.sequence.substr(kSynthetic.size())),
+                                                     sensor::SyntheticOptions{.frames = frames});
+}
+
+/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
+std::vector<PointLight> lights_of(const SequenceOptions& options) {
+    if (!options.lights.empty()) return lights_from_file(options.lights);
+    std::vector<PointLight> lights;
+    if (options.lighting.empty()) return lights;
+    LightsOptions find;
+    find.sequence = options.lighting;
+    find.quiet = options.quiet;
+    find.device = options.device;
+    for (const FoundLight& light : find_lights(find))
+        lights.push_back({light.position_m, light.intensity, light.radius_m});
+    if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
+    return lights;
+}
+
+/// With lights, reflectance is estimated; without, there is nothing to estimate it from.
+ReconstructionSettings settings_of(const SequenceOptions& options, const sensor::SequenceInfo& info,
+                                   const std::vector<PointLight>& lights) {
+    ReconstructionSettings settings = options.settings;
+    const bool drifts = options.gains == GainMode::kAuto && !info.exposure_known && settings.fusion.color;
+    if (options.gains == GainMode::kOff) settings.gains.reset();
+    if ((drifts || options.gains == GainMode::kOn) && !settings.gains) settings.gains.emplace();
+    if (lights.empty()) {
+        const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
+        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
+    } else if (!settings.reflectance) {
+        settings.reflectance.emplace();
+    }
+    return settings;
+}
+
+}  // namespace
+
+std::vector<PointLight> lights_from_file(const std::filesystem::path& file) {
+    std::vector<PointLight> lights;
+    for (const sensor::PointLight& light : sensor::read_lights(file)) {
+        lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
+    }
+    return lights;
+}
+
+SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt)
+    : options_(options), interrupt_(interrupt), held_out_(options.hold_out) {
+    // A recording is opened before the device, so that a wrong path is told at once.
+    const sensor::SyntheticSource* scene = nullptr;
+    if (!is_synthetic(options)) source_ = open_recording(options);
+    lights_ = lights_of(options);
+    device_.emplace(options.device);
+    if (is_synthetic(options)) {
+        auto rendered = open_synthetic(options, *device_);
+        scene = rendered.get();
+        source_ = std::move(rendered);
+    }
+    truth_.emplace(options.sequence, scene);
+    info_ = source_->info();
+    if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
+    reconstruction_.emplace(*device_, settings_of(options, info_, lights_));
+    if (reconstruction_->reflectance()) prepare_reflectance(*reconstruction_->reflectance());
+}
+
+void SequenceFusion::prepare_reflectance(ReflectanceModel& reflectance) {
+    reflectance.set_lights(lights_);
+    if (!options_.truth_materials) return;
+    for (const sensor::Material& m : truth_->materials())
+        reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
+}
+
+void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& after_frame) {
+    Progress progress(info_.frames, options_.quiet);
+    bool warned_full = false;
+    for (uint32_t done = 0; done < info_.frames; ++done) {
+        stop_if_interrupted();
+        const auto reading = source_->next();
+        if (!reading) break;
+        ledger_.note(*reading);
+        if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
+            progress.say("frame " + std::to_string(skipped->index) + " is skipped: " + skipped->reason);
+        } else {
+            fuse(std::get<sensor::Frame>(*reading), after_frame);
+        }
+        if (!warned_full && reconstruction_->counters().refused_blocks > 0) {
+            warned_full = true;
+            progress.say(
+                fmt::format("warning: the voxel pool of {} blocks is full; new surface is left out from here on",
+                            settings().map.capacity_blocks));
+        }
+        progress.update(done + 1, fmt::format("{} blocks", blocks_used()));
+    }
+    reconstruction_->wait();
+    if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
+    if (ledger_.used() == 0) {
+        throw Error("no frame of '", options_.sequence,
+                    "' could be used; the first was skipped because: ", ledger_.skipped().front().reason);
+    }
+}
+
+void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame) {
+    if (!frame.world_from_camera) {
+        ledger_.skip(frame.index, fmt::format("frame {} has no pose", frame.index));
+        return;
+    }
+    RgbdFrame rgbd = to_rgbd(info_, frame);
+    Image<uint16_t> labels;
+    if (options_.truth_labels) {
+        labels = truth_->labels(frame.index, info_.depth.extent);
+        rgbd.labels = labels.pixels();
+    }
+    if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
+    rgbd.held_out = held_out_.wants(frame.index);
+    if (rgbd.held_out) held_out_.keep(frame, reconstruction_->frames());
+    reconstruction_->add(rgbd);
+    ledger_.use(frame.index);
+    used_.push_back(frame.index);
+    poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+    after_frame(frame);
+}
+
+void SequenceFusion::stop_if_interrupted() {
+    if (!interrupt_.requested()) return;
+    reconstruction_->wait();
+    throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames");
+}
+
+std::string SequenceFusion::gains_text() {
+    std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
+    const auto gains = reconstruction_->gains();
+    for (size_t i = 0; i < gains.size(); ++i) {
+        const glm::vec4 gain = gains[i].gain;
+        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+    }
+    return lines;
+}
+
+uint32_t SequenceFusion::blocks_used() {
+    return settings().map.capacity_blocks - reconstruction_->counters().free_blocks;
+}
+
+}  // namespace patina::tools

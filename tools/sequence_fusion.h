@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/vulkan/device.h"
+#include "passes/reconstruction.h"
+#include "sensor/ledger.h"
+#include "sensor/source.h"
+#include "sensor/synthetic/synthetic_source.h"
+#include "tools/export/trajectory.h"
+#include "tools/held_out.h"
+#include "tools/interrupt.h"
+#include "tools/run_truth.h"
+
+namespace patina::tools {
+
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class GainMode {
+    kAuto,  ///< where the recording does not tell the exposure
+    kOn,
+    kOff
+};
+
+/// What a sequence is reconstructed with.
+struct SequenceOptions {
+    std::string sequence;  ///< folder of a recording, or "synthetic:SCENE"
+    std::string format;    ///< of the recording; empty: recognised
+    uint32_t frames = 0;   ///< at most so many frames of the sequence; 0 takes all (120 of a synthetic scene)
+    bool quiet = false;
+    std::filesystem::path lights;  ///< lights.json: with it reflectance is estimated too
+    std::string lighting;          ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    bool truth_labels = false;     ///< segments are the objects of the sequence's truth/labels
+    bool truth_materials = false;  ///< ks and alpha are those of truth/materials.json, by label
+    GainMode gains = GainMode::kAuto;
+    uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
+    vulkan::DeviceOptions device;
+    ReconstructionSettings settings;
+};
+
+/// Lights of a lights.json.
+std::vector<PointLight> lights_from_file(const std::filesystem::path& file);
+
+/// A sequence with all that belongs to it, and the reconstruction that its frames are fused into.
+class SequenceFusion {
+  public:
+    /// Opens the sequence, finds the lights, chooses the device. Throws Error for what cannot be read or met. The
+    /// options and the guard must outlive this.
+    SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt);
+
+    /// Fuses all frames, calls `after_frame` after each that was fused, and waits for the device. Throws Error when no
+    /// frame could be used, Interrupted when the user stopped it; the device has finished then.
+    void fuse_all(const std::function<void(const sensor::Frame&)>& after_frame);
+
+    /// Throws Interrupted when the user stopped it; the device has finished then.
+    void stop_if_interrupted();
+
+    Reconstruction& reconstruction() { return *reconstruction_; }
+    vulkan::Device& device() { return *device_; }
+    const sensor::SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
+    const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
+    const std::vector<PointLight>& lights() const { return lights_; }
+    const RunTruth& truth() const { return *truth_; }
+    const sensor::Ledger& ledger() const { return ledger_; }
+    const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
+    /// The colour gains of the frames that were fused, as lines "index red green blue"; complete after fuse_all().
+    std::string gains_text();
+    const HeldOut& held_out() const { return held_out_; }
+    uint32_t blocks_used();
+
+  private:
+    void prepare_reflectance(ReflectanceModel& reflectance);
+    void fuse(const sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame);
+
+    const SequenceOptions& options_;
+    const InterruptGuard& interrupt_;
+    std::optional<vulkan::Device> device_;  // outlives the source, which may compute on it
+    std::unique_ptr<sensor::Source> source_;
+    std::optional<RunTruth> truth_;
+    sensor::SequenceInfo info_;
+    std::vector<PointLight> lights_;
+    std::optional<Reconstruction> reconstruction_;
+    sensor::Ledger ledger_;
+    std::vector<TimedPose> poses_;
+    std::vector<uint32_t> used_;  ///< indices of the frames that were fused
+    HeldOut held_out_;
+};
+
+}  // namespace patina::tools
