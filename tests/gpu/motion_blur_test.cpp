@@ -22,6 +22,7 @@ class MotionBlur : public GpuTest {
     ObservationContent seen_after(const RigidTransform& before, float shutter_share) {
         ObservationSettings settings;
         settings.stride_px = 1;
+        settings.max_blur_px = 1;
         ObservationRig rig(device(), runner(), {}, settings);
         RigFrame frame{kCamera,
                        kPose,
