@@ -39,11 +39,16 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& o
 }
 
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
-ReconstructionSettings settings_of(const SequenceOptions& options, const std::vector<PointLight>& lights) {
+ReconstructionSettings settings_of(const SequenceOptions& options, const sensor::SequenceInfo& info,
+                                   const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
+    const bool drifts = options.gains == GainMode::kAuto && !info.exposure_known && settings.fusion.color;
+    if (options.gains == GainMode::kOff) settings.gains.reset();
+    if ((drifts || options.gains == GainMode::kOn) && !settings.gains) settings.gains.emplace();
     if (lights.empty()) {
         const bool asked = options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
+        if (asked)
+            throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
@@ -67,7 +72,7 @@ std::vector<PointLight> lights_from_file(const std::filesystem::path& file) {
 }
 
 SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt)
-    : options_(options), interrupt_(interrupt) {
+    : options_(options), interrupt_(interrupt), held_out_(options.hold_out) {
     // A recording is opened before the device, so that a wrong path is told at once.
     const sensor::SyntheticSource* scene = nullptr;
     if (!is_synthetic(options)) source_ = open_recording(options);
@@ -82,7 +87,7 @@ SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGu
     truth_.emplace(options.sequence, scene);
     info_ = source_->info();
     if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
-    reconstruction_.emplace(*device_, settings_of(options, lights_));
+    reconstruction_.emplace(*device_, settings_of(options, info_, lights_));
     if (reconstruction_->reflectance()) prepare_reflectance(*reconstruction_->reflectance());
 }
 
@@ -133,8 +138,12 @@ void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(c
         labels = truth_->labels(frame.index, info_.depth.extent);
         rgbd.labels = labels.pixels();
     }
+    if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
+    rgbd.held_out = held_out_.wants(frame.index);
+    if (rgbd.held_out) held_out_.keep(frame, reconstruction_->frames());
     reconstruction_->add(rgbd);
     ledger_.use(frame.index);
+    used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     after_frame(frame);
 }
@@ -143,6 +152,16 @@ void SequenceFusion::stop_if_interrupted() {
     if (!interrupt_.requested()) return;
     reconstruction_->wait();
     throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames");
+}
+
+std::string SequenceFusion::gains_text() {
+    std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
+    const auto gains = reconstruction_->gains();
+    for (size_t i = 0; i < gains.size(); ++i) {
+        const glm::vec4 gain = gains[i].gain;
+        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+    }
+    return lines;
 }
 
 uint32_t SequenceFusion::blocks_used() {

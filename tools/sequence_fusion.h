@@ -14,11 +14,19 @@
 #include "sensor/source.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tools/export/trajectory.h"
+#include "tools/held_out.h"
 #include "tools/interrupt.h"
 #include "tools/lights.h"
 #include "tools/run_truth.h"
 
 namespace patina::tools {
+
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class GainMode {
+    kAuto,  ///< where the recording does not tell the exposure
+    kOn,
+    kOff
+};
 
 /// What a sequence is reconstructed with.
 struct SequenceOptions {
@@ -33,6 +41,8 @@ struct SequenceOptions {
     std::string lighting;
     std::string labels = "geometry";  ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
     bool truth_materials = false;     ///< ks and alpha are those of truth/materials.json, by label
+    GainMode gains = GainMode::kAuto;
+    uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
     vulkan::DeviceOptions device;
     ReconstructionSettings settings;
 };
@@ -63,6 +73,9 @@ class SequenceFusion {
     const RunTruth& truth() const { return *truth_; }
     const sensor::Ledger& ledger() const { return ledger_; }
     const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
+    /// The colour gains of the frames that were fused, as lines "index red green blue"; complete after fuse_all().
+    std::string gains_text();
+    const HeldOut& held_out() const { return held_out_; }
     uint32_t blocks_used();
 
   private:
@@ -80,6 +93,8 @@ class SequenceFusion {
     std::optional<Reconstruction> reconstruction_;
     sensor::Ledger ledger_;
     std::vector<TimedPose> poses_;
+    std::vector<uint32_t> used_;  ///< indices of the frames that were fused
+    HeldOut held_out_;
 };
 
 }  // namespace patina::tools

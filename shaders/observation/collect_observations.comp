@@ -128,6 +128,12 @@ bool color_sees(vec3 in_camera) {
     return free;
 }
 
+// The picture was not smeared at the point by more than observations may be.
+bool is_sharp(vec3 point_m, vec2 pixel) {
+    const vec2 before = pixel_of(frame.color_camera, (frame.color_before_from_world * vec4(point_m, 1.0)).xyz);
+    return frame.shutter_share * distance(pixel, before) <= frame.max_blur_px;
+}
+
 // Linear colour, bilinear; `clipped` says which channels are in one of the four pixels. False where one has no reading.
 bool sample_color(vec2 pixel, out vec3 rgb, out bvec3 clipped) {
     const vec2 low = floor(pixel);
@@ -183,7 +189,8 @@ void main() {
                        dot(surface.normal, toward) >= frame.min_cosine * distance_m;
     vec3 rgb;
     bvec3 clipped;
-    const bool colored = sample_color(pixel_of(frame.color_camera, in_color), rgb, clipped);
+    const vec2 color_px = pixel_of(frame.color_camera, in_color);
+    const bool colored = sample_color(color_px, rgb, clipped) && is_sharp(point_m, color_px);
 
     uint count = observation_count(known);
     const uint old_label = record_label(known);
