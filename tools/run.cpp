@@ -71,7 +71,8 @@ class Run {
         times_s_.emplace_back("surface", seconds_since(start));
         check_validation();
         fusion_.stop_if_interrupted();
-        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(), fusion_.illumination().ambient,
+        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(),
+                               fusion_.illumination().ambient,
                                options_.truth_labels ? fusion_.truth().names() : std::vector<std::string>());
         const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
         folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));

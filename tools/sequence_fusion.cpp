@@ -43,7 +43,8 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const std::ve
     ReconstructionSettings settings = options.settings;
     if (lights.empty()) {
         const bool asked = options.truth_labels || options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
+        if (asked)
+            throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }

@@ -32,9 +32,10 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command.add_option("--frames", options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
     command.add_option("--lights", options.lights,
                        "lights.json: estimate what surfaces reflect under these lights, not only where they are");
-    command.add_option("--lighting", options.lighting,
-                       "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
-                       "light; none: no reflectance; by default in the sequence's lighting/");
+    command.add_option(
+        "--lighting", options.lighting,
+        "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
+        "light; none: no reflectance; by default in the sequence's lighting/");
     add_truth_option(command, "--labels", options.truth_labels, "Segments: truth takes those of truth/labels");
     add_truth_option(command, "--materials", options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
