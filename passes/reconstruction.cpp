@@ -38,6 +38,10 @@ SurfaceView surface_of(const VisibleBlocks& visible, const RaycastImages& model)
     return {model.position_m, model.normal, visible.view, visible.grid};
 }
 
+RigidTransform world_from_color_of(const RgbdFrame& frame) {
+    return frame.world_from_depth * rigid_inverse(frame.color_from_depth);
+}
+
 /// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
 const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
@@ -46,6 +50,9 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     check_range("fusion.allocation_stride_px", settings.fusion.allocation_stride_px, 64);
     check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
     check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
+    if (settings.gains && !settings.fusion.color) {
+        throw Error("gains are estimated from fused colours, but fusion.color is false");
+    }
     return settings;
 }
 
@@ -69,6 +76,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       runner_(device),
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
+    if (settings.gains) color_correction_.emplace(device, map_, *settings.gains, access_);
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
     if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
 }
@@ -87,20 +95,24 @@ void Reconstruction::check(const RgbdFrame& frame) const {
 
 VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame) {
     const gpu::Camera depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
-    const gpu::Camera color_camera =
-        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
-    const InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
+    const RigidTransform world_from_color = world_from_color_of(frame);
+    const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color);
+    InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
 
     const FusionSettings& fusion = settings_.fusion;
     const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
+    const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
+    if (color_correction_) {
+        input.color = color_correction_->add(graph, ids, input.color, frame.color.camera, world_from_color,
+                                             settings_.near_m, far_m);
+    }
     add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
     if (segmentation_) segmentation_->clear_new_blocks(graph, ids);
-    const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
-                  fusion.color ? std::optional(input.color) : std::nullopt);
+                  fusion.color && !frame.held_out ? std::optional(input.color) : std::nullopt);
     if (segmentation_ || reflectance_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         ObservationInputs observed{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
@@ -109,7 +121,7 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
             ObservationMapIds records = reflectance_->observations().import(graph);
             segmentation_->add_records(graph, reflectance_->observations(), records, frames_);
         }
-        if (reflectance_) observe(graph, ids, observed, frame);
+        if (reflectance_ && !frame.held_out) observe(graph, ids, observed, frame);
         if (settings_.view_every_frame) {
             graph.keep(model.position_m);
             graph.keep(model.normal);
@@ -130,16 +142,18 @@ graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& i
         words.resize(extent.area());
         inputs.given = graph.upload("labels", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(words)));
     }
-    return segmentation_->add(
-        graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
-        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)), frames_);
+    return segmentation_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+                              make_camera(frame.color.camera, world_from_color_of(frame)), frames_);
 }
 
-void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs,
+void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, ObservationInputs inputs,
                              const RgbdFrame& frame) {
+    if (world_from_color_before_) {
+        inputs.motion = {make_camera(frame.color.camera, *world_from_color_before_).camera_from_world,
+                         frame.shutter_share};
+    }
     reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
-                      make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth)),
-                      frames_);
+                      make_camera(frame.color.camera, world_from_color_of(frame)), frames_);
 }
 
 void Reconstruction::refine_all() {
@@ -163,6 +177,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
         graph::Frame graph = runner_.begin();
         const glm::dvec3 center_m(frame.world_from_depth[3]);
         map_.reset(graph, center_m);
+        if (color_correction_) color_correction_->reset(graph);
         if (reflectance_) reflectance_->reset(graph, center_m);
         if (segmentation_) segmentation_->reset(graph);
         runner_.submit(std::move(graph));
@@ -174,6 +189,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
     pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}});
     if (segmentation_) pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
     runner_.submit(std::move(graph));
+    world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
     take_counts();
 }

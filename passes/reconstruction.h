@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/graph/runner.h"
+#include "passes/color_correction.h"
 #include "passes/fusion/allocate_blocks.h"
 #include "passes/fusion/raycast.h"
 #include "passes/input/input.h"
@@ -27,6 +28,9 @@ struct ReconstructionSettings {
     InputSettings input;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:
+    /// colours are taken as they are. Needs fusion.color.
+    std::optional<GainSettings> gains{};
     /// Observations and albedo beside the geometry; empty: none. Needs lights (Reconstruction::reflectance).
     std::optional<ReflectanceModelSettings> reflectance{};
     /// Segments of the map; empty: none.
@@ -43,6 +47,10 @@ struct RgbdFrame {
     /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known. Used where the
     /// settings say that segments are given.
     std::span<const uint16_t> labels{};
+    /// Of the time since the frame before, the share in which the colour camera's shutter was open; 0: its pictures are
+    /// not blurred by motion.
+    float shutter_share = 0;
+    bool held_out = false;  ///< its colours are neither fused nor observed, its depth is fused
 };
 
 /// What a camera sees of the model; all pictures have its extent.
@@ -131,6 +139,11 @@ class Reconstruction {
     /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
 
+    /// The colour gains of the frames so far (ColorCorrection::gains); empty where the settings estimate none.
+    std::span<const gpu::ColorGains> gains() {
+        return color_correction_ ? std::span(color_correction_->gains()) : std::span<const gpu::ColorGains>();
+    }
+
     uint32_t frames() const { return frames_; }
     const ReconstructionSettings& settings() const { return settings_; }
     const VoxelMap& map() const { return map_; }
@@ -140,7 +153,7 @@ class Reconstruction {
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                            const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
-    void observe(graph::Frame& graph, const VoxelMapIds& ids, const ObservationInputs& inputs, const RgbdFrame& frame);
+    void observe(graph::Frame& graph, const VoxelMapIds& ids, ObservationInputs inputs, const RgbdFrame& frame);
     void check(const RgbdFrame& frame) const;
     void take_counts();
 
@@ -148,8 +161,10 @@ class Reconstruction {
     graph::Runner runner_;
     VoxelMap map_;
     MapAccess access_;
+    std::optional<ColorCorrection> color_correction_;
     std::optional<ReflectanceModel> reflectance_;
     std::optional<SegmentationModel> segmentation_;
+    std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;

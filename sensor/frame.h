@@ -53,6 +53,9 @@ struct SequenceInfo {
     double max_metres = 8;           ///< farther readings are not to be used
     RigidTransform color_from_depth{1.0};
     bool has_poses = false;
+    bool exposure_known = false;  ///< frames tell their exposure; else the camera may have changed it, and its white
+                                  ///< balance, by itself
+    bool rendered = false;        ///< pictures of a synthetic scene, each of one instant: nothing is blurred by motion
 };
 
 }  // namespace patina::sensor

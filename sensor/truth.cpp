@@ -45,14 +45,16 @@ double read_alpha(const JsonValue& value) {
 
 }  // namespace
 
-void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights) {
+void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights, glm::dvec3 ambient) {
     Json list = Json::array();
     for (const PointLight& light : lights) {
         Json entry{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
         if (light.radius_m > 0) entry["radius"] = light.radius_m;
         list.push_back(std::move(entry));
     }
-    write_bytes(file, Json{{"lights", list}}.dump(2) + "\n");
+    Json all{{"lights", list}};
+    if (ambient != glm::dvec3(0)) all["ambient"] = to_json(ambient);
+    write_bytes(file, all.dump(2) + "\n");
 }
 
 void write_materials(const std::filesystem::path& file, std::span<const Material> materials) {
@@ -75,6 +77,11 @@ std::vector<PointLight> read_lights(const std::filesystem::path& file) {
                           radius ? radius->not_negative() : 0});
     }
     return lights;
+}
+
+glm::dvec3 read_ambient(const std::filesystem::path& file) {
+    const auto ambient = JsonValue::read(file).find("ambient");
+    return ambient ? read_intensity(*ambient) : glm::dvec3(0);
 }
 
 std::vector<Material> read_materials(const std::filesystem::path& file) {

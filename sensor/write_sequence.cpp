@@ -126,8 +126,8 @@ void SequenceWriter::write_lists() const {
         exposures += text(i, " ", shortest(exposures_[i].exposure_s), " ", shortest(exposures_[i].gain), "\n");
     }
     if (!regular) write_bytes(partial_folder() / "timestamps.txt", timestamps);
-    const bool varies =
-        std::adjacent_find(exposures_.begin(), exposures_.end(), std::not_equal_to{}) != exposures_.end();
+    const bool varies = info_.exposure_known && std::adjacent_find(exposures_.begin(), exposures_.end(),
+                                                                   std::not_equal_to{}) != exposures_.end();
     if (varies) write_bytes(partial_folder() / "exposures.txt", exposures);
     if (!poses_.empty()) write_trajectory(partial_folder() / "trajectory.txt", poses_);
 }

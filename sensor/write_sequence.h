@@ -20,7 +20,8 @@ enum class LinearColor { kPng, kExr };
 /// and written on other threads. The same frames give the same bytes.
 class SequenceWriter {
   public:
-    /// `info` gives name, fps, cameras, metres_per_unit, max_metres and color_from_depth; its frame count is not used.
+    /// `info` gives name, fps, cameras, metres_per_unit, max_metres and color_from_depth; its frame count is not
+    /// used, exposures are written where it says that they are known.
     /// Throws Error when the folder exists and is not empty, or its place cannot be written.
     SequenceWriter(const std::filesystem::path& folder, SequenceInfo info,
                    LinearColor linear_color = LinearColor::kPng);

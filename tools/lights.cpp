@@ -25,6 +25,14 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSynthetic = "synthetic:";
 
+/// The scene's name; empty for a folder.
+std::optional<std::string> scene_name(const std::string& sequence) {
+    if (!sequence.starts_with(kSynthetic)) return std::nullopt;
+    return sequence.substr(kSynthetic.size());
+}
+
+constexpr float kClippedLuminance = 0.98f;
+
 /// A sequence of low exposure, and the exposure of the one whose pixel values lights are told in.
 struct Lighting {
     std::unique_ptr<sensor::Source> source;
@@ -70,33 +78,79 @@ Lighting open_synthetic(const std::string& name, vulkan::Device& device) {
     return {std::make_unique<sensor::SyntheticSource>(device, lighting->scene, recording), amount({})};
 }
 
-std::vector<FoundLight> estimate(const LightsOptions& options, const Lighting& lighting, vulkan::Device& device) {
+/// Calls take(frame) for every frame of the source that can be used.
+template <class Take>
+void for_each_frame(const LightsOptions& options, sensor::Source& source, const char* what, Take&& take) {
     const InterruptGuard interrupt;
-    const sensor::SequenceInfo& info = lighting.source->info();
+    const sensor::SequenceInfo& info = source.info();
     const uint32_t frames = options.frames > 0 ? std::min(options.frames, info.frames) : info.frames;
-    LightEstimation estimation(device, options.settings);
     Progress progress(frames, options.quiet);
     for (uint32_t done = 0; done < frames; ++done) {
         if (interrupt.requested()) throw Interrupted("interrupted after ", done, " of ", frames, " frames");
-        const auto reading = lighting.source->next();
+        const auto reading = source.next();
         if (!reading) break;
         if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
             progress.say(fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
         } else if (const auto& frame = std::get<sensor::Frame>(*reading); frame.world_from_camera) {
-            const double own = amount(frame.exposure);
-            estimation.add(to_rgbd(info, frame), static_cast<float>(lighting.main_exposure.value_or(own) / own));
+            take(frame);
         }
-        progress.update(done + 1, "lamps");
+        progress.update(done + 1, what);
     }
-    return estimation.found();
 }
 
-void write(const fs::path& file, const std::vector<FoundLight>& found) {
-    std::vector<sensor::PointLight> lights;
-    for (const FoundLight& light : found)
-        lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
+Illumination estimate(const LightsOptions& options, const Lighting& lighting, vulkan::Device& device) {
+    const sensor::SequenceInfo& info = lighting.source->info();
+    LightEstimation estimation(device, options.settings);
+    for_each_frame(options, *lighting.source, "lamps", [&](const sensor::Frame& frame) {
+        const double own = amount(frame.exposure);
+        estimation.add(to_rgbd(info, frame), static_cast<float>(lighting.main_exposure.value_or(own) / own));
+    });
+    Illumination found;
+    found.found_by = "lighting sequence";
+    found.lights = estimation.found();
+    return found;
+}
+
+std::unique_ptr<sensor::Source> open_main(const LightsOptions& options, vulkan::Device& device) {
+    if (const auto scene = scene_name(options.sequence)) {
+        return std::make_unique<sensor::SyntheticSource>(
+            device, sensor::load_scene(*scene),
+            options.frames > 0 ? sensor::SyntheticOptions{.frames = options.frames} : sensor::SyntheticOptions{});
+    }
+    auto source = sensor::open_sequence(options.sequence, options.format);
+    if (!source->info().has_poses) {
+        throw Error("the sequence '", options.sequence, "' has no poses: a trajectory.txt with poses is needed");
+    }
+    return std::make_unique<sensor::PrefetchSource>(std::move(source));
+}
+
+/// Lamps that the main sequence shows are clipped: where they are is known, how bright they are not.
+LightEstimationSettings clipped_lamps(LightEstimationSettings settings) {
+    settings.find.threshold = kClippedLuminance;
+    return settings;
+}
+
+Illumination fit(const LightsOptions& options, vulkan::Device& device) {
+    const std::unique_ptr<sensor::Source> source = open_main(options, device);
+    ReconstructionSettings settings = options.reconstruction;
+    if (!settings.reflectance) settings.reflectance.emplace();
+    Reconstruction reconstruction(device, settings);
+    LightEstimation estimation(device, clipped_lamps(options.settings));
+    const sensor::SequenceInfo& info = source->info();
+    for_each_frame(options, *source, "lights", [&](const sensor::Frame& frame) {
+        const RgbdFrame rgbd = to_rgbd(info, frame);
+        reconstruction.add(rgbd);
+        estimation.add(rgbd, 1);
+    });
+    std::vector<glm::vec3> seen_m;
+    for (const FoundLight& lamp : estimation.found()) seen_m.push_back(lamp.position_m);
+    const FittedLights fitted = fit_lights(reconstruction, seen_m, options.fitting);
+    return {"main sequence", fitted.lamps, fitted.ambient, fitted.misfit, fitted.unexplained};
+}
+
+void write(const fs::path& file, const Illumination& found) {
     const fs::path partial = file.string() + ".patina-partial";
-    sensor::write_lights(partial, lights);
+    write_lights_json(partial, found);
     std::error_code failure;
     fs::rename(partial, file, failure);
     if (failure) throw Error("the file '", file.string(), "' cannot be written: ", failure.message());
@@ -112,18 +166,38 @@ void print(const FoundLight& light) {
 
 }  // namespace
 
-std::vector<FoundLight> find_lights(const LightsOptions& options) {
-    const bool synthetic = options.sequence.starts_with(kSynthetic);
+void write_lights_json(const fs::path& file, const Illumination& illumination) {
+    std::vector<sensor::PointLight> lights;
+    for (const FoundLight& light : illumination.lights)
+        lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.radius_m});
+    sensor::write_lights(file, lights, glm::dvec3(illumination.ambient));
+}
+
+bool has_lighting_sequence(const std::string& sequence) {
+    if (const auto scene = scene_name(sequence))
+        return sensor::lighting_sequence(sensor::load_scene(*scene)).has_value();
+    const fs::path path(sequence);
+    return fs::is_directory((path.filename() == "sequence.json" ? path.parent_path() : path) / "lighting");
+}
+
+Illumination find_lights(const LightsOptions& options) {
+    const auto scene = scene_name(options.sequence);
+    const bool is_one = fs::absolute(options.sequence).lexically_normal().filename() == "lighting";
+    const bool low_exposure = options.from == LightsFrom::kLightingSequence ||
+                              (options.from == LightsFrom::kAny && (is_one || has_lighting_sequence(options.sequence)));
     std::optional<vulkan::Device> device;  // outlives the source, which may compute on it
     Lighting lighting;
-    if (!synthetic) lighting = open_recorded(options.sequence);
+    if (low_exposure && !scene) lighting = open_recorded(options.sequence);
     device.emplace(options.device);
-    if (synthetic) lighting = open_synthetic(options.sequence.substr(kSynthetic.size()), *device);
-    const std::vector<FoundLight> found = estimate(options, lighting, *device);
+    if (low_exposure && scene) lighting = open_synthetic(*scene, *device);
+    const Illumination found = low_exposure ? estimate(options, lighting, *device) : fit(options, *device);
     if (!options.out.empty()) write(options.out, found);
     if (!options.quiet) {
-        for (const FoundLight& light : found) print(light);
-        if (found.empty()) fmt::print("no lamps found\n");
+        for (const FoundLight& light : found.lights) print(light);
+        if (found.ambient != glm::vec3(0)) {
+            fmt::print("ambient {:.4f} {:.4f} {:.4f}\n", found.ambient.r, found.ambient.g, found.ambient.b);
+        }
+        if (found.lights.empty()) fmt::print("no lamps found\n");
     }
     lighting.source.reset();
     return found;

@@ -2,29 +2,58 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/vulkan/device.h"
 #include "passes/light_estimation.h"
+#include "passes/light_fitting.h"
 
 namespace patina::tools {
 
-/// What `patina lights` was asked to do.
-struct LightsOptions {
-    std::string sequence;  ///< folder of a recording with lighting/, or of a lighting sequence; or "synthetic:SCENE"
-    std::filesystem::path out;  ///< lights.json; empty: written nowhere
-    uint32_t frames = 0;        ///< at most so many frames of the lighting sequence; 0 takes all
-    bool quiet = false;
-    vulkan::DeviceOptions device;
-    LightEstimationSettings settings;
+/// In what lights are looked for.
+enum class LightsFrom : uint8_t {
+    kAny,               ///< the lighting sequence where there is one, else the main sequence
+    kLightingSequence,  ///< frames of low exposure, in which lamps are seen (paper, Section 3.2)
+    kMainSequence,      ///< what the lamps light: see fit_lights
 };
 
-/// Finds the lamps in a sequence of low exposure (paper, Section 3.2), in the world and in the pixel values of the
-/// reflectance sequence beside it: the folder that holds lighting/. A sequence that is in no such folder is taken by
-/// itself: intensities are then in its own pixel values. Writes lights.json, whole or not at all. Throws Error when
-/// there is no lighting sequence, it has no poses, or a file cannot be read or written; Interrupted when the user stops
-/// it.
-std::vector<FoundLight> find_lights(const LightsOptions& options);
+/// What `patina lights` was asked to do.
+struct LightsOptions {
+    std::string sequence;       ///< folder of a recording with or without lighting/, or of a lighting sequence; or
+                                ///< "synthetic:SCENE"
+    std::string format;         ///< of the main sequence; empty: recognised
+    std::filesystem::path out;  ///< lights.json; empty: written nowhere
+    uint32_t frames = 0;        ///< at most so many frames of the sequence looked at; 0 takes all
+    bool quiet = false;
+    LightsFrom from = LightsFrom::kAny;
+    vulkan::DeviceOptions device;
+    LightEstimationSettings settings;
+    LightFittingSettings fitting;
+    ReconstructionSettings reconstruction;  ///< of the main sequence's surface
+};
+
+/// The lights of a room, and how they were found.
+struct Illumination {
+    std::string found_by = "none";   ///< "file", "lighting sequence", "main sequence", "none"
+    std::vector<FoundLight> lights;  ///< brightest first
+    glm::vec3 ambient{0};            ///< irradiance over pi that every surface receives, linear pixel value
+    float misfit = 0;                ///< of the main sequence's surface: FittedLights
+    float unexplained = 0;
+};
+
+/// Writes lights.json of the sequence format. Throws Error when the file cannot be written.
+void write_lights_json(const std::filesystem::path& file, const Illumination& illumination);
+
+/// Whether a sequence has a lighting sequence of its own: the folder lighting/, or a scene's.
+bool has_lighting_sequence(const std::string& sequence);
+
+/// Finds the lamps of a room. In a sequence of low exposure (paper, Section 3.2): in the world and in the pixel values
+/// of the reflectance sequence beside it, the folder that holds lighting/; of one in no such folder (kLightingSequence
+/// alone) intensities are in its own pixel values. In the main sequence: as fit_lights says. Writes lights.json, whole
+/// or not at all. Throws Error when a sequence has no poses, or a file cannot be read or written; Interrupted when the
+/// user stops it.
+Illumination find_lights(const LightsOptions& options);
 
 }  // namespace patina::tools

@@ -18,8 +18,25 @@ Value median(std::vector<Value>& values) {
 }
 
 glm::dvec3 position_of(const RigidTransform& pose) { return glm::dvec3(pose[3]); }
-/// Cameras' y axis points down.
-glm::dvec3 up_of(const RigidTransform& pose) { return -glm::dvec3(pose[1]); }
+
+/// The mean of the cameras' up directions, brought across their x axes: cameras are tilted up and down rather than
+/// rolled. Where they all face one way, only that one x axis says so, and the mean stays as it is along the rest.
+glm::dvec3 up_of(std::span<const RigidTransform> cameras) {
+    constexpr double kLevel = 1e-3;  // a mean square of x axes along up that is level enough: 2 degrees
+    const double count = static_cast<double>(cameras.size());
+    glm::dvec3 mean(0);
+    glm::dmat3 squares(kLevel);
+    for (const RigidTransform& pose : cameras) {
+        const glm::dvec3 x(pose[0]), down(pose[1]);
+        mean -= down / count;
+        squares += glm::outerProduct(x, x) / count;
+    }
+    if (glm::length(mean) < 1e-3) {
+        throw Error("an orbit needs to know where up is, but the up directions of ", cameras.size(),
+                    " cameras cancel out");
+    }
+    return glm::normalize(glm::inverse(squares) * mean);
+}
 
 RigidTransform look_at(glm::dvec3 from_m, glm::dvec3 at_m, glm::dvec3 up) {
     const glm::dvec3 z = glm::normalize(at_m - from_m), x = glm::normalize(glm::cross(-up, z)), y = glm::cross(z, x);
@@ -46,13 +63,7 @@ glm::dvec3 median_point(std::span<const glm::vec3> points) {
 }
 
 std::vector<RigidTransform> orbit_poses(std::span<const RigidTransform> recorded, glm::dvec3 center_m, uint32_t count) {
-    glm::dvec3 ups(0);
-    for (const RigidTransform& pose : recorded) ups += up_of(pose);
-    if (glm::length(ups) < 1e-3 * static_cast<double>(recorded.size()))
-        throw Error("an orbit needs to know where up is, but the up directions of ", recorded.size(),
-                    " cameras cancel out");
-    const glm::dvec3 up = glm::normalize(ups);
-
+    const glm::dvec3 up = up_of(recorded);
     std::vector<double> radii, heights;
     for (const RigidTransform& pose : recorded) {
         const glm::dvec3 offset = position_of(pose) - center_m;

@@ -8,4 +8,8 @@ namespace patina::tools {
 /// A source's frame as a reconstruction takes it. Borrows the frame's pixels. The frame has a pose.
 RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame);
 
+/// Of the time since the frame before, taken at `before_s`, the share in which the colour camera's shutter was open.
+/// Where the exposure is not known, half a frame's time is assumed; rendered pictures are of an instant.
+float shutter_share(const sensor::SequenceInfo& info, const sensor::Frame& frame, double before_s);
+
 }  // namespace patina::tools

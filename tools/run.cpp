@@ -10,6 +10,7 @@
 #include "tools/export/report.h"
 #include "tools/export/run_record.h"
 #include "tools/frame_dumps.h"
+#include "tools/run_lights.h"
 #include "tools/run_settings.h"
 #include "tools/scene_files.h"
 #include "tools/version.h"
@@ -71,9 +72,12 @@ class Run {
         check_validation();
         fusion_.stop_if_interrupted();
         const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(),
+                               fusion_.illumination().ambient,
                                options_.labels == "truth" ? fusion_.truth().names() : std::vector<std::string>());
         const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
         folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));
+        if (fusion_.settings().gains) folder_.write("gains.txt", fusion_.gains_text());
+        if (options_.hold_out > 0) compare_held_out();
         if (!options_.dump_graph.empty()) {
             write_text(options_.dump_graph.string() + ".dot", graph_dot_);
             write_text(options_.dump_graph.string() + ".json", graph_json_);
@@ -105,6 +109,26 @@ class Run {
         }
     }
 
+    void compare_held_out() {
+        const auto start = Clock::now();
+        reconstruction_.refine_all();
+        held_out_ = fusion_.held_out().compare(reconstruction_, fusion_.info(), folder_);
+        times_s_.emplace_back("held_out", seconds_since(start));
+    }
+
+    /// Per channel; empty where no gains were estimated.
+    std::vector<ValueRange> gain_ranges() {
+        std::vector<ValueRange> ranges;
+        if (reconstruction_.gains().empty()) return ranges;
+        for (glm::length_t channel = 0; channel < 3; ++channel) {
+            std::vector<float> sorted;
+            for (const gpu::ColorGains& gains : reconstruction_.gains()) sorted.push_back(gains.gain[channel]);
+            std::sort(sorted.begin(), sorted.end());
+            ranges.push_back({sorted.front(), sorted[sorted.size() / 2], sorted.back()});
+        }
+        return ranges;
+    }
+
     void check_validation() {
         if (const auto messages = fusion_.device().validation_messages(); !messages.empty()) {
             throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
@@ -118,11 +142,13 @@ class Run {
         record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
         record.seed = options_.seed;
         record.settings = settings_json(fusion_.settings());
-        record.settings["lights"] = fusion_.lights().size();
+        record.settings["lighting"] = options_.lighting;
+        record.lights = lights_json(fusion_.illumination());
         record.settings["labels"] = options_.labels;
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
+        record.settings["hold_out"] = options_.hold_out;
         record.settings["dump_every"] = options_.dump_every;
         record.sequence = fusion_.info();
         record.frames = {fusion_.ledger().read(), fusion_.ledger().used(), fusion_.ledger().skipped()};
@@ -144,6 +170,8 @@ class Run {
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
         if (reconstruction_.segmentation()) add_segment_totals(record);
+        record.color_gains = gain_ranges();
+        record.held_out = held_out_;
         record.warnings = warnings(counters);
         for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
             if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
@@ -194,6 +222,7 @@ class Run {
     SequenceFusion fusion_;
     Reconstruction& reconstruction_;
     FrameDumps dumps_;
+    std::optional<HeldOutRecord> held_out_;
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;
 };

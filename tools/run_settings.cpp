@@ -47,6 +47,12 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("segmentation.prune_voxels", s.segmentation->prune_voxels);
         visit("segmentation.prune_frames", s.segmentation->prune_frames);
     }
+    if (s.gains) {
+        visit("gains.reduction", s.gains->reduction);
+        visit("gains.max_angle_degrees", s.gains->max_angle_degrees);
+        visit("gains.min_samples", s.gains->min_samples);
+        visit("gains.leak", s.gains->leak);
+    }
     if (s.reflectance) {
         visit("reflectance.voxel_m", s.reflectance->voxel_m);
         visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
@@ -59,12 +65,14 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("observe.max_angle_degrees", s.reflectance->observe.max_angle_degrees);
         visit("observe.depth_tolerance_m", s.reflectance->observe.depth_tolerance_m);
         visit("observe.edge_margin_px", s.reflectance->observe.edge_margin_px);
+        visit("observe.max_blur_px", s.reflectance->observe.max_blur_px);
     }
 }
 
 std::string known_keys() {
     std::string keys;
     ReconstructionSettings defaults;
+    defaults.gains.emplace();
     defaults.reflectance.emplace();
     defaults.segmentation.emplace();
     for_each_setting(defaults,
@@ -92,6 +100,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
         settings.reflectance.emplace();
     }
     if (!settings.segmentation && key.starts_with("segmentation.")) settings.segmentation.emplace();
+    if (!settings.gains && key.starts_with("gains.")) settings.gains.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

@@ -13,9 +13,9 @@ glm::dvec3 rounded(glm::vec3 v) { return glm::round(glm::dvec3(v) * 1e6) / 1e6; 
 
 }  // namespace
 
-SceneFiles::SceneFiles(MeshReflectance reflectance, const std::vector<PointLight>& lights,
+SceneFiles::SceneFiles(MeshReflectance reflectance, const std::vector<PointLight>& lights, glm::vec3 ambient,
                        std::vector<std::string> names)
-    : reflectance_(std::move(reflectance)), names_(std::move(names)) {
+    : reflectance_(std::move(reflectance)), ambient_(rounded(ambient)), names_(std::move(names)) {
     for (const PointLight& light : lights)
         lights_.push_back({rounded(light.position_m), rounded(light.intensity), rounded(glm::vec3(light.radius_m)).x});
 }
@@ -25,7 +25,7 @@ GlbSummary SceneFiles::write(OutputFolder& folder, const Mesh& mesh, const GlbIn
     folder.publish("scene.glb");
     if (!reflectance_.segments.empty()) folder.write("materials.json", materials_json(reflectance_.segments, names_));
     if (!lights_.empty()) {
-        sensor::write_lights(folder.stage("lights.json"), lights_);
+        sensor::write_lights(folder.stage("lights.json"), lights_, ambient_);
         folder.publish("lights.json");
     }
     return summary;

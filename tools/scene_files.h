@@ -17,7 +17,8 @@ namespace patina::tools {
 class SceneFiles {
   public:
     /// `reflectance` is empty where the run has none; `names`: of segments by label.
-    SceneFiles(MeshReflectance reflectance, const std::vector<PointLight>& lights, std::vector<std::string> names);
+    SceneFiles(MeshReflectance reflectance, const std::vector<PointLight>& lights, glm::vec3 ambient,
+               std::vector<std::string> names);
 
     /// Writes the files. `mesh` is the one whose reflectance this holds. Throws Error as write_glb() does.
     GlbSummary write(OutputFolder& folder, const Mesh& mesh, const GlbInfo& info) const;
@@ -28,6 +29,7 @@ class SceneFiles {
   private:
     MeshReflectance reflectance_;
     std::vector<sensor::PointLight> lights_;
+    glm::dvec3 ambient_;
     std::vector<std::string> names_;
 };
 

@@ -8,9 +8,9 @@
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
 #include "sensor/synthetic/scene_file.h"
-#include "tools/lights.h"
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
+#include "tools/run_lights.h"
 
 namespace patina::tools {
 
@@ -38,27 +38,17 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& o
                                                      sensor::SyntheticOptions{.frames = frames});
 }
 
-/// The lights that the user gives, or says where to find; empty where no reflectance is wanted.
-std::vector<PointLight> lights_of(const SequenceOptions& options) {
-    if (!options.lights.empty()) return lights_from_file(options.lights);
-    std::vector<PointLight> lights;
-    if (options.lighting.empty()) return lights;
-    LightsOptions find;
-    find.sequence = options.lighting;
-    find.quiet = options.quiet;
-    find.device = options.device;
-    for (const FoundLight& light : find_lights(find))
-        lights.push_back({light.position_m, light.intensity, light.radius_m});
-    if (lights.empty()) throw Error("no lamp was found in the lighting sequence '", options.lighting, "'");
-    return lights;
-}
-
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
-ReconstructionSettings settings_of(const SequenceOptions& options, const std::vector<PointLight>& lights) {
+ReconstructionSettings settings_of(const SequenceOptions& options, const sensor::SequenceInfo& info,
+                                   const std::vector<PointLight>& lights) {
     ReconstructionSettings settings = options.settings;
+    const bool drifts = options.gains == GainMode::kAuto && !info.exposure_known && settings.fusion.color;
+    if (options.gains == GainMode::kOff) settings.gains.reset();
+    if ((drifts || options.gains == GainMode::kOn) && !settings.gains) settings.gains.emplace();
     if (lights.empty()) {
         const bool asked = options.truth_materials || settings.reflectance;
-        if (asked) throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE");
+        if (asked)
+            throw Error("reflectance needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self");
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
@@ -82,11 +72,12 @@ std::vector<PointLight> lights_from_file(const std::filesystem::path& file) {
 }
 
 SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt)
-    : options_(options), interrupt_(interrupt) {
+    : options_(options), interrupt_(interrupt), held_out_(options.hold_out) {
     // A recording is opened before the device, so that a wrong path is told at once.
     const sensor::SyntheticSource* scene = nullptr;
     if (!is_synthetic(options)) source_ = open_recording(options);
-    lights_ = lights_of(options);
+    illumination_ = lights_of(options);
+    lights_ = point_lights(illumination_);
     device_.emplace(options.device);
     if (is_synthetic(options)) {
         auto rendered = open_synthetic(options, *device_);
@@ -96,12 +87,12 @@ SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGu
     truth_.emplace(options.sequence, scene);
     info_ = source_->info();
     if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
-    reconstruction_.emplace(*device_, settings_of(options, lights_));
+    reconstruction_.emplace(*device_, settings_of(options, info_, lights_));
     if (reconstruction_->reflectance()) prepare_reflectance(*reconstruction_->reflectance());
 }
 
 void SequenceFusion::prepare_reflectance(ReflectanceModel& reflectance) {
-    reflectance.set_lights(lights_);
+    reflectance.set_lights(lights_, illumination_.ambient);
     if (!options_.truth_materials) return;
     for (const sensor::Material& m : truth_->materials())
         reflectance.set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
@@ -147,8 +138,12 @@ void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(c
         labels = truth_->labels(frame.index, info_.depth.extent);
         rgbd.labels = labels.pixels();
     }
+    if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
+    rgbd.held_out = held_out_.wants(frame.index);
+    if (rgbd.held_out) held_out_.keep(frame, reconstruction_->frames());
     reconstruction_->add(rgbd);
     ledger_.use(frame.index);
+    used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     after_frame(frame);
 }
@@ -157,6 +152,16 @@ void SequenceFusion::stop_if_interrupted() {
     if (!interrupt_.requested()) return;
     reconstruction_->wait();
     throw Interrupted("interrupted after ", ledger_.read(), " of ", info_.frames, " frames");
+}
+
+std::string SequenceFusion::gains_text() {
+    std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
+    const auto gains = reconstruction_->gains();
+    for (size_t i = 0; i < gains.size(); ++i) {
+        const glm::vec4 gain = gains[i].gain;
+        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+    }
+    return lines;
 }
 
 uint32_t SequenceFusion::blocks_used() {

@@ -14,10 +14,19 @@
 #include "sensor/source.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tools/export/trajectory.h"
+#include "tools/held_out.h"
 #include "tools/interrupt.h"
+#include "tools/lights.h"
 #include "tools/run_truth.h"
 
 namespace patina::tools {
+
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class GainMode {
+    kAuto,  ///< where the recording does not tell the exposure
+    kOn,
+    kOff
+};
 
 /// What a sequence is reconstructed with.
 struct SequenceOptions {
@@ -25,10 +34,15 @@ struct SequenceOptions {
     std::string format;    ///< of the recording; empty: recognised
     uint32_t frames = 0;   ///< at most so many frames of the sequence; 0 takes all (120 of a synthetic scene)
     bool quiet = false;
-    std::filesystem::path lights;     ///< lights.json: with it reflectance is estimated too
-    std::string lighting;             ///< or a sequence as find_lights takes it, in whose low-exposure frames they are
+    std::filesystem::path lights;  ///< lights.json: with it reflectance is estimated too
+    /// Where else lights are found: a sequence as find_lights takes it, in whose low-exposure frames they are; "self":
+    /// in what they light in the main sequence; "none": no lights, and no reflectance. Empty: in the lighting sequence
+    /// that the main sequence has, if it has one.
+    std::string lighting;
     std::string labels = "geometry";  ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
     bool truth_materials = false;     ///< ks and alpha are those of truth/materials.json, by label
+    GainMode gains = GainMode::kAuto;
+    uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
     vulkan::DeviceOptions device;
     ReconstructionSettings settings;
 };
@@ -55,9 +69,13 @@ class SequenceFusion {
     const sensor::SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
     const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
     const std::vector<PointLight>& lights() const { return lights_; }
+    const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
     const RunTruth& truth() const { return *truth_; }
     const sensor::Ledger& ledger() const { return ledger_; }
     const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
+    /// The colour gains of the frames that were fused, as lines "index red green blue"; complete after fuse_all().
+    std::string gains_text();
+    const HeldOut& held_out() const { return held_out_; }
     uint32_t blocks_used();
 
   private:
@@ -70,10 +88,13 @@ class SequenceFusion {
     std::unique_ptr<sensor::Source> source_;
     std::optional<RunTruth> truth_;
     sensor::SequenceInfo info_;
+    Illumination illumination_;
     std::vector<PointLight> lights_;
     std::optional<Reconstruction> reconstruction_;
     sensor::Ledger ledger_;
     std::vector<TimedPose> poses_;
+    std::vector<uint32_t> used_;  ///< indices of the frames that were fused
+    HeldOut held_out_;
 };
 
 }  // namespace patina::tools

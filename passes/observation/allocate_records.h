@@ -8,6 +8,12 @@
 
 namespace patina {
 
+/// How the colour camera moved while its shutter was open.
+struct CameraMotion {
+    glm::mat4 color_before_from_world{1.0f};  ///< the colour camera at the frame before
+    float shutter_share = 0;                  ///< of the time since then, that the shutter was open
+};
+
 /// What a frame's observations are made from; images of the depth camera but for the colour.
 struct ObservationInputs {
     graph::ImageId position_m;               ///< the model as cast into the depth camera (add_raycast)
@@ -16,6 +22,7 @@ struct ObservationInputs {
     graph::ImageId slope;                    ///< of the readings (add_measure_slope)
     graph::ImageId color_linear;             ///< the colour camera's rgba16f (add_convert_color)
     std::optional<graph::ImageId> labels{};  ///< r32ui, what each pixel belongs to; 0: unknown
+    std::optional<CameraMotion> motion{};    ///< empty: the picture is sharp
 };
 
 /// Lists the voxels whose surface the frame's pixels show, each once, taking records for those that have none, as far

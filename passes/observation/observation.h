@@ -12,7 +12,7 @@ struct CollectedRecords {
 };
 
 /// Collects a frame's observations: all passes, from the model as it was cast into the depth camera after the frame was
-/// fused. Frames blurred by motion (motion_blur_px) should be left out. Throws Error when images of the depth camera
+/// fused. Throws Error when images of the depth camera
 /// differ in extent, or a setting is out of its range.
 CollectedRecords add_collect_observations(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
                                           const ObservationInputs& inputs, const ObservationSettings& settings,

@@ -1,6 +1,5 @@
 #include "passes/observation/observation_params.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.h"
@@ -23,6 +22,7 @@ void check(const ObservationSettings& settings) {
     check_range("depth_tolerance_per_m2", settings.depth_tolerance_per_m2, 0, 1);
     check_range("edge_margin_px", settings.edge_margin_px, 0, 16);
     check_range("merge_angle_degrees", settings.merge_angle_degrees, 0, 90);
+    check_range("max_blur_px", settings.max_blur_px, 0, 1e6);
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ gpu::ObservationParams make_observation_params(const ObservationMap& map, const 
     params.grid = map.grid();
     params.depth_camera = depth_camera;
     params.color_camera = color_camera;
+    params.color_before_from_world = color_camera.camera_from_world;
     params.stride_px = settings.stride_px;
     params.visited = (depth_camera.extent + settings.stride_px - 1u) / settings.stride_px;
     params.phase = frame_index * 5u % (settings.stride_px * settings.stride_px);
@@ -53,23 +54,8 @@ gpu::ObservationParams make_observation_params(const ObservationMap& map, const 
     // As add_measure_slope: what a grazing surface changes by between pixels is less, what objects are apart is more.
     params.jump_m = 0.01f;
     params.jump_slope = 0.015f;
+    params.max_blur_px = settings.max_blur_px;
     return params;
-}
-
-double motion_blur_px(const Intrinsics& camera, const RigidTransform& world_from_camera_before,
-                      const RigidTransform& world_from_camera, double depth_m, double exposure_share) {
-    const RigidTransform before_from_now = rigid_inverse(world_from_camera_before) * world_from_camera;
-    const glm::dvec2 size(camera.extent.width, camera.extent.height);
-    double most_px = 0;
-    for (const glm::dvec2 at : {glm::dvec2(0, 0), {1, 0}, {0, 1}, {1, 1}, {0.5, 0.5}}) {
-        const glm::dvec2 pixel = at * size - 0.5;
-        const glm::dvec3 point((pixel - glm::dvec2(camera.cx, camera.cy)) / glm::dvec2(camera.fx, camera.fy), 1);
-        const glm::dvec3 before(before_from_now * glm::dvec4(point * depth_m, 1));
-        if (before.z <= 0) return INFINITY;  // turned by a right angle within one frame
-        const glm::dvec2 moved = (glm::dvec2(before) / before.z - glm::dvec2(point)) * glm::dvec2(camera.fx, camera.fy);
-        most_px = std::max(most_px, glm::length(moved));
-    }
-    return most_px * exposure_share;
 }
 
 }  // namespace patina

@@ -9,26 +9,22 @@ namespace patina {
 struct ObservationSettings {
     uint32_t stride_px = 2;        ///< every so many pixels look for voxels to observe, another phase in every frame
     float max_distance_m = 8.0f;   ///< farther surface is not observed
-    float max_angle_degrees = 75;  ///< between the normal and the direction to the colour camera
+    float max_angle_degrees = 80;  ///< between the normal and the direction to the colour camera
     /// How far a reading may lie off the model's surface: the first, plus the second times depth^2, three times a time
     /// of flight camera's noise.
     float depth_tolerance_m = 0.01f;
     float depth_tolerance_per_m2 = 0.003f;
     uint32_t edge_margin_px = 2;    ///< colours this near to an edge of the depth image may be another surface's
     float merge_angle_degrees = 1;  ///< directions this near are the same observation: its samples are averaged
-    float max_blur_px = 1;          ///< frames in which motion blurs the picture by more are not observed
+    /// Where motion smears the picture by more, it is not observed. Less than a voxel of 2 cm is wide at 2 m; a limit
+    /// of 1 refuses half of what a hand-held Kinect sees.
+    float max_blur_px = 3;
 };
 
 /// The parameters that one frame's passes share; phases and stamps follow from the frame's index. The colour camera may
-/// be the depth camera. Throws Error when a setting is out of its range.
+/// be the depth camera, and rests. Throws Error when a setting is out of its range.
 gpu::ObservationParams make_observation_params(const ObservationMap& map, const ObservationSettings& settings,
                                                const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
                                                uint32_t frame_index);
-
-/// How far (pixels) camera motion smears what lies `depth_m` before the camera along its axes: the largest way of a
-/// corner or the centre of the image between two poses, times the share of the time between them that the shutter was
-/// open.
-double motion_blur_px(const Intrinsics& camera, const RigidTransform& world_from_camera_before,
-                      const RigidTransform& world_from_camera, double depth_m, double exposure_share);
 
 }  // namespace patina

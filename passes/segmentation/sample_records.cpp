@@ -9,7 +9,7 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
                         const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
                         uint32_t seed) {
     const uint32_t labels = samples.labels(), capacity = map.settings().capacity_records;
-    const gpu::SampleParams params{seed, labels, min_observations, 0};
+    const gpu::SegmentSampleParams params{seed, labels, min_observations, 0};
     const auto zeros = [&](const char* name, uint64_t words) {
         return frame.fill(frame.create_buffer(name, words * sizeof(uint32_t)), 0);
     };
@@ -32,17 +32,17 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
     collect.dispatch_covering(capacity);
 }
 
-graph::BufferId add_draw_samples(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
+graph::BufferId add_draw_records(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
                                  const SegmentSampleIds& ids, uint32_t draws, uint32_t seed) {
     if (draws == 0 || draws > gpu::kSegmentSamples / 2) {
-        throw Error("the pass 'segmentation.draw_samples' is to draw ", draws,
+        throw Error("the pass 'segmentation.draw_records' is to draw ", draws,
                     " records of a segment, it can draw 1 to ", gpu::kSegmentSamples / 2);
     }
     const uint64_t bytes = uint64_t{samples.labels()} * draws * sizeof(uint32_t);
     const graph::BufferId none = frame.fill(frame.create_buffer("segmentation.drawn", bytes), gpu::kNoRecord);
-    auto pass = frame.compute("segmentation.draw_samples", spirv::draw_samples);
+    auto pass = frame.compute("segmentation.draw_records", spirv::draw_records);
     pass.read("Records", records.records).read("Counts", ids.counts).read("Kept", ids.kept);
-    pass.push(gpu::SampleParams{seed, samples.labels(), 0, draws});
+    pass.push(gpu::SegmentSampleParams{seed, samples.labels(), 0, draws});
     const graph::BufferId drawn = pass.modify("Drawn", none);
     pass.dispatch(gpu::kGroupsPerRow, (samples.labels() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
     return drawn;

@@ -13,7 +13,7 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
 /// Draws `draws` different records of each segment at random, from those it keeps (paper, Section 3.6: 25). Returns u32
 /// record ids, `draws` per label; gpu::kNoRecord for segments that keep fewer. The same seed draws the same voxels.
 /// Throws Error when `draws` is 0 or above gpu::kSegmentSamples / 2, which large segments are sure to keep.
-graph::BufferId add_draw_samples(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
+graph::BufferId add_draw_records(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
                                  const SegmentSampleIds& ids, uint32_t draws, uint32_t seed);
 
 }  // namespace patina

@@ -65,7 +65,10 @@ SequenceFile read_sequence_file(const fs::path& file, const std::string& default
     info.metres_per_unit = depth.at("metres_per_unit").positive();
     if (const auto far = depth.find("max_metres")) info.max_metres = far->positive();
     if (const auto transform = root.find("depth_to_color")) info.color_from_depth = read_transform(*transform);
-    if (const auto exposure = color.find("exposure_s")) sequence.exposure.exposure_s = exposure->positive();
+    if (const auto exposure = color.find("exposure_s")) {
+        sequence.exposure.exposure_s = exposure->positive();
+        info.exposure_known = true;
+    }
     if (const auto gain = color.find("gain")) sequence.exposure.gain = gain->positive();
     return sequence;
 }
@@ -153,6 +156,8 @@ class NativeSource : public FolderSource {
         expect_pictures_of_size(folder / "depth", info_.depth.extent, info_.frames, "depth");
         timestamps_s_ = read_timestamps(folder / "timestamps.txt", info_);
         exposures_ = read_exposures(folder / "exposures.txt", info_.frames, sequence.exposure);
+        info_.exposure_known = info_.exposure_known || fs::exists(folder / "exposures.txt");
+        info_.rendered = fs::exists(folder / "truth");  // the format has it for synthetic sequences alone
         if (const fs::path trajectory = folder / "trajectory.txt"; fs::exists(trajectory)) {
             poses_ = FramePoses(trajectory, timestamps_s_, std::min(kAssociationLimit_s, 0.5 / info_.fps));
         }

@@ -22,7 +22,7 @@ SequenceInfo info_of(const Scene& scene, uint32_t frames) {
     }
     info.metres_per_unit = scene.metres_per_unit;
     info.max_metres = scene.max_metres;
-    info.has_poses = true;
+    info.has_poses = info.exposure_known = info.rendered = true;
     return info;
 }
 

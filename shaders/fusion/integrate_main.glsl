@@ -61,8 +61,12 @@ Sample sample_depth(vec2 pixel, float z) {
     const float along_m = reading + dot(slope_depth_per_px(inclination), pixel - nearest) - z;
     const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
     const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
+    // Beside an edge free space says less than how far the reading is: the nearer surface ends within about a pixel.
+    // Without this bound, one pixel's free space outvotes many views of the rim, and wears it away.
+    const float pixel_m = z / fusion.depth_camera.focal_center_px.x;
+    const float most_m = slope_beside_edge(inclination) ? min(pixel_m, truncation) : truncation;
     Sample result;
-    result.signed_m = min(along_m * plane_factor, truncation);
+    result.signed_m = min(along_m * plane_factor, most_m);
     // Whole numbers add up without loss, and so in any order.
     result.weight = max(floor(float(kWeightOne) * plane_factor * trust * sqrt(trust) + 0.5), 1.0);
     result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;

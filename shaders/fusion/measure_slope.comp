@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Fits the tangent plane of each reading from its neighbours in the smoothed depth image.
 #include "lib/slope.glsl"
 
@@ -23,6 +24,16 @@ float difference(float before, float here, float after, float jump_m, inout bool
     return has_before && has_after ? 0.5 * sum : sum;
 }
 
+// One of the eight pixels around shows something nearer.
+bool is_beside_edge(ivec2 pixel, float here, float jump_m) {
+    bool beside = false;
+    [[unroll]] for (int i = 0; i < 9; ++i) {
+        const float there = load(pixel + ivec2(i % 3 - 1, i / 3 - 1));
+        beside = beside || (there > 0.0 && there < here - jump_m);
+    }
+    return beside;
+}
+
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
@@ -37,5 +48,6 @@ void main() {
     const vec2 from_center = vec2(pixel) - params.focal_center_px.zw;
     const vec3 normal = vec3(-depth_per_px * params.focal_center_px.xy, here + dot(depth_per_px, from_center));
     const float plane_factor = here / max(length(normal), 1e-6);
-    imageStore(slope, pixel, uvec4(known ? pack_slope(depth_per_px, plane_factor) : 0u));
+    imageStore(slope, pixel,
+               uvec4(known ? pack_slope(depth_per_px, plane_factor, is_beside_edge(pixel, here, jump_m)) : 0u));
 }

@@ -10,8 +10,9 @@ const float kAgreeingCosine = 0.75;
 const float kOtherCosine = 0.25;
 const float kOnPlaneVox = 0.5;
 const float kOffPlaneVox = 1.0;
-const float kLeastWeight = 1e-6;  // trilinear shares below it are none
-const float kNowhere2 = 1e9;      // farther than every record, squared
+const float kLeastWeight = 1e-6;     // trilinear shares below it are none
+const float kOtherSurface2 = 100.0;  // added to squared distances: what is of another surface comes last
+const float kNowhere2 = 1e9;         // farther than every record, squared
 
 struct SurfacePoint {
     vec3 at_vox;  // in voxels of the observations, whose centres are at integers
@@ -80,7 +81,7 @@ NearestRecords nearest_after(Reflectance found) {
 
 void look_at_record(inout NearestRecords nearest, SurfacePoint point, uint record, uvec4 content, vec3 away_vox) {
     const bool same = same_surface(point, away_vox, packed_surface(content)) > 0.0;
-    const float distance2 = same ? dot(away_vox, away_vox) : kNowhere2;
+    const float distance2 = dot(away_vox, away_vox) + (same ? 0.0 : kOtherSurface2);
     if (distance2 < nearest.known2 && packed_certainty(content) != vec3(0.0)) {
         nearest.known2 = distance2;
         nearest.known = record;

@@ -12,7 +12,7 @@ uint sample_hash(VoxelRecord record, uint seed) {
 // Half of all records have level 0, a quarter has level 1, and so on.
 uint sample_level(uint hash) { return min(31u - uint(findMSB(hash | 1u)), kSampleLevels - 1u); }
 
-bool is_eligible(VoxelRecord record, SampleParams params) {
+bool is_eligible(VoxelRecord record, SegmentSampleParams params) {
     const uint label = record_label(record);
     return label != 0u && label < params.labels && observation_count(record) >= params.min_observations;
 }

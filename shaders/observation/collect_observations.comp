@@ -88,8 +88,12 @@ Surface updated(Surface known, Surface seen) {
                    min(known.samples + 1u, kMostSurfaceSamples));
 }
 
-// The depth image shows the point, and no edge nearby.
-bool depth_agrees(vec3 in_camera, vec2 pixel) {
+struct Reading {
+    bool shown;  // the depth image shows the point
+    bool even;   // and no edge nearby
+};
+
+Reading read_depth(vec3 in_camera, vec2 pixel) {
     const vec2 nearest = floor(pixel + 0.5);
     const float reading = imageLoad(depth_m, ivec2(nearest)).x;
     const uint inclination = imageLoad(slope, ivec2(nearest)).x;
@@ -103,7 +107,8 @@ bool depth_agrees(vec3 in_camera, vec2 pixel) {
         const float there = imageLoad(depth_m, ivec2(nearest + offset)).x;
         even = even && there > 0.0 && abs(there - reading - dot(depth_per_px, offset)) <= jump_m;
     }
-    return even && inclination != 0u && abs(off_m) <= tolerance_m;
+    const bool shown = reading > 0.0 && inclination != 0u && abs(off_m) <= tolerance_m;
+    return Reading(shown, shown && even);
 }
 
 // The colour camera sees the point too: from there to it, nothing that the depth image shows is in between. What the
@@ -121,6 +126,12 @@ bool color_sees(vec3 in_camera) {
         free = free && (reading <= 0.0 || reading >= at.z - tolerance_m || share <= 0.0 || share >= 1.0);
     }
     return free;
+}
+
+// The picture was not smeared at the point by more than observations may be.
+bool is_sharp(vec3 point_m, vec2 pixel) {
+    const vec2 before = pixel_of(frame.color_camera, (frame.color_before_from_world * vec4(point_m, 1.0)).xyz);
+    return frame.shutter_share * distance(pixel, before) <= frame.max_blur_px;
 }
 
 // Linear colour, bilinear; `clipped` says which channels are in one of the four pixels. False where one has no reading.
@@ -173,24 +184,28 @@ void main() {
     const vec3 in_color = to_camera(frame.color_camera, point_m);
     const vec3 toward = camera_center_m(frame.color_camera) - point_m;
     const float distance_m = length(toward);
-    bool valid = surface.samples > 0u && depth_agrees(in_depth, depth_px) && color_sees(in_depth) &&
-                 distance_m <= frame.max_distance_m && dot(surface.normal, toward) >= frame.min_cosine * distance_m;
+    const Reading reading = read_depth(in_depth, depth_px);
+    const bool faces = surface.samples > 0u && distance_m <= frame.max_distance_m &&
+                       dot(surface.normal, toward) >= frame.min_cosine * distance_m;
     vec3 rgb;
     bvec3 clipped;
-    valid = sample_color(pixel_of(frame.color_camera, in_color), rgb, clipped) && valid;
+    const vec2 color_px = pixel_of(frame.color_camera, in_color);
+    const bool colored = sample_color(color_px, rgb, clipped) && is_sharp(point_m, color_px);
 
     uint count = observation_count(known);
     const uint old_label = record_label(known);
     const bool moved = surface != before;
     bool has_changed = moved;
-    if (valid) {
+    if (faces && reading.even && colored && color_sees(in_depth)) {
         const Insertion insertion = insert_observation(frame.grid.chunk_shift, record, count, toward / distance_m, rgb,
                                                        clipped, frame.merge_distance2);
         if (insertion.lost_closest) APPEND_RECORD(stale, stale_arguments, record)
         count = insertion.count;
         has_changed = has_changed || insertion.changed;
-        known.label = voted_label(known.label, imageLoad(labels, ivec2(floor(depth_px + 0.5))).x);
     }
+    // A label goes with the reading, edge or not: what is seen beside edges alone can still be its segment's.
+    if (faces && reading.shown)
+        known.label = voted_label(known.label, imageLoad(labels, ivec2(floor(depth_px + 0.5))).x);
     // What has not moved keeps its bits: packing what was unpacked could round to others.
     if (moved) known.normal = pack_normal(surface.normal);
     known.state = pack_state(count, voxel, surface.samples, surface.offset_vox);

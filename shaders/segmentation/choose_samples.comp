@@ -6,7 +6,7 @@
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Levels { uint levels[]; };
 layout(std430, binding = 1) writeonly buffer Counts { SegmentSampleCount counts[]; };
-layout(push_constant) uniform Push { SampleParams params; };
+layout(push_constant) uniform Push { SegmentSampleParams params; };
 
 void main() {
     const uint label = gl_GlobalInvocationID.x;

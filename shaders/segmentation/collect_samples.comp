@@ -9,7 +9,7 @@ layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer Counts { SegmentSampleCount counts[]; };
 layout(std430, binding = 3) buffer Filled { uint filled[]; };
 layout(std430, binding = 4) writeonly buffer Kept { uint kept[]; };  // kSegmentSamples per label
-layout(push_constant) uniform Push { SampleParams params; };
+layout(push_constant) uniform Push { SegmentSampleParams params; };
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;

@@ -7,7 +7,7 @@ layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) buffer Levels { uint levels[]; };  // kSampleLevels per label
-layout(push_constant) uniform Push { SampleParams params; };
+layout(push_constant) uniform Push { SegmentSampleParams params; };
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;

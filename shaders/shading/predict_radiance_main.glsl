@@ -30,6 +30,7 @@ layout(binding = 15, rgba16f) uniform writeonly image2D light;  // irradiance / 
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 const float kLeastAlpha = 0.01;
+const float kCreaseCosine = 0.7;  // between neighbouring pixels' normals; at it, neighbours do not smooth
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
 ivec3 grid_low;
@@ -77,7 +78,8 @@ Reflectance interpolate(SurfacePoint point) {
     return mean_of(sums);
 }
 
-// Where none of the eight is known: what the nearest known record of the same surface within one voxel more has.
+// Where none of the eight is known: what the nearest known record within one voxel more has; one of the same surface if
+// there is any. Rims, which no frame saw but grazing, have normals too far off to tell.
 Reflectance fill(SurfacePoint point, Reflectance found) {
     const ivec3 low = ivec3(floor(point.at_vox)) - 1;
     NearestRecords nearest = nearest_after(found);
@@ -97,10 +99,15 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
     return filled(found, nearest);
 }
 
-// Makes the shares sum to 1.
+// Makes the shares sum to 1. Where no light was marched yet, every light reaches the point.
 void normalise_shares() {
-    float all = 1e-20;
+    float all = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) all += share_of[i];
+    if (all == 0.0) {
+        share_of[0] = 1.0;
+        visible_from[0] = uvec2(0xffffffffu);
+        return;
+    }
     [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] /= all;
 }
 
@@ -145,6 +152,19 @@ Shade shade(vec3 point_m, vec3 normal, vec3 to_viewer, vec3 kd, vec4 gloss) {
     return Shade(kd * diffuse + gloss.rgb * glossy, diffuse, all > 0.0 ? arriving / all : 0.0);
 }
 
+// The normal of a pixel, smoothed by those of the four beside it as far as they agree: the model's is the gradient of
+// one voxel cell, which is noisy. Outside the image there is none: images read zero there.
+vec3 smooth_normal(ivec2 pixel) {
+    const ivec2 sides[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+    const vec3 own = imageLoad(normal, pixel).xyz;
+    vec3 sum = own * (1.0 - kCreaseCosine);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const vec3 beside = imageLoad(normal, pixel + sides[i]).xyz;
+        sum += beside * max(dot(own, beside) - kCreaseCosine, 0.0);
+    }
+    return own == vec3(0.0) ? own : normalize(sum);
+}
+
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(position_m)))) return;
@@ -154,7 +174,7 @@ void main() {
     vec4 known_kd = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
     uint segment = 0u;
     if (hit.w > 0.0) {
-        const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, imageLoad(normal, pixel).xyz,
+        const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, smooth_normal(pixel),
                                                 normalize(camera_center_m(view.camera) - hit.xyz));
         Reflectance found = interpolate(point);
         if (!found.known) found = fill(point, found);

@@ -39,7 +39,8 @@ struct ObservationParams {
     VoxelGrid grid;  // voxel_m: of the observations' voxels; capacity: blocks; chunk_shift: of records
     Camera depth_camera;
     Camera color_camera;
-    uvec2 visited;  // how many pixels in x and y are looked at: every stride_px-th
+    mat4 color_before_from_world;  // the colour camera at the frame before
+    uvec2 visited;                 // how many pixels in x and y are looked at: every stride_px-th
     uint stride_px;
     uint phase;       // which of the stride^2 pixels, changes from frame to frame
     uint edge_shift;  // a block has 1 << edge_shift voxels along each edge
@@ -54,6 +55,10 @@ struct ObservationParams {
     uint edge_margin_px;    // readings this near to an edge of the depth image are not used
     float jump_m;           // an edge: depth off the reading's plane by jump_m + jump_slope * depth
     float jump_slope;
+    float shutter_share;  // of the time since the frame before, that the colour camera's shutter was open
+    float max_blur_px;    // what moved farther over the picture meanwhile is not observed
+    uint pad0;
+    uint pad1;
 };
 
 INTEROP_END

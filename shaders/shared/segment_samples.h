@@ -17,7 +17,7 @@ struct SegmentSampleCount {
     uint pad0;
 };
 
-struct SampleParams {
+struct SegmentSampleParams {
     uint seed;
     uint labels;            // label 0 included
     uint min_observations;  // of an eligible record

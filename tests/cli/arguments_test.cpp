@@ -19,6 +19,8 @@ TEST_F(Arguments, WrongUsageIsOneLine) {
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--frames", "-3"}), kUsage),
                 HasSubstr("--frames"));
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--speed"}), kUsage), HasSubstr("--speed"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--gains", "maybe"}), kUsage),
+                HasSubstr("--gains"));
     EXPECT_FALSE(fs::exists(out()));
 }
 

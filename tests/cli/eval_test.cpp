@@ -142,8 +142,14 @@ TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
     const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "3", "--extent", "192x160",
                                   "--quiet", "--out", recording});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    run_quietly(recording, {"--lighting", recording, "--labels", "truth", "--materials", "truth", "--dump-every", "3",
-                            "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
+    const auto record = run_quietly(recording, {"--labels", "truth", "--materials", "truth", "--dump-every", "3",
+                                                "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
+    EXPECT_EQ(record["lights"]["found_by"], "lighting sequence");
+    ASSERT_EQ(record["lights"]["lamps"].size(), 3u);
+    for (const auto& lamp : record["lights"]["lamps"]) {
+        EXPECT_GE(lamp["sightings"], 5);
+        EXPECT_LT(lamp["spread_m"], 0.02);
+    }
     const Outcome outcome = patina({"eval", recording, out(), "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));

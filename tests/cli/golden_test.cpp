@@ -21,8 +21,8 @@ constexpr Extent2D kExtent{512, 424};
 class Golden : public RunFolderTest {
   protected:
     static void run(const std::string& input, const fs::path& out) {
-        const Outcome outcome =
-            patina({"run", input, "--out", out, "--quiet", "--frames", kFrames, "--dump-every", "4"});
+        const Outcome outcome = patina(
+            {"run", input, "--out", out, "--quiet", "--frames", kFrames, "--dump-every", "4", "--lighting", "none"});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_EQ(outcome.out + outcome.err, "");
     }

@@ -25,7 +25,8 @@ TEST_F(Interrupt, LeavesWholeFilesOnly) {
     fs::create_directory(out());
     write_text(out() / "scene.glb", "an earlier scene");
     write_text(out() / "run.json", "{}");
-    Program program({"run", "synthetic:cubes", "--frames", "100000", "--dump-every", "1", "--out", out(), "--quiet"});
+    Program program({"run", "synthetic:cubes", "--frames", "100000", "--lighting", "none", "--dump-every", "1", "--out",
+                     out(), "--quiet"});
     await(program, out() / "frames/000001.exr");
     program.send(SIGINT);
     EXPECT_THAT(expect_failure(program.wait(), 130),
@@ -45,7 +46,7 @@ TEST_F(Interrupt, LeavesWholeFilesOnly) {
 }
 
 TEST_F(Interrupt, BeforeTheFirstFrameLeavesNothing) {
-    Program program({"run", "synthetic:cubes", "--frames", "100000", "--out", out(), "--quiet"});
+    Program program({"run", "synthetic:cubes", "--frames", "100000", "--lighting", "none", "--out", out(), "--quiet"});
     await(program, out());
     program.send(SIGTERM);
     expect_failure(program.wait(), 130);

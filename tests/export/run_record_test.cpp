@@ -55,6 +55,20 @@ TEST(RunRecord, EveryFieldArrives) {
     EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
 }
 
+TEST(RunRecord, GainsAndHeldOutPicturesAreToldWhereThereAreAny) {
+    RunRecord record = test::full_record();
+    record.color_gains = {{0.5, 1, 2}, {0.25, 1, 1.5}, {0.75, 1, 4}};
+    record.held_out = {30, {0.9, 20, 22}, PictureScore{0.8, 24, 26}};
+    ordered_json run = ordered_json::parse(run_json(record));
+    EXPECT_EQ(run["color_gains"]["green"], ordered_json({{"min", 0.25}, {"median", 1.0}, {"max", 1.5}}));
+    EXPECT_EQ(run["color_gains"]["blue"]["max"], 4.0);
+    EXPECT_EQ(run["held_out"]["pictures"], 30);
+    EXPECT_EQ(run["held_out"]["mean_color"]["psnr_srgb_db"], 22.0);
+    EXPECT_EQ(run["held_out"]["reflectance"]["coverage"], 0.8);
+    record.held_out->reflectance.reset();
+    EXPECT_TRUE(ordered_json::parse(run_json(record))["held_out"]["reflectance"].is_null());
+}
+
 std::string without_times(const std::string& text) {
     ordered_json run = ordered_json::parse(text);
     run.erase("times");

@@ -84,7 +84,7 @@ TEST(WriteExr, FurtherGroupsJoinTheFrame) {
     frame.visibility = Image<float>(extent, 0.25f);
     write_exr(folder / "a.exr", channels_of(frame));
     auto planes = read_exr(folder / "a.exr");
-    EXPECT_EQ(planes.size(), 8u + 11u) << "rgb_segment is empty, and left out";
+    EXPECT_EQ(planes.size(), 8u + 12u) << "rgb_segment is empty, and left out";
     for (const auto& [name, image] : {std::pair{"kd", &frame.kd}, {"ks", &frame.ks}, {"kd_segment", &frame.kd_segment}})
         for (int i = 0; i < 3; ++i) EXPECT_EQ(planes[std::string(name) + "." + "RGB"[i]], component(*image, i)) << name;
     EXPECT_EQ(planes["alpha"], frame.alpha.pixels());

@@ -11,7 +11,12 @@
 #include "passes/input/convert_color.h"
 #include "passes/input/convert_depth.h"
 #include "passes/light_estimation.h"
+#include "sensor/synthetic/lighting_sequence.h"
+#include "sensor/synthetic/noise.h"
+#include "sensor/synthetic/scene_file.h"
+#include "sensor/synthetic/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
+#include "tools/rgbd_frame.h"
 
 namespace patina {
 namespace {
@@ -29,6 +34,7 @@ struct Room {
     double exposure = 1e-3;  ///< of the lighting sequence over that of the reflectance sequence
     bool lamps_have_depth = true;
     double depth_sigma_m = 0;
+    double flying_rim = 0;  ///< share of a lamp's disc, at its rim, whose depth lies anywhere between lamp and wall
 };
 
 struct Pictures {
@@ -64,14 +70,19 @@ Pictures look(const Room& room, const Intrinsics& camera, const RigidTransform& 
             double range_m = hit_walls(room.half_size_m, glm::dvec3(world_from_camera[3]), direction);
             glm::dvec3 radiance(0.5);  // the room at the reflectance sequence's exposure
             bool has_depth = true;
+            double flown_m = 0;
             for (const Lamp& lamp : room.lamps) {
                 const auto hit = hit_sphere(lamp, glm::dvec3(world_from_camera[3]), direction);
                 if (!hit || *hit > range_m) continue;
+                const glm::dvec3 to_lamp = lamp.center_m - glm::dvec3(world_from_camera[3]);
+                const double across_m = glm::length(glm::cross(direction, to_lamp));
+                const bool rim = across_m * across_m > (1 - room.flying_rim) * lamp.radius_m * lamp.radius_m;
+                flown_m = rim ? std::uniform_real_distribution<double>(0, range_m - *hit)(random) : 0;
                 range_m = *hit;
                 radiance = lamp.intensity / (std::numbers::pi * lamp.radius_m * lamp.radius_m);
                 has_depth = room.lamps_have_depth;
             }
-            const double z_m = range_m / glm::length(ray) + room.depth_sigma_m * noise(random);
+            const double z_m = (range_m + flown_m) / glm::length(ray) + room.depth_sigma_m * noise(random);
             out.depth_m.at(x, y) = has_depth ? static_cast<float>(z_m) : 0.0f;
             out.color.at(x, y) = glm::vec3(radiance * room.exposure);
         }
@@ -146,6 +157,12 @@ TEST_F(FindLights, DepthNoiseDoesNotMoveThem) {
     Room room = three_lamps();
     room.depth_sigma_m = 0.005;
     expect_found(find(room, kCamera, kCamera), room.lamps, 0.015, 0.04);
+}
+
+TEST_F(FindLights, FlyingPixelsAtTheRimDoNotMoveThem) {
+    Room room = three_lamps();
+    room.flying_rim = 0.2;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.1);
 }
 
 TEST_F(FindLights, ColourCameraOfItsOwnSizeAndPlace) {
@@ -227,6 +244,33 @@ TEST_F(FindLights, CutOffLampsAreLeftOut) {
 }
 
 TEST_F(FindLights, ADarkRoomHasNone) { EXPECT_TRUE(find(Room{}, kCamera, kCamera).empty()); }
+
+TEST_F(FindLights, LampsOfTheOfficeWithTheNoiseOfAKinect) {
+    sensor::Scene scene = sensor::load_scene("office");
+    scene.camera = scaled_to(scene.camera, {256, 212});
+    scene.recording.noise = sensor::noise_preset("kinect2");
+    auto lighting = sensor::lighting_sequence(scene);
+    ASSERT_TRUE(lighting.has_value());
+    lighting->scene.fps /= 3;  // the same path in fewer frames
+    sensor::SyntheticSource source(device(), lighting->scene,
+                                   {.frames = lighting->frames / 3, .exposure = lighting->exposure});
+    LightEstimation estimation(device(), {.find = {}, .min_sightings = 3});
+    while (const auto reading = source.next()) {
+        const auto& frame = std::get<sensor::Frame>(*reading);
+        estimation.add(tools::to_rgbd(source.info(), frame), static_cast<float>(1 / lighting->exposure));
+    }
+    const auto found = estimation.found();
+    ASSERT_EQ(found.size(), scene.lights.size());
+    for (const sensor::PointLight& lamp : scene.lights) {
+        const auto off_m = [&](const FoundLight& f) {
+            return glm::distance(glm::dvec3(f.position_m), lamp.position_m);
+        };
+        const auto nearest = std::min_element(found.begin(), found.end(),
+                                              [&](const auto& a, const auto& b) { return off_m(a) < off_m(b); });
+        EXPECT_LT(off_m(*nearest), 0.04);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(nearest->intensity[c], lamp.intensity[c], 0.1 * lamp.intensity[c]);
+    }
+}
 
 TEST_F(FindLights, SameInputGivesTheSameBytes) {
     const Room room = three_lamps();

@@ -140,6 +140,25 @@ TEST_F(IntegrateTest, AFrontalPlaneIsIntegratedByTheBook) {
     }
 }
 
+TEST_F(IntegrateTest, FreeSpaceBesideAnEdgeIsAtMostAPixelFromIt) {
+    // A board 1 m away covers the left half, a wall at 1.1 m lies behind it.
+    Image<float> depth_m(kCamera.extent, 1.1f);
+    for (uint32_t y = 0; y < 80; ++y) std::fill_n(&depth_m.at(0, y), 51, 1.0f);
+    FusionRig rig(device(), runner(), {kVoxelM, 4096}, every_pixel());
+    rig.fuse(kCamera, RigidTransform(1.0), depth_m, {});
+    const Volume volume = rig.volume();
+    const reference::Fusion fusion = rig.reference_fusion();
+    const double z_m = 0.995, pixel_m = z_m / kCamera.fx,
+                 truncation = fusion.truncation_m + fusion.truncation_slope * 1.1;
+    ASSERT_LT(pixel_m, truncation / 2);
+    // Voxel 3 appears at x = 50.4, which shows the board; 4 at 51.3, the first pixel of the wall; 5 at 52.2.
+    for (const auto& [x, expected_m] : {std::pair(3, 1.0 - z_m), {4, pixel_m}, {5, truncation}}) {
+        const Voxel* voxel = volume.find({x, 0, 99});
+        ASSERT_NE(voxel, nullptr) << x;
+        EXPECT_NEAR(voxel->sdf_m, expected_m, kStepM) << x;
+    }
+}
+
 TEST_F(IntegrateTest, TheOrderOfFramesDoesNotMatterBelowTheWeightCap) {
     std::vector<Shot> all = shots(3, false);
     // All blocks first, as voxels of a block that comes late miss the frames before.

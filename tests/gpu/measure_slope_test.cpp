@@ -25,13 +25,14 @@ class MeasureSlopeTest : public GpuTest {
             return (value < 1024 ? value : value - 2048) * 0.064 / 1023;
         };
         for (size_t i = 0; i < packed.size(); ++i) {
-            slopes.pixels()[i] = {{per_px(packed[i]), per_px(packed[i] >> 11)}, (packed[i] >> 22) / 1023.0};
+            slopes.pixels()[i] = {
+                {per_px(packed[i]), per_px(packed[i] >> 11)}, (packed[i] >> 22 & 0x1ff) / 511.0, packed[i] >> 31 != 0};
         }
         return slopes;
     }
 };
 
-constexpr double kPerPxStep = 0.064 / 1023, kFactorStep = 1.0 / 1023;
+constexpr double kPerPxStep = 0.064 / 1023, kFactorStep = 1.0 / 511;
 
 TEST_F(MeasureSlopeTest, APlaneHasItsOwnSlopeEverywhere) {
     const Intrinsics camera = pinhole_camera({65, 33});
@@ -69,6 +70,22 @@ TEST_F(MeasureSlopeTest, NeighboursAcrossAJumpAreLeftOut) {
     EXPECT_GT(slopes.at(11, 12).plane_factor, 0.9);
 }
 
+TEST_F(MeasureSlopeTest, WhatIsFartherKnowsThatItLiesBesideAnEdge) {
+    const Intrinsics camera = pinhole_camera({16, 16});
+    Image<float> depth_m(camera.extent, 1.0f);
+    for (uint32_t y = 8; y < 16; ++y) {
+        for (uint32_t x = 8; x < 16; ++x) depth_m.at(x, y) = 1.1f;
+    }
+    depth_m.at(12, 12) = 0;  // no reading is no edge
+    const Image<Slope> slopes = measure(depth_m, camera);
+    for (uint32_t y = 0; y < 16; ++y) {
+        for (uint32_t x = 0; x < 16; ++x) {
+            const bool farther = x >= 8 && y >= 8, touches = x == 8 || y == 8;
+            EXPECT_EQ(slopes.at(x, y).beside_edge, farther && touches) << x << ' ' << y;
+        }
+    }
+}
+
 TEST_F(MeasureSlopeTest, AgreesWithTheReference) {
     for (const Extent2D extent : kPictureExtents) {
         const Intrinsics camera = pinhole_camera(extent);
@@ -79,6 +96,7 @@ TEST_F(MeasureSlopeTest, AgreesWithTheReference) {
             ASSERT_NEAR(got.pixels()[i].depth_per_px.x, want.depth_per_px.x, 1.01 * kPerPxStep) << i;
             ASSERT_NEAR(got.pixels()[i].depth_per_px.y, want.depth_per_px.y, 1.01 * kPerPxStep) << i;
             ASSERT_NEAR(got.pixels()[i].plane_factor, want.plane_factor, 1.01 * kFactorStep) << i;
+            ASSERT_EQ(got.pixels()[i].beside_edge, want.plane_factor > 0 && want.beside_edge) << i;
         }
     }
 }

@@ -43,6 +43,7 @@ ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
         inputs.labels = frame.upload("labels", {extent, vulkan::Format::kR32u},
                                      std::as_bytes(std::span(rig_frame.labels->pixels())));
     }
+    inputs.motion = rig_frame.motion;
     const gpu::Camera camera = make_camera(rig_frame.camera, rig_frame.world_from_camera);
     const VoxelMapIds voxels = fusion_.map().import(frame);
     const VisibleBlocks visible = add_visible_blocks(frame, fusion_.map(), voxels, camera, 0.1f, 8.0f);

@@ -28,6 +28,7 @@ struct RigFrame {
     Image<float> depth_m;
     ColorView color;
     std::optional<Image<uint32_t>> labels{};
+    std::optional<CameraMotion> motion{};
 };
 
 /// A voxel map, an observation map and the passes that fill them, for tests.

@@ -74,7 +74,7 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
             const glm::dvec3 point(view.position_m.at(x, y));
             // At the image's border the model has no normal: the records' does, which is kept with 8 bits.
             const bool known = view.normal.at(x, y) != glm::vec4(0);
-            const glm::dvec3 normal = known ? glm::normalize(glm::dvec3(view.normal.at(x, y))) : glm::dvec3(0, 0, -1);
+            const glm::dvec3 normal = known ? reference::smooth_normal(view.normal, x, y) : glm::dvec3(0, 0, -1);
             const glm::dvec3 offset = glm::dvec3(kLamp.position_m) - point, to_light = glm::normalize(offset);
             const glm::dvec3 received =
                 glm::dvec3(kLamp.intensity) * std::max(glm::dot(normal, to_light), 0.0) / glm::dot(offset, offset);
@@ -162,6 +162,43 @@ TEST_F(PredictRadiance, WhatIsUnknownIsFilledFromAVoxelAway) {
     });
     EXPECT_GT(filled, 200u);
     EXPECT_GT(unknown, 4000u);
+}
+
+TEST_F(PredictRadiance, ASideThatNoRecordKnowsIsFilledFromTheNearestOther) {
+    const auto crate = reference::box({0, 0, 1.1}, {0.15, 0.15, 0.1});
+    const RigidTransform aside = reference::look_at({0.6, 0, 0.8}, {0, 0, 1.1});
+    ShadingRig rig = this->rig(crate, 0.02f, {kPose, aside});
+    const glm::dvec3 kd(0.5, 0.25, 0.75);
+    rig.paint([&](const RecordPlace& place) {
+        ShadedRecord record = painted(kd, 1);
+        if (place.normal.z < -0.9) return record;
+        record = painted({0.1, 0.9, 0.1});
+        record.certainty = glm::dvec3(0);
+        return record;
+    });
+    const ShadedView view = rig.predict(ShadingRig::camera(), aside);
+    size_t filled = 0;
+    for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+        const glm::vec4 at = view.position_m.at(x, y);
+        if (view.normal.at(x, y).x < 0.99f || at.z > 1.015f || std::abs(at.y) > 0.12f) return;
+        ASSERT_EQ(view.kd.at(x, y).a, 1) << x << ' ' << y;
+        ASSERT_LT(off(view.kd.at(x, y), kd), 2 * kHalf) << x << ' ' << y;
+        ASSERT_EQ(view.label.at(x, y), 1u);
+        ++filled;
+    });
+    EXPECT_GT(filled, 50u);
+}
+
+TEST_F(PredictRadiance, LightsThatWereNotMarchedYetReachTheSurface) {
+    ShadingRig rig = this->rig(wall_);
+    rig.paint([&](const RecordPlace&) {
+        ShadedRecord record = painted(glm::dvec3(0.5), 0, 0);
+        record.marched = false;
+        return record;
+    });
+    const ShadedView view = rig.predict(ShadingRig::camera(), kPose),
+                     without = rig.predict(ShadingRig::camera(), kPose, false);
+    for_each_hit(view, 8, [&](uint32_t x, uint32_t y) { ASSERT_EQ(view.rgb.at(x, y), without.rgb.at(x, y)); });
 }
 
 TEST_F(PredictRadiance, WhatNoRecordKnowsIsWhatTheRestOfTheSegmentHas) {
@@ -285,10 +322,10 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
             const ShadedView view = rig.predict(camera, poses[0]);
             const size_t before = compared;
             for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
-                const glm::dvec3 normal(view.normal.at(x, y));
+                const glm::dvec3 normal = reference::smooth_normal(view.normal, x, y);
                 if (normal == glm::dvec3(0)) return;
-                const auto expected = reference::predict_radiance(scene, glm::dvec3(view.position_m.at(x, y)),
-                                                                  glm::normalize(normal), glm::dvec3(0));
+                const auto expected =
+                    reference::predict_radiance(scene, glm::dvec3(view.position_m.at(x, y)), normal, glm::dvec3(0));
                 const bool agrees = (view.kd.at(x, y).a == 1) == expected.known &&
                                     view.label.at(x, y) == expected.label &&
                                     off(view.kd.at(x, y), expected.kd) < 0.02 &&

@@ -41,7 +41,7 @@ class SampleRecords : public GpuTest {
         SegmentSamples::keep(frame, sampled);
         const graph::Readback counts = frame.read_back(sampled.counts), kept = frame.read_back(sampled.kept),
                               drawn =
-                                  frame.read_back(add_draw_samples(frame, ids, samples_, sampled, kDraws, draw_seed));
+                                  frame.read_back(add_draw_records(frame, ids, samples_, sampled, kDraws, draw_seed));
         runner().submit(std::move(frame));
         runner().wait();
         Sampled result{counts.as<gpu::SegmentSampleCount>(), {}, {}};
@@ -128,8 +128,8 @@ TEST_F(SampleRecords, EveryRecordIsAsLikelyToBeKeptAndDrawn) {
 TEST_F(SampleRecords, MoreDrawsThanLargeSegmentsKeepAreRefused) {
     graph::Frame frame = runner().begin();
     const ObservationMapIds ids = map_.import(frame);
-    EXPECT_THROW(add_draw_samples(frame, ids, samples_, samples_.import(frame), 129, 1), Error);
-    EXPECT_THROW(add_draw_samples(frame, ids, samples_, samples_.import(frame), 0, 1), Error);
+    EXPECT_THROW(add_draw_records(frame, ids, samples_, samples_.import(frame), 129, 1), Error);
+    EXPECT_THROW(add_draw_records(frame, ids, samples_, samples_.import(frame), 0, 1), Error);
 }
 
 }  // namespace

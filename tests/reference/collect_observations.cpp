@@ -86,26 +86,32 @@ void update_surface(ObservedVoxel& voxel, const Plane& seen) {
     voxel.offset_vox = glm::mix(voxel.offset_vox, seen.offset_vox, 1.0 / voxel.surface_samples);
 }
 
-bool depth_shows(glm::dvec3 point_m, const ObservedFrame& frame, const ObservationRules& rules) {
+/// The pixel of the depth image that shows the point.
+std::optional<glm::ivec2> reading_of(glm::dvec3 point_m, const ObservedFrame& frame, const ObservationRules& rules) {
     const auto pixel = pixel_of(frame.depth_camera, frame.world_from_depth, point_m);
-    if (!pixel) return false;
+    if (!pixel) return {};
     const glm::ivec2 center = nearest_to(*pixel);
     const double reading = load(frame.depth_m, center);
     const Slope slope = load(frame.slope, center);
-    if (reading <= 0 || slope.plane_factor == 0) return false;
+    if (reading <= 0 || slope.plane_factor == 0) return {};
+    const double z = transformed(rigid_inverse(frame.world_from_depth), point_m).z;
+    const double off = reading + glm::dot(slope.depth_per_px, *pixel - glm::dvec2(center)) - z;
+    return std::abs(off) * slope.plane_factor <= tolerance_m(rules, z) ? std::optional(center) : std::nullopt;
+}
+
+bool is_even_around(glm::ivec2 center, const ObservedFrame& frame, const ObservationRules& rules) {
+    const double reading = load(frame.depth_m, center);
     for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
             const glm::ivec2 offset = rules.edge_margin_px * glm::ivec2(dx, dy);
             const double there = load(frame.depth_m, center + offset);
-            const double expected = reading + glm::dot(slope.depth_per_px, glm::dvec2(offset));
+            const double expected = reading + glm::dot(load(frame.slope, center).depth_per_px, glm::dvec2(offset));
             if (there <= 0 || std::abs(there - expected) > rules.jump.floor_m + rules.jump.relative * reading) {
                 return false;
             }
         }
     }
-    const double z = transformed(rigid_inverse(frame.world_from_depth), point_m).z;
-    const double off = reading + glm::dot(slope.depth_per_px, *pixel - glm::dvec2(center)) - z;
-    return std::abs(off) * slope.plane_factor <= tolerance_m(rules, z);
+    return true;
 }
 
 /// No reading lies before the line of sight from the colour camera, at 16 places evenly spaced in disparity up to 0.3
@@ -203,14 +209,11 @@ void observe(ObservedVoxel& voxel, glm::ivec3 coordinates, const ObservedFrame& 
     if (const auto plane = plane_around(point(), center_m, frame, rules)) update_surface(voxel, *plane);
     if (voxel.surface_samples == 0) return;
     const glm::dvec3 toward = glm::dvec3(frame.world_from_color[3]) - point();
-    if (!faces(voxel.normal, toward, rules) || !depth_shows(point(), frame, rules)) return;
-    if (!line_of_sight_is_free(point(), frame, rules)) return;
-    const auto seen = seen_color(point(), frame);
-    if (!seen) return;
-    add(voxel.seen, *seen, rules.merge_angle_degrees);
-    if (const auto pixel = pixel_of(frame.depth_camera, frame.world_from_depth, point())) {
-        vote(voxel, load(frame.labels, nearest_to(*pixel)));
-    }
+    const auto pixel = reading_of(point(), frame, rules);
+    if (!pixel || !faces(voxel.normal, toward, rules)) return;
+    vote(voxel, load(frame.labels, *pixel));
+    if (!is_even_around(*pixel, frame, rules) || !line_of_sight_is_free(point(), frame, rules)) return;
+    if (const auto seen = seen_color(point(), frame)) add(voxel.seen, *seen, rules.merge_angle_degrees);
 }
 
 }  // namespace patina::reference

@@ -48,7 +48,9 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     const double in_front_m = reading + glm::dot(slope.depth_per_px, at->rest) - at->depth_m;
     if (in_front_m < -truncation) return voxel;
 
-    const double distance_m = std::min(in_front_m * slope.plane_factor, truncation);
+    const double pixel_m = at->depth_m / seen.camera.fx;
+    const double most_m = slope.beside_edge ? std::min(pixel_m, truncation) : truncation;
+    const double distance_m = std::min(in_front_m * slope.plane_factor, most_m);
     const double trust = std::clamp(1 + in_front_m / truncation, 0.0, 1.0);
     const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * std::pow(trust, 1.5)), 1.0);
     Voxel updated = voxel;

@@ -26,6 +26,17 @@ std::optional<double> derivative(const Image<float>& depth_m, int x, int y, int 
     return sum / count;
 }
 
+bool is_beside_edge(const Image<float>& depth_m, double nearer_m, int x, int y) {
+    for (int row = y - 1; row <= y + 1; ++row) {
+        for (int column = x - 1; column <= x + 1; ++column) {
+            if (!depth_m.extent().contains(column, row)) continue;
+            const float there = depth_m.at(static_cast<uint32_t>(column), static_cast<uint32_t>(row));
+            if (there > 0 && double{there} < nearer_m) return true;
+        }
+    }
+    return false;
+}
+
 Slope slope_at(const Image<float>& depth_m, const Intrinsics& camera, const SlopeJump& jump, int x, int y) {
     const double z = depth_m.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
     if (z == 0) return {};
@@ -37,7 +48,7 @@ Slope slope_at(const Image<float>& depth_m, const Intrinsics& camera, const Slop
     const glm::dvec3 along_u = ray * *in_x + glm::dvec3(z / camera.fx, 0, 0);
     const glm::dvec3 along_v = ray * *in_y + glm::dvec3(0, z / camera.fy, 0);
     const glm::dvec3 normal = glm::normalize(glm::cross(along_u, along_v));
-    return {{*in_x, *in_y}, std::abs(glm::dot(normal, ray))};
+    return {{*in_x, *in_y}, std::abs(glm::dot(normal, ray)), is_beside_edge(depth_m, z - jump_m, x, y)};
 }
 
 }  // namespace
@@ -54,12 +65,12 @@ Image<Slope> measure_slope(const Image<float>& depth_m, const Intrinsics& camera
 
 Slope rounded(const Slope& slope) {
     constexpr double kLargest = 0.064;
-    const auto round_to = [](double value, double largest) {
-        return std::round(value / largest * 1023) / 1023 * largest;
+    const auto per_px = [&](double value) {
+        return std::round(std::clamp(value, -kLargest, kLargest) / kLargest * 1023) / 1023 * kLargest;
     };
-    const auto per_px = [&](double value) { return round_to(std::clamp(value, -kLargest, kLargest), kLargest); };
     return {{per_px(slope.depth_per_px.x), per_px(slope.depth_per_px.y)},
-            round_to(std::min(slope.plane_factor, 1.0), 1)};
+            std::round(std::min(slope.plane_factor, 1.0) * 511) / 511,
+            slope.beside_edge};
 }
 
 }  // namespace patina::reference

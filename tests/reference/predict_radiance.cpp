@@ -11,15 +11,15 @@ namespace {
 /// Linear from 1 at `all` to 0 at `none`.
 double fall(double value, double all, double none) { return std::clamp((value - none) / (all - none), 0.0, 1.0); }
 
-/// A record of the point's own surface.
+/// A record near the point.
 struct Neighbour {
     const ShadedRecord* record;
-    double weight;     ///< of its surface
+    double weight;     ///< of its surface; 0: it is another one
     double share;      ///< in trilinear interpolation; below 0 where it has none
     double distance2;  ///< from its voxel's centre, in voxels
 };
 
-/// The records of the point's own surface, out of those of 2^3 voxels or, with margin 1, of 4^3 around it.
+/// The records of 2^3 voxels around the point, or, with margin 1, of 4^3.
 std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, int margin) {
     std::vector<Neighbour> result;
     const glm::dvec3 at = point_m / scene.voxel_m - 0.5;
@@ -34,10 +34,7 @@ std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, 
                 const double off = std::abs(glm::dot(record.normal, away) - record.offset_vox);
                 const double weight = fall(glm::dot(record.normal, normal), 0.75, 0.25) * fall(off, 0.5, 1.0);
                 const bool inside = glm::all(glm::greaterThanEqual(shares, glm::dvec3(0)));
-                if (weight > 0) {
-                    result.push_back(
-                        {&record, weight, inside ? shares.x * shares.y * shares.z : -1, glm::dot(away, away)});
-                }
+                result.push_back({&record, weight, inside ? shares.x * shares.y * shares.z : -1, glm::dot(away, away)});
             }
         }
     }
@@ -46,13 +43,15 @@ std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, 
 
 bool is_known(const ShadedRecord& record) { return record.certainty != glm::dvec3(0); }
 
+/// The nearest of the point's own surface, or, where there is none, of another.
 template <class Wanted>
 const ShadedRecord* nearest(const std::vector<Neighbour>& all, const Wanted& wanted) {
     const ShadedRecord* best = nullptr;
     double least = std::numeric_limits<double>::max();
     for (const Neighbour& neighbour : all) {
-        if (!wanted(*neighbour.record) || neighbour.distance2 >= least) continue;
-        least = neighbour.distance2;
+        const double distance2 = neighbour.distance2 + (neighbour.weight > 0 ? 0 : 100);
+        if (!wanted(*neighbour.record) || distance2 >= least) continue;
+        least = distance2;
         best = neighbour.record;
     }
     return best;
@@ -104,8 +103,9 @@ std::map<uint32_t, glm::dvec3> average_segments(const std::map<std::array<int, 3
 }
 
 ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 viewer_m) {
-    const std::vector<Neighbour> around = neighbours(scene, point_m, normal, 0),
-                                 farther = neighbours(scene, point_m, normal, 1);
+    std::vector<Neighbour> around = neighbours(scene, point_m, normal, 0);
+    std::erase_if(around, [](const Neighbour& n) { return n.weight == 0; });
+    const std::vector<Neighbour> farther = neighbours(scene, point_m, normal, 1);
     const bool filled =
         std::none_of(around.begin(), around.end(), [](const Neighbour& n) { return is_known(*n.record); });
     const ShadedRecord* fill = filled ? nearest(farther, is_known) : nullptr;
@@ -138,6 +138,19 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
                       std::max(glm::dot(normal, to_light), 0.0);
     }
     return result;
+}
+
+glm::dvec3 smooth_normal(const Image<glm::vec4>& normals, uint32_t x, uint32_t y) {
+    const glm::dvec3 own(normals.at(x, y));
+    if (own == glm::dvec3(0)) return own;
+    glm::dvec3 sum = 0.3 * own;
+    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+        const int column = static_cast<int>(x) + dx, row = static_cast<int>(y) + dy;
+        if (!normals.extent().contains(column, row)) continue;
+        const glm::dvec3 beside(normals.at(static_cast<uint32_t>(column), static_cast<uint32_t>(row)));
+        sum += std::max(glm::dot(own, beside) - 0.7, 0.0) * beside;
+    }
+    return glm::normalize(sum);
 }
 
 }  // namespace patina::reference

@@ -3,6 +3,7 @@
 
 #include "sensor/open.h"
 #include "sensor/picture_file.h"
+#include "sensor/write_sequence.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor {
@@ -166,6 +167,27 @@ TEST(NativeReader, ExposuresVaryWhereListed) {
     const auto readings = read_all(*open_sequence(folder / "a"));
     EXPECT_EQ(frame_at(readings, 0).exposure, Exposure{});
     EXPECT_EQ(frame_at(readings, 1).exposure, (Exposure{0.004, 2.5}));
+}
+
+TEST(NativeReader, ExposuresAreKnownWhereAFileTellsThem) {
+    const TemporaryFolder folder;
+    SequenceInfo info = test_info();
+    info.exposure_known = false;
+    SequenceWriter writer(folder / "a", info);
+    for (Reading& reading : test_readings(2)) {
+        Frame& frame = std::get<Frame>(reading);
+        frame.exposure.gain = 1 + frame.index;
+        writer.write(frame);
+    }
+    writer.finish();
+    EXPECT_FALSE(open_sequence(folder / "a")->info().exposure_known);
+    write_text(folder / "a/exposures.txt", "1 0.004 2.5\n");
+    EXPECT_TRUE(open_sequence(folder / "a")->info().exposure_known);
+    write_native(folder / "b", 1);
+    EXPECT_TRUE(open_sequence(folder / "b")->info().exposure_known) << "sequence.json tells it";
+    EXPECT_FALSE(open_sequence(folder / "b")->info().rendered);
+    fs::create_directory(folder / "b/truth");
+    EXPECT_TRUE(open_sequence(folder / "b")->info().rendered);
 }
 
 struct ListFault {

@@ -60,7 +60,7 @@ SequenceInfo test_info() {
     info.format = "patina-sequence";
     info.color = test_camera({32, 24});
     info.depth = test_camera({16, 12});
-    info.has_poses = true;
+    info.has_poses = info.exposure_known = true;
     return info;
 }
 

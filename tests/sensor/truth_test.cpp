@@ -40,6 +40,10 @@ TEST(Truth, WhatIsWrittenReadsBackTheSame) {
         EXPECT_EQ(read[i].intensity, lights[i].intensity);
         EXPECT_EQ(read[i].radius_m, lights[i].radius_m);
     }
+    EXPECT_EQ(read_ambient(folder / "lights.json"), glm::dvec3(0));
+    write_lights(folder / "lights.json", lights, {0.1, 0.2, 0.3});
+    EXPECT_EQ(read_ambient(folder / "lights.json"), glm::dvec3(0.1, 0.2, 0.3));
+    EXPECT_EQ(read_lights(folder / "lights.json").size(), 2u);
     const auto read_back = read_materials(folder / "materials.json");
     ASSERT_EQ(read_back.size(), 2u);
     for (size_t i = 0; i < read_back.size(); ++i) {

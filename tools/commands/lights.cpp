@@ -7,7 +7,8 @@
 namespace patina::tools {
 
 void add_lights(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("lights", "Find the lamps in a sequence recorded at low exposure");
+    CLI::App* command =
+        app.add_subcommand("lights", "Find the lamps of a room, seen at low exposure or in what they light");
     struct Arguments {
         LightsOptions lights;
         DeviceArguments device;
@@ -15,10 +16,18 @@ void add_lights(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
     LightsOptions& options = arguments->lights;
     command
-        ->add_option("sequence", options.sequence,
-                     "Folder of a sequence with lighting/, or of a lighting sequence, or synthetic:SCENE")
+        ->add_option("sequence", options.sequence, "Folder of a sequence, of a lighting sequence, or synthetic:SCENE")
         ->required();
     command->add_option("--out", options.out, "File to write, such as lights.json");
+    command
+        ->add_option(
+            "--from", options.from,
+            "lighting: frames of low exposure, those of lighting/ if there is one; self: what the lamps light; "
+            "by default lighting where there is one")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, LightsFrom>{{"lighting", LightsFrom::kLightingSequence},
+                                                                      {"self", LightsFrom::kMainSequence}},
+                                    CLI::ignore_case));
     command->add_option("--frames", options.frames, "Use at most so many frames");
     command
         ->add_option("--threshold", options.settings.find.threshold,

@@ -1,5 +1,6 @@
 #include "tools/run.h"
 
+#include <map>
 #include <memory>
 
 #include "tools/commands/commands.h"
@@ -17,6 +18,15 @@ void add_run(CLI::App& app) {
     arguments->sequence.add_to(*command, run_options);
     command->add_option("--out", run_options.out, "Folder for the results")->required();
     command->add_option("--dump-every", run_options.dump_every, "Write frames/NNNNNN.exr of every so many frames");
+    command
+        ->add_option("--gains", run_options.gains,
+                     "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
+                     "recording does not tell the exposure), on, off")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, GainMode>{{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
+        ->option_text("auto|on|off");
+    command->add_option("--hold-out", run_options.hold_out,
+                        "Keep the colours of every so many-th frame out of the model, and compare them in the end");
     command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")
         ->capture_default_str();
     command->add_option("--dump-graph", run_options.dump_graph, "Write PATH.dot and PATH.json of the last fused frame");

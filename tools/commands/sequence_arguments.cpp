@@ -32,8 +32,10 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command.add_option("--frames", options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
     command.add_option("--lights", options.lights,
                        "lights.json: estimate what surfaces reflect under these lights, not only where they are");
-    command.add_option("--lighting", options.lighting,
-                       "Sequence of low exposure, or one that holds lighting/, in which the lights are found");
+    command.add_option(
+        "--lighting", options.lighting,
+        "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
+        "light; none: no reflectance; by default in the sequence's lighting/");
     command
         .add_option("--labels", options.labels,
                     "Segments: geometry finds them, truth takes those of truth/labels, off does without")

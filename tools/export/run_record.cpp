@@ -50,6 +50,25 @@ Json passes_json(const std::vector<PassTime>& passes) {
     return result;
 }
 
+Json gains_json(const std::vector<ValueRange>& gains) {
+    Json result = Json::object();
+    constexpr const char* kChannels[] = {"red", "green", "blue"};
+    for (size_t i = 0; i < gains.size(); ++i)
+        result[kChannels[i]] = {{"min", gains[i].min}, {"median", gains[i].median}, {"max", gains[i].max}};
+    return result;
+}
+
+Json score_json(const PictureScore& score) {
+    return {
+        {"coverage", score.coverage}, {"psnr_linear_db", score.psnr_linear_db}, {"psnr_srgb_db", score.psnr_srgb_db}};
+}
+
+Json held_out_json(const HeldOutRecord& held_out) {
+    return {{"pictures", held_out.pictures},
+            {"mean_color", score_json(held_out.mean_color)},
+            {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()}};
+}
+
 template <class Value>
 Json object_of(const std::vector<std::pair<std::string, Value>>& pairs, const char* suffix = "") {
     Json result = Json::object();
@@ -68,6 +87,7 @@ std::string run_json(const RunRecord& record) {
     run["driver"] = record.device.driver;
     run["seed"] = record.seed;
     run["settings"] = record.settings;
+    run["lights"] = record.lights;
     run["sequence"] = sequence_json(record.sequence);
     run["frames"] = frames_json(record.frames);
     run["voxel_pool"] = {{"blocks_used", record.voxel_pool.blocks_used},
@@ -75,6 +95,8 @@ std::string run_json(const RunRecord& record) {
                          {"blocks_refused", record.voxel_pool.blocks_refused}};
     run["memory"] = memory_json(record.memory);
     run["totals"] = object_of(record.totals);
+    if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);
+    if (record.held_out) run["held_out"] = held_out_json(*record.held_out);
     run["warnings"] = record.warnings;
     run["passes"] = passes_json(record.passes);
     run["times"] = object_of(record.times_s, "_s");

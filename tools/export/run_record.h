@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "passes/surface/mesh_reflectance.h"
 #include "sensor/source.h"
 #include "sensor/truth.h"
+#include "tools/export/picture_score.h"
 
 namespace patina {
 
@@ -52,6 +54,18 @@ struct PassTime {
     double max_ms = 0;
 };
 
+/// Where values lie.
+struct ValueRange {
+    double min = 0, median = 0, max = 0;
+};
+
+/// What held-out pictures say of a finished model, in medians over them.
+struct HeldOutRecord {
+    size_t pictures = 0;
+    PictureScore mean_color;                    ///< of the fused colour, as if it were painted on
+    std::optional<PictureScore> reflectance{};  ///< of the re-rendering, where the model has reflectance
+};
+
 /// A segment that the run told apart.
 struct SegmentRecord {
     uint32_t id = 0;
@@ -66,11 +80,14 @@ struct RunRecord {
     DeviceRecord device;
     uint64_t seed = 0;
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();  ///< as given and defaulted, in reading order
+    nlohmann::ordered_json lights = nlohmann::ordered_json::object();    ///< which there are, and how they were found
     sensor::SequenceInfo sequence;
     FrameLedger frames;
     VoxelPoolRecord voxel_pool;
     std::vector<MemoryRecord> memory;
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
+    std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none
+    std::optional<HeldOutRecord> held_out;  ///< empty where no picture was held out
     std::vector<sensor::PointLight> lamps;  ///< like the segments for report.html: they have files of their own
     std::vector<SegmentRecord> segments;
     std::vector<std::string> warnings;

@@ -9,7 +9,7 @@ layout(std430, binding = 0) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 1) readonly buffer Counts { SegmentSampleCount counts[]; };
 layout(std430, binding = 2) readonly buffer Kept { uint kept[]; };
 layout(std430, binding = 3) buffer Drawn { uint drawn[]; };  // draws per label, kNoRecord at first
-layout(push_constant) uniform Push { SampleParams params; };
+layout(push_constant) uniform Push { SegmentSampleParams params; };
 
 shared uint hashes[kSegmentSamples];
 shared uint keys[kSegmentSamples];

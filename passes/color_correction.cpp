@@ -1,0 +1,61 @@
+#include "passes/color_correction.h"
+
+#include "engine/core/error.h"
+#include "engine/core/shader_camera.h"
+#include "passes/fusion/shade_color.h"
+
+namespace patina {
+
+namespace {
+
+Extent2D reduced(Extent2D extent, uint32_t reduction) {
+    return {(extent.width + reduction - 1) / reduction, (extent.height + reduction - 1) / reduction};
+}
+
+const GainSettings& checked(const GainSettings& settings) {
+    if (settings.reduction == 0 || settings.reduction > 64) {
+        throw Error("gains.reduction is ", settings.reduction, ", it must be 1 to 64");
+    }
+    return settings;
+}
+
+}  // namespace
+
+ColorCorrection::ColorCorrection(vulkan::Device& device, const VoxelMap& map, const GainSettings& settings,
+                                 MapAccess access)
+    : map_(map),
+      settings_(checked(settings)),
+      access_(access),
+      last_(device.create_buffer({.name = "colour gains", .bytes = sizeof(gpu::ColorGains)})) {}
+
+void ColorCorrection::reset(graph::Frame& frame) const {
+    const gpu::ColorGains none{glm::vec4(1), glm::uvec4(0)};
+    frame.keep(frame.upload_bytes(frame.import(last_), 0, std::as_bytes(std::span(&none, 1)), true));
+}
+
+graph::ImageId ColorCorrection::add(graph::Frame& frame, const VoxelMapIds& ids, graph::ImageId color_linear,
+                                    const Intrinsics& camera, const RigidTransform& world_from_camera, float near_m,
+                                    float far_m) {
+    const Intrinsics coarse = scaled_to(camera, reduced(camera.extent, settings_.reduction));
+    const gpu::Camera shader_camera = make_camera(coarse, world_from_camera);
+    const VisibleBlocks visible = add_visible_blocks(frame, map_, ids, shader_camera, near_m, far_m);
+    const RaycastImages model = add_raycast(frame, map_, ids, visible, access_);
+    GainInputs inputs;
+    inputs.position_m = model.position_m;
+    inputs.normal = model.normal;
+    inputs.model_color = add_shade_color(frame, map_, ids, visible, model.position_m);
+    inputs.color_linear = color_linear;
+    inputs.camera_m = glm::vec3(world_from_camera[3]);
+    const graph::BufferId gains = add_estimate_gains(frame, inputs, frame.import(last_), settings_);
+    frame.keep(gains);
+    pending_.push_back(frame.read_back(gains));
+    return add_apply_gains(frame, color_linear, gains);
+}
+
+const std::vector<gpu::ColorGains>& ColorCorrection::gains() {
+    for (; !pending_.empty() && pending_.front().ready(); pending_.pop_front())
+        gains_.push_back(pending_.front().as<gpu::ColorGains>().front());
+    return gains_;
+}
+
+}  // namespace patina

@@ -1,0 +1,158 @@
+#include "tools/render.h"
+
+#include <numbers>
+
+#include "sensor/picture_file.h"
+#include "sensor/truth.h"
+#include "tests/cli/run_folder.h"
+#include "tools/orbit.h"
+
+// Views of a reconstruction as a user asks for them, and the poses of an orbit.
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using sensor::testing::write_text;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kCubes = "synthetic:cubes";
+
+class Render : public RunFolderTest {
+  protected:
+    /// Renders views of two frames of a scene, small.
+    void render_cubes(const fs::path& to, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"render", kCubes,    "--frames", "2",        "--extent",
+                                           "64x48",  "--quiet", "--out",    to.string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = patina(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_EQ(outcome.out + outcome.err, "");
+    }
+
+    /// The line by which `patina render SEQUENCE --out beside("views")` with these arguments fails; nothing is left.
+    std::string complaint(std::vector<std::string> more, int exit_code = 1) {
+        std::vector<std::string> arguments{"render", sequence().string(), "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const std::string message = expect_failure(patina(arguments), exit_code);
+        for (const auto& entry : fs::directory_iterator(beside(".")))
+            EXPECT_THAT(entry.path().filename().string(), ::testing::Not(HasSubstr("partial")));
+        EXPECT_FALSE(fs::exists(beside("views")));
+        return message;
+    }
+
+    static Image<sensor::SrgbPixel> read(const fs::path& file) {
+        return std::get<Image<sensor::SrgbPixel>>(sensor::read_color(file, {64, 48}));
+    }
+
+    static double brightness(const Image<sensor::SrgbPixel>& picture) {
+        double sum = 0;
+        for (const sensor::SrgbPixel& pixel : picture.pixels()) sum += pixel.r + pixel.g + pixel.b;
+        return sum / (3.0 * static_cast<double>(picture.pixels().size()));
+    }
+
+    fs::path lights(double strength) const {
+        const fs::path file = beside("lights" + std::to_string(strength) + ".json");
+        sensor::write_lights(file, std::vector<sensor::PointLight>{{{0, -1.5, 0}, glm::dvec3(strength)}});
+        return file;
+    }
+};
+
+TEST_F(Render, RecordedPosesOrbitAndVideo) {
+    render_cubes(beside("recorded"), {});
+    EXPECT_EQ(files_in(beside("recorded")).size(), 2u);
+    EXPECT_EQ(read(beside("recorded") / "000001.png").extent(), (Extent2D{64, 48}));
+
+    render_cubes(beside("orbit"), {"--orbit", "5", "--orbit-seconds", "2", "--video", beside("orbit.avi")});
+    EXPECT_EQ(files_in(beside("orbit")).size(), 5u);
+    EXPECT_GT(fs::file_size(beside("orbit.avi")), 1000u);
+}
+
+TEST_F(Render, PosesOfAFileAreThoseOfASequence) {
+    const Outcome run = patina({"run", kCubes, "--frames", "2", "--out", out(), "--quiet"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    render_cubes(beside("recorded"), {});
+    render_cubes(beside("given"), {"--poses", out() / "trajectory.txt"});
+    const auto recorded = read(beside("recorded") / "000001.png"), given = read(beside("given") / "000001.png");
+    size_t same = 0;
+    for (size_t i = 0; i < given.pixels().size(); ++i) same += given.pixels()[i] == recorded.pixels()[i];
+    EXPECT_GT(same, given.pixels().size() * 9 / 10) << "the file's poses have six decimals";
+}
+
+TEST_F(Render, OtherLightsLightTheSameAlbedo) {
+    const fs::path own = lights(8), dim = lights(2);
+    render_cubes(beside("own"), {"--lights", own});
+    render_cubes(beside("dim"), {"--lights", own, "--relight", dim});
+    render_cubes(beside("exposed"), {"--lights", own, "--relight", dim, "--exposure", "4"});
+    render_cubes(beside("kd"), {"--lights", own, "--show", "kd"});
+    render_cubes(beside("kd_dim"), {"--lights", own, "--relight", dim, "--show", "kd"});
+    const auto picture = [&](const char* name) { return read(beside(name) / "000000.png"); };
+    EXPECT_LT(brightness(picture("dim")), 0.8 * brightness(picture("own")));
+    EXPECT_NEAR(brightness(picture("exposed")), brightness(picture("own")), 2);
+    EXPECT_EQ(picture("kd").pixels(), picture("kd_dim").pixels()) << "albedo does not change with the lights of a view";
+}
+
+TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
+    const std::string views = beside("views");
+    EXPECT_THAT(complaint({}), HasSubstr("give --out FOLDER or --video FILE"));
+    EXPECT_THAT(complaint({"--out", views, "--orbit", "3", "--poses", "x"}, 2), HasSubstr("--orbit"));
+    EXPECT_THAT(complaint({"--out", views, "--orbit", "0"}, 2), HasSubstr("--orbit"));
+    EXPECT_THAT(complaint({"--out", views, "--orbit-seconds", "3"}, 2), HasSubstr("--orbit"));
+    EXPECT_THAT(complaint({"--out", views, "--extent", "0x3"}, 2), HasSubstr("WIDTHxHEIGHT"));
+    EXPECT_THAT(complaint({"--out", views, "--exposure", "-1"}, 2), HasSubstr("--exposure"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "beauty"}, 2), HasSubstr("beauty"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}), HasSubstr("need a reconstruction with lights"));
+    EXPECT_THAT(complaint({"--out", views, "--relight", "x.json"}), HasSubstr("need a reconstruction with lights"));
+    EXPECT_THAT(complaint({"--out", views, "--poses", beside("none.txt")}), HasSubstr("none.txt"));
+    write_text(beside("poses.txt"), "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n");
+    EXPECT_THAT(complaint({"--out", views, "--poses", beside("poses.txt")}), HasSubstr("poses.txt:2"));
+    EXPECT_THAT(complaint({"--video", beside("a.gif")}), HasSubstr("must be a .avi or a .mp4"));
+    EXPECT_THAT(complaint({"--out", views, "--video", beside("none") / "a.avi"}), HasSubstr("there is no folder"));
+    EXPECT_THAT(expect_failure(patina({"render", sequence(), "--out", sequence()})), HasSubstr("is not empty"));
+}
+
+RigidTransform looking(glm::dvec3 from, glm::dvec3 at) {
+    const glm::dvec3 z = glm::normalize(at - from), x = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), z));
+    return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(from, 1)};
+}
+
+TEST(Orbit, GoesAroundLevelAtTheCamerasDistanceAndHeight) {
+    // World y points down; cameras 2 m away and 1 m above, all on one side and tilted down.
+    const glm::dvec3 center(0.5, 0.25, 3);
+    std::vector<RigidTransform> recorded;
+    for (const double degrees : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
+        const double angle = degrees * std::numbers::pi / 180;
+        recorded.push_back(looking(center + glm::dvec3(2 * std::sin(angle), -1, -2 * std::cos(angle)), center));
+    }
+    const auto poses = tools::orbit_poses(recorded, center, 8);
+    ASSERT_EQ(poses.size(), 8u);
+    for (size_t i = 0; i < 8; ++i) {
+        const glm::dvec3 offset = glm::dvec3(poses[i][3]) - center;
+        EXPECT_NEAR(glm::length(offset), std::sqrt(5.0), 1e-6) << i;
+        EXPECT_NEAR(offset.y, -1, 0.05) << i << ": level but for what one-sided cameras cannot tell";
+        EXPECT_LT(rotation_defect(poses[i]), 1e-12);
+        EXPECT_NEAR(glm::dot(glm::dvec3(poses[i][2]), glm::normalize(-offset)), 1, 1e-12) << "looks at the centre";
+        EXPECT_GT(poses[i][1].y, 0.8) << "y down";
+    }
+    EXPECT_LT(glm::distance(glm::dvec3(poses[0][3]), glm::dvec3(recorded[0][3])), 0.1) << "begins at the first camera";
+    EXPECT_GT(glm::distance(glm::dvec3(poses[0][3]), glm::dvec3(poses[4][3])), 3.9) << "and is opposite half way";
+}
+
+TEST(Orbit, OneCameraIsEnoughAndContradictingOnesAreToldOff) {
+    const RigidTransform camera(1.0);
+    EXPECT_EQ(tools::orbit_poses(std::vector{camera}, {0, 0, 2}, 3).size(), 3u);
+    RigidTransform upside_down(1.0);
+    upside_down[0].x = upside_down[1].y = -1;
+    EXPECT_THROW(tools::orbit_poses(std::vector{camera, upside_down}, {0, 0, 2}, 3), Error);
+    // Straight above the centre.
+    const auto close = tools::orbit_poses(std::vector{camera}, {0, 0, 0}, 2);
+    EXPECT_NEAR(glm::length(glm::dvec3(close[0][3])), tools::kLeastOrbit_m, 1e-9);
+}
+
+TEST(Orbit, TheCentreIsTheMedianByCoordinate) {
+    EXPECT_EQ(tools::median_point(std::vector<glm::vec3>{{1, 5, 3}, {2, 4, 1}, {900, -900, 2}}), glm::dvec3(2, 4, 2));
+}
+
+}  // namespace
+}  // namespace patina::testing

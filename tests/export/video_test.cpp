@@ -1,0 +1,52 @@
+#include "tools/export/video.h"
+
+#include <gmock/gmock.h>
+#include <opencv2/videoio.hpp>
+
+#include "tests/export/temporary_folder.h"
+#include "tests/export/throws.h"
+
+namespace patina {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using test::throws_error_with;
+
+constexpr Extent2D kExtent{64, 48};
+const Drawing kRed(kExtent, {200, 30, 10}), kBlue(kExtent, {10, 30, 200});
+
+TEST(Video, HoldsItsFramesInOrder) {
+    const TemporaryFolder folder;
+    VideoWriter video(folder / "a.avi", kExtent, 25);
+    for (const Drawing& frame : {kRed, kBlue, kBlue}) video.write(frame);
+    EXPECT_FALSE(fs::exists(folder / "a.avi")) << "not before it is whole";
+    video.finish();
+
+    cv::VideoCapture capture((folder / "a.avi").string());
+    ASSERT_TRUE(capture.isOpened());
+    EXPECT_EQ(capture.get(cv::CAP_PROP_FPS), 25);
+    std::vector<cv::Vec3b> middles;
+    for (cv::Mat frame; capture.read(frame);) middles.push_back(frame.at<cv::Vec3b>(24, 32));
+    ASSERT_EQ(middles.size(), 3u);
+    EXPECT_GT(middles[0][2], middles[0][0] + 100) << "red first";
+    EXPECT_GT(middles[1][0], middles[1][2] + 100);
+    EXPECT_GT(middles[2][0], middles[2][2] + 100);
+}
+
+TEST(Video, OneThatIsNotFinishedLeavesNothing) {
+    const TemporaryFolder folder;
+    { VideoWriter(folder / "a.avi", kExtent, 25).write(kRed); }
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Video, SaysWhatItCannotWrite) {
+    const TemporaryFolder folder;
+    EXPECT_THAT([&] { VideoWriter(folder / "a.gif", kExtent, 25); }, throws_error_with("must be a .avi or a .mp4"));
+    EXPECT_THAT([&] { VideoWriter(folder / "none/a.avi", kExtent, 25); }, throws_error_with("there is no folder"));
+    fs::create_directory(folder / "b.avi");
+    EXPECT_THAT([&] { VideoWriter(folder / "b.avi", kExtent, 25); }, throws_error_with("it is a folder"));
+}
+
+}  // namespace
+}  // namespace patina

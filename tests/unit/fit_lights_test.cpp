@@ -1,0 +1,167 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "passes/lighting/search_lights.h"
+
+namespace patina {
+namespace {
+
+struct Lamp {
+    glm::vec3 place_m;
+    glm::vec3 intensity;
+};
+
+/// What a lamp of intensity 1 gives a surface that nothing shades.
+float received(const gpu::LightSample& sample, glm::vec3 place_m) {
+    const glm::vec3 offset_m = place_m - glm::vec3(sample.point_m);
+    const float distance_m = glm::length(offset_m);
+    const float cosine = glm::dot(offset_m, glm::vec3(sample.normal)) / distance_m;
+    return std::max(cosine, 0.0f) / (std::numbers::pi_v<float> * distance_m * distance_m);
+}
+
+/// Balls on a floor (y points down), of one albedo each, under lamps and ambient light: a sample per place, and
+/// highlights on the balls for viewers that see a lamp mirrored.
+class Balls {
+  public:
+    Balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise = 0) : lamps_(std::move(lamps)), ambient_(ambient) {
+        std::normal_distribution<float> normal(0, 1);
+        for (uint32_t place = 0; place < gpu::kLightSamples; ++place) {
+            if (place % 4 == 3) continue;  // not all places have a sample
+            gpu::LightSample sample = place % 2 == 0 ? on_floor() : on_ball(place / 2 % 3);
+            sample.diffuse *= 1 + noise * normal(random_);
+            drawn_[place] = sample;
+        }
+        for (uint32_t place = 0; place < 300; ++place) drawn_[gpu::kLightSamples + place] = highlight(place % 3);
+    }
+
+    const std::vector<gpu::LightSample>& drawn() const { return drawn_; }
+
+    ReceivedLight received_from(const LitSurface& surface, glm::vec3 place_m) const {
+        std::vector<float> row;
+        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) row.push_back(received(drawn_[i], place_m));
+        return surface.received(row);
+    }
+
+    TryLamps try_lamps(const LitSurface& surface) const {
+        return [this, &surface](std::span<const glm::vec3> places_m, uint32_t) {
+            std::vector<TrialLamp> lamps;
+            for (const glm::vec3& place_m : places_m)
+                lamps.push_back({place_m, received_from(surface, place_m), surface.unexplained(place_m)});
+            return lamps;
+        };
+    }
+
+  private:
+    float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
+
+    gpu::LightSample lit(glm::vec3 point_m, glm::vec3 normal, glm::vec3 kd) const {
+        gpu::LightSample sample{glm::vec4(point_m, 10), glm::vec4(normal, 0), glm::vec4(0), glm::vec4(0)};
+        glm::vec3 irradiance = ambient_;
+        for (const Lamp& lamp : lamps_) irradiance += lamp.intensity * received(sample, lamp.place_m);
+        sample.diffuse = glm::vec4(kd * irradiance, 0);
+        return sample;
+    }
+
+    gpu::LightSample on_floor() { return lit({uniform(-2, 2), 0, uniform(-2, 2)}, {0, -1, 0}, {0.34f, 0.33f, 0.3f}); }
+
+    gpu::LightSample on_ball(uint32_t ball) {
+        const glm::vec3 normal =
+            glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 0.3f), uniform(-1, 1)) + glm::vec3(0, 1e-3f, 0));
+        return lit(kCenters[ball] + 0.3f * normal, normal, kAlbedos[ball]);
+    }
+
+    /// Seen from above, within a few degrees of the mirrored direction.
+    gpu::LightSample highlight(uint32_t ball) {
+        const Lamp& lamp = lamps_[static_cast<size_t>(uniform(0, 0.999f) * static_cast<float>(lamps_.size()))];
+        const glm::vec3 normal = glm::normalize(glm::vec3(uniform(-0.7f, 0.7f), -1, uniform(-0.7f, 0.7f)));
+        gpu::LightSample sample = lit(kCenters[ball] + 0.3f * normal, normal, kAlbedos[ball]);
+        const glm::vec3 to_light = glm::normalize(lamp.place_m - glm::vec3(sample.point_m));
+        if (glm::dot(to_light, normal) < 0.4f) return highlight(ball);
+        const glm::vec3 off(uniform(-0.05f, 0.05f), uniform(-0.05f, 0.05f), uniform(-0.05f, 0.05f));
+        const glm::vec3 viewer = glm::normalize(2 * glm::dot(to_light, normal) * normal - to_light + off);
+        sample.highlight = glm::vec4(viewer, 0.3f);
+        return sample;
+    }
+
+    inline static const glm::vec3 kCenters[] = {{-0.9f, -0.3f, -0.2f}, {0.2f, -0.3f, 0.6f}, {0.8f, -0.3f, -0.7f}};
+    inline static const glm::vec3 kAlbedos[] = {{0.5f, 0.1f, 0.08f}, {0.1f, 0.4f, 0.12f}, {0.1f, 0.2f, 0.6f}};
+
+    std::vector<Lamp> lamps_;
+    glm::vec3 ambient_;
+    std::mt19937 random_{5};
+    std::vector<gpu::LightSample> drawn_ = std::vector<gpu::LightSample>(2 * gpu::kLightSamples);
+};
+
+const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f, -1.6f, 0.6f}, {5, 5, 5.5f}}};
+
+TEST(FitIntensities, RatiosOfLampsAndAmbientLightWhereAlbedoIsUnknown) {
+    const Balls balls(kTwoLamps, glm::vec3(0.3f));
+    const LitSurface surface(balls.drawn(), 1);
+    std::vector<ReceivedLight> received;
+    for (const Lamp& lamp : kTwoLamps) received.push_back(balls.received_from(surface, lamp.place_m));
+    for (int c = 0; c < 3; ++c) {
+        const auto fitted = surface.fit(received, 10, surface.size(), static_cast<LightChannel>(c));
+        const double factor = fitted.intensities[0] / kTwoLamps[0].intensity[c];
+        EXPECT_NEAR(fitted.intensities[1] / factor, kTwoLamps[1].intensity[c], 0.05);
+        EXPECT_NEAR(fitted.intensities[2] / factor, 0.3, 0.005);
+        EXPECT_LT(fitted.misfit, 1e-4);
+    }
+}
+
+TEST(FitIntensities, ALampThatIsNotThereGetsNothing) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    std::vector<ReceivedLight> received;
+    for (const Lamp& lamp : kTwoLamps) received.push_back(balls.received_from(surface, lamp.place_m));
+    received.push_back(balls.received_from(surface, {0, -2.5f, 2}));
+    received.push_back(balls.received_from(surface, {0, 5, 0}));  // below the floor: reaches next to nothing
+    const auto fitted = surface.fit(received, 10, surface.size());
+    for (const size_t absent : {2u, 3u}) {
+        EXPECT_LT(fitted.intensities[absent] * received[absent]->mean, 0.02) << absent;
+        EXPECT_GE(fitted.intensities[absent], 0);
+    }
+}
+
+TEST(FitIntensities, OutliersCountLess) {
+    const Balls balls(kTwoLamps, glm::vec3(0.1f));
+    std::vector<gpu::LightSample> drawn = balls.drawn();
+    for (uint32_t place = 0; place < gpu::kLightSamples; place += 12) drawn[place].diffuse *= 2.5f;
+    const LitSurface surface(drawn, 1);
+    std::vector<ReceivedLight> received;
+    for (const Lamp& lamp : kTwoLamps) received.push_back(balls.received_from(surface, lamp.place_m));
+    const auto fitted = surface.fit(received, 10, surface.size());
+    EXPECT_NEAR(fitted.intensities[1] / fitted.intensities[0], 5.1667 / 7.5, 0.03);
+}
+
+TEST(FitIntensities, HighlightsAreExplainedByTheLampThatTheyMirror) {
+    const Balls balls(kTwoLamps, glm::vec3(0));
+    const LitSurface surface(balls.drawn(), 1);
+    const auto first = surface.unexplained(kTwoLamps[0].place_m), second = surface.unexplained(kTwoLamps[1].place_m);
+    ASSERT_EQ(first.size(), 300u);
+    for (size_t i = 0; i < first.size(); ++i) EXPECT_LT(std::min(first[i], second[i]), 0.1f) << i;
+    for (const float share : surface.unexplained({0, 3, 0})) EXPECT_GT(share, 0.9f);
+}
+
+TEST(SearchLights, FindsLampsFromShadingAndHighlights) {
+    const Balls balls(kTwoLamps, glm::vec3(0.05f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const auto found = search_lights(surface, balls.try_lamps(surface), {}, {});
+    ASSERT_EQ(found.size(), 2u);
+    for (const Lamp& lamp : kTwoLamps) {
+        const float off_m =
+            std::min(glm::distance(found[0].place_m, lamp.place_m), glm::distance(found[1].place_m, lamp.place_m));
+        EXPECT_LT(off_m, 0.15f);
+    }
+}
+
+TEST(SearchLights, NothingSeenNothingFound) {
+    const LitSurface surface(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
+    EXPECT_EQ(surface.size(), 0u);
+    EXPECT_TRUE(search_lights(surface, {}, {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace patina
