@@ -230,7 +230,7 @@ void compress() {
     }
 }
 
-// At the start of a sweep: what the last one counted, and which labels nothing holds any more.
+// When a sweep has ended: what it counted, and which labels nothing holds any more.
 void end_sweep() {
     const uvec2 own = own_items(counters.high_water - 1u);
     uint freed = 0u, pruned = 0u;
@@ -273,6 +273,20 @@ void end_sweep() {
     join();
 }
 
+void propagate(uint count) {
+    find_best(overlap_list[0]);
+    assign_propagated(count);
+    join();
+    if (gl_LocalInvocationIndex == 0u) count_pairs(count);
+    join();
+    discount_pairs();
+    join();
+    if (merged == 0u) return;
+    compress();
+    join();
+    for (uint s = 1u + gl_LocalInvocationIndex; s <= count; s += kGroup) segment_labels[s] = parents[segment_labels[s]];
+}
+
 void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint count = segment_count.segments;
@@ -286,21 +300,12 @@ void main() {
         counters.overflows += overflow ? 1u : 0u;
     }
     join();
-    if (frame.stamp % kSweepFrames == 0u) end_sweep();
-    if (overflow) return;
     if (frame.given != 0u) {
         assign_given(count);
-        return;
+    } else if (!overflow) {
+        propagate(count);
     }
-    find_best(overlap_list[0]);
-    assign_propagated(count);
     join();
-    if (lane == 0u) count_pairs(count);
-    join();
-    discount_pairs();
-    if (merged == 0u) return;
-    join();
-    compress();
-    join();
-    for (uint s = 1u + lane; s <= count; s += kGroup) segment_labels[s] = parents[segment_labels[s]];
+    // After the assignment: what a segment of this frame has is not given up.
+    if (frame.stamp % kSweepFrames == 0u) end_sweep();
 }

@@ -217,14 +217,16 @@ TEST_F(AssignLabels, ALabelIsFreeAgainOnlyAfterAWholeSweepWithoutIt) {
     assign({});
     const uint32_t next = assign({{500, {}}})[0];
     EXPECT_EQ(next, 0u) << "pruned one sweep ago";
-    while (params_.stamp < 4 * gpu::kSweepFrames - 1) assign({});
+    while (params_.stamp < 4 * gpu::kSweepFrames) assign({});
     EXPECT_THAT(assign({{500, {}}}), ElementsAre(1));
 }
 
 TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
-    start(40);
+    constexpr uint32_t kCapacity = 12;
+    start(kCapacity);
     SegmentBook::Rules rules;
-    rules.capacity = 40;
+    rules.capacity = kCapacity;
+    rules.prune_frames = params_.prune_frames = 1;
     SegmentBook book(rules);
     std::mt19937 random(3);
     const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
@@ -234,12 +236,12 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
         for (SeenSegment& segment : seen) {
             segment.pixels = 20 + below(300);
             for (uint32_t n = below(4); n > 0; --n) {
-                const uint32_t label = book.root(1 + below(39));
+                const uint32_t label = book.root(1 + below(kCapacity - 1));
                 if (label != 0) segment.shared[label] = 1 + below(segment.pixels / 2);
             }
         }
         std::map<uint32_t, uint32_t> voxels;
-        for (uint32_t label = 1; label < 40; ++label) voxels[label] = below(12);
+        for (uint32_t label = 1; label < kCapacity; ++label) voxels[label] = below(12);
         change([&](uint32_t label, gpu::SegmentLabel& known) {
             known.tally = voxels[label];
             known.chroma_samples = 1;
@@ -250,8 +252,8 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
         ASSERT_EQ(counters_.live, book.live_labels()) << "frame " << i;
     }
     EXPECT_GT(counters_.merged, 3u);
-    EXPECT_GT(counters_.pruned, 3u);
-    EXPECT_GT(counters_.created, 45u) << "labels were handed out again";
+    EXPECT_GT(counters_.pruned, 0u);
+    EXPECT_GT(counters_.created, kCapacity + 5) << "labels were handed out again";
 }
 
 }  // namespace

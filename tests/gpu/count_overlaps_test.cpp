@@ -27,6 +27,8 @@ class CountOverlaps : public GpuTest {
         SegmentTable table(device(), 65535);
         graph::Frame frame = runner().begin();
         table.reset(frame);
+        run(std::move(frame));
+        frame = runner().begin();
         SegmentTableIds ids = table.import(frame);
         const auto upload = [&](const char* name, vulkan::Format format, const auto& pixels) {
             return frame.upload(name, {extent, format}, std::as_bytes(std::span(pixels)));

@@ -30,8 +30,6 @@ class SampleRecords : public GpuTest {
 
     Sampled sample(const std::vector<gpu::VoxelRecord>& records, uint32_t seed, uint32_t draw_seed) {
         graph::Frame frame = runner().begin();
-        map_.reset(frame, glm::dvec3(0));
-        samples_.reset(frame);
         ObservationMapIds ids = map_.import(frame);
         gpu::MapCounters counters{};
         counters.high_water = static_cast<uint32_t>(records.size());
@@ -39,6 +37,8 @@ class SampleRecords : public GpuTest {
         ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(records)), false);
         SegmentSampleIds sampled = samples_.import(frame);
         add_sample_records(frame, map_, ids, samples_, sampled, 4, seed);
+        ObservationMap::keep(frame, ids);
+        SegmentSamples::keep(frame, sampled);
         const graph::Readback counts = frame.read_back(sampled.counts), kept = frame.read_back(sampled.kept),
                               drawn =
                                   frame.read_back(add_draw_records(frame, ids, samples_, sampled, kDraws, draw_seed));

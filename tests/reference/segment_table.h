@@ -33,7 +33,6 @@ class SegmentBook {
     std::vector<uint32_t> frame(const std::vector<SeenSegment>& segments, Alike&& alike,
                                 const std::map<uint32_t, uint32_t>& voxels = {}) {
         ++now_;
-        if (now_ % rules_.sweep_frames == 0) end_sweep(voxels);
         std::vector<uint32_t> labels = assign(segments);
         for (const auto& [low, high] : joined(segments)) {
             if (!live(low) || !live(high) || counted_.contains({low, high})) continue;
@@ -42,6 +41,7 @@ class SegmentBook {
         }
         discount();
         for (uint32_t& label : labels) label = root(label);
+        if (now_ % rules_.sweep_frames == 0) end_sweep(voxels);
         return labels;
     }
 
