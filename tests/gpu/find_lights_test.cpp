@@ -182,9 +182,10 @@ TEST_F(FindLights, WithoutDepthTheyAreTriangulated) {
 }
 
 TEST_F(FindLights, OneFrameMatchesTheReference) {
-    for (const bool with_depth : {true, false}) {
-        Room room = three_lamps();
-        room.lamps_have_depth = with_depth;
+    Room with_depth = three_lamps(), without_depth = three_lamps(), flying = three_lamps();
+    without_depth.lamps_have_depth = false;
+    flying.flying_rim = 0.2;
+    for (const Room& room : {with_depth, without_depth, flying}) {
         std::mt19937 random(3);
         const Pictures pictures = look(room, kCamera, pose(10), random);
         const LightTracks tracks(device());
