@@ -12,7 +12,8 @@ layout(std430, binding = 2) readonly buffer Emitters { Emitter emitters[]; };
 layout(std430, binding = 3) writeonly buffer Modes { EmitterMode modes[]; };
 #include "lib/luminance.glsl"
 
-const uint kIterations = 12u;
+const uint kMaxIterations = 12u;
+const float kStill = 1e-5;  // a shift by less than this share of the kernel is the last
 
 shared vec4 partial[kMeanShiftGroup];
 
@@ -53,7 +54,7 @@ void main() {
     const bool has_depth = start.bearing_range.w > 0.0;
     vec3 mode = point_of(start, camera_m);
     float weight = 0.0;
-    for (uint i = 0u; i < kIterations; ++i) {
+    for (uint i = 0u; i < kMaxIterations; ++i) {
         vec4 own = vec4(0.0);
         for (uint k = lane; k < count; k += kMeanShiftGroup) {
             const Emitter e = emitters[k];
@@ -64,8 +65,10 @@ void main() {
             }
         }
         const vec4 sum = sum_of_group(own);
-        mode += sum.xyz / max(sum.w, 1e-30);
+        const vec3 shift = sum.xyz / max(sum.w, 1e-30);
+        mode += shift;
         weight = sum.w;
+        if (length(shift) <= kStill * params.bandwidth_m) break;
     }
     float own_sr = 0.0;
     for (uint k = lane; k < count; k += kMeanShiftGroup) {
