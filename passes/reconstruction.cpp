@@ -12,6 +12,7 @@
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/visible_blocks.h"
 #include "passes/sample_mesh.h"
+#include "passes/shading/restore_detail.h"
 #include "passes/surface/extract_surface.h"
 
 namespace patina {
@@ -213,7 +214,12 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.color_ = graph.read_back(color);
     if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, surface_of(visible, model)));
     if (reflectance_) {
-        const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
+        const auto [predicted, segments] = reflectance_->add_predict(graph, ids, visible, model);
+        const RestoreDetailInputs inputs{model.position_m, model.normal, color, static_cast<float>(camera.fx),
+                                         settings_.reflectance->voxel_m};
+        // Under other lights than those of the frames, their colours would bring back the shadows of these.
+        const bool detailed = settings_.fusion.color && reflectance_->settings().refine.albedo;
+        const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
         pending.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
                                 graph.read_back(seen.rgb), graph.read_back(seen.light),    graph.read_back(segments)};
     }

@@ -182,14 +182,14 @@ void main() {
         const bool has_entry = segment != 0u && segment < params.materials;
         gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
         found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
+        if (header.count > 32u) load_further_visibility();
+        normalise_shares();
+        const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
+        const Shade seen = shade(hit.xyz, facing, point.to_viewer, found.kd, gloss);
+        received = vec4(seen.light, seen.arrives);
         if (found.known) {
-            if (header.count > 32u) load_further_visibility();
-            normalise_shares();
-            const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
             known_kd = vec4(found.kd, 1.0);
-            const Shade seen = shade(hit.xyz, facing, point.to_viewer, found.kd, gloss);
             shaded = vec4(seen.rgb, 1.0);
-            received = vec4(seen.light, seen.arrives);
         }
     }
     imageStore(kd, pixel, known_kd);
