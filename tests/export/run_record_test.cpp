@@ -21,8 +21,9 @@ std::vector<std::string> keys(const ordered_json& object) {
 
 TEST(RunRecord, KeysKeepTheirOrder) {
     const ordered_json run = ordered_json::parse(run_json(test::full_record()));
-    EXPECT_THAT(keys(run), ElementsAre("format", "version", "device", "driver", "seed", "settings", "sequence",
-                                       "frames", "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
+    EXPECT_THAT(keys(run),
+                ElementsAre("format", "version", "device", "driver", "seed", "settings", "lights", "sequence", "frames",
+                            "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
     EXPECT_THAT(keys(run["settings"]), ElementsAre("voxel_mm", "truncation_vox", "note"));
     EXPECT_THAT(keys(run["passes"]), ElementsAre("input.filter_depth", "fusion.integrate", "fusion.raycast"));
     EXPECT_THAT(keys(ordered_json::parse(run_json({}))), keys(run));
