@@ -6,6 +6,7 @@
 #include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
 #include "passes/model/voxel_map.h"
+#include "shared/lights.h"
 
 namespace patina {
 
@@ -19,7 +20,8 @@ struct PredictRadianceInputs {
     graph::BufferId materials;  ///< gpu::SegmentMaterial[material_count]
     graph::BufferId segments;   ///< gpu::SegmentAlbedo[material_count] (add_average_segments)
     uint32_t material_count = 0;
-    bool shadows = true;  ///< false: every light reaches every surface, as in the paper
+    uint32_t most_lights = gpu::kMaxPointLights;  ///< no fewer than `lights` has; few take a faster shader
+    bool shadows = true;                          ///< false: every light reaches every surface, as in the paper
     MapAccess access = MapAccess::kStorage;
 };
 
@@ -31,7 +33,7 @@ struct PredictedImages {
         ks_alpha;        ///< W x H rgba16f: specular albedo and Ward roughness of the segment; 0 without a material
     graph::ImageId rgb;  ///< W x H rgba16f: linear pixel value; a is 1 where kd is known, else all is 0
     /// W x H rgba16f: what kd multiplies in rgb, the irradiance over pi with shadows and ambient term; a: the part of
-    /// the lamps' light that shadows leave, 0 on surfaces that face none. 0 where kd is not known.
+    /// the lamps' light that shadows leave, 0 on surfaces that face none; also where kd is not known.
     graph::ImageId light;
 };
 

@@ -56,6 +56,14 @@ TEST(RunRecord, EveryFieldArrives) {
     EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
 }
 
+TEST(RunRecord, ThePoolOfObservationsIsToldWhereThereIsOne) {
+    RunRecord record = test::full_record();
+    record.observation_pool = {900, 1000, 7, 3};
+    EXPECT_EQ(ordered_json::parse(run_json(record))["observation_pool"],
+              ordered_json(
+                  {{"records_used", 900}, {"records_capacity", 1000}, {"records_refused", 7}, {"blocks_refused", 3}}));
+}
+
 TEST(RunRecord, GainsAndHeldOutPicturesAreToldWhereThereAreAny) {
     RunRecord record = test::full_record();
     record.color_gains = {{0.5, 1, 2}, {0.25, 1, 1.5}, {0.75, 1, 4}};
