@@ -12,6 +12,7 @@
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/visible_blocks.h"
 #include "passes/sample_mesh.h"
+#include "passes/shading/restore_detail.h"
 #include "passes/surface/extract_surface.h"
 
 namespace patina {
@@ -186,8 +187,14 @@ void Reconstruction::add(const RgbdFrame& frame) {
     VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = fuse(graph, ids, frame);
     VoxelMap::keep(graph, ids);
-    pending_counts_.push_back({graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}});
-    if (segmentation_) pending_counts_.back().segments = graph.read_back(segmentation_->table().import(graph).counters);
+    PendingCounts& pending = pending_counts_.emplace_back(
+        PendingCounts{graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}, {}, {}});
+    if (segmentation_) pending.segments = graph.read_back(segmentation_->table().import(graph).counters);
+    if (reflectance_) {
+        const ObservationMapIds observed = reflectance_->observations().import(graph);
+        pending.observed_blocks = graph.read_back(observed.block_counters);
+        pending.observed_records = graph.read_back(observed.record_counters);
+    }
     runner_.submit(std::move(graph));
     world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
@@ -207,7 +214,12 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     pending.color_ = graph.read_back(color);
     if (segmentation_) pending.label_ = graph.read_back(segmentation_->add_view(graph, surface_of(visible, model)));
     if (reflectance_) {
-        const auto [seen, segments] = reflectance_->add_predict(graph, ids, visible, model);
+        const auto [predicted, segments] = reflectance_->add_predict(graph, ids, visible, model);
+        const RestoreDetailInputs inputs{model.position_m, model.normal, color, static_cast<float>(camera.fx),
+                                         settings_.reflectance->voxel_m};
+        // Under other lights than those of the frames, their colours would bring back the shadows of these.
+        const bool detailed = settings_.fusion.color && reflectance_->settings().refine.albedo;
+        const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
         pending.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
                                 graph.read_back(seen.rgb), graph.read_back(seen.light),    graph.read_back(segments)};
     }
@@ -234,6 +246,10 @@ void Reconstruction::take_counts() {
             segment_counters_ = segments->as<gpu::SegmentCounters>().front();
             label_stability_.add(segment_counters_);
         }
+        if (const auto& blocks = pending_counts_.front().observed_blocks) {
+            observation_counters_.blocks = blocks->as<gpu::MapCounters>().front();
+            observation_counters_.records = pending_counts_.front().observed_records->as<gpu::MapCounters>().front();
+        }
         pending_counts_.pop_front();
     }
 }
@@ -241,6 +257,11 @@ void Reconstruction::take_counts() {
 const gpu::MapCounters& Reconstruction::counters() {
     take_counts();
     return counters_;
+}
+
+const ObservationCounters& Reconstruction::observation_counters() {
+    take_counts();
+    return observation_counters_;
 }
 
 const LabelStability& Reconstruction::label_stability() {

@@ -38,6 +38,12 @@ struct ReconstructionSettings {
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
+/// How full the pools of the observations are.
+struct ObservationCounters {
+    gpu::MapCounters blocks{};
+    gpu::MapCounters records{};  ///< their block is a voxel's record
+};
+
 /// One RGB-D frame with its pose. The pixels are read within add().
 struct RgbdFrame {
     DepthInput depth;
@@ -116,6 +122,9 @@ class Reconstruction {
     /// The map's counters as of at most two frames ago; exact after wait().
     const gpu::MapCounters& counters();
 
+    /// The observations' counters, likewise; zero without reflectance.
+    const ObservationCounters& observation_counters();
+
     /// How many blocks the depth camera saw in the frame that counters() tells of.
     uint32_t visible_blocks();
 
@@ -168,10 +177,11 @@ class Reconstruction {
     uint32_t frames_ = 0;
     struct PendingCounts {
         graph::Readback counters, visible_blocks;
-        std::optional<graph::Readback> segments;
+        std::optional<graph::Readback> segments, observed_blocks, observed_records;
     };
     std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
+    ObservationCounters observation_counters_;
     uint32_t visible_blocks_ = 0;
     gpu::SegmentCounters segment_counters_{};
     LabelStability label_stability_;

@@ -1,5 +1,7 @@
 #include "passes/reflectance_model.h"
 
+#include <cmath>
+
 #include "passes/shading/pack_records.h"
 #include "shared/voxel_map.h"
 
@@ -16,6 +18,14 @@ ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceMod
 }
 
 }  // namespace
+
+void set_observation_voxel(ReflectanceModelSettings& settings, float voxel_m) {
+    const ReflectanceModelSettings defaults;
+    const float finer = defaults.voxel_m / voxel_m;
+    settings.voxel_m = voxel_m;
+    settings.capacity_records =
+        static_cast<uint32_t>(std::lround(static_cast<float>(defaults.capacity_records) * finer * finer));
+}
 
 ReflectanceModel::ReflectanceModel(vulkan::Device& device, const VoxelMap& map,
                                    const ReflectanceModelSettings& settings)

@@ -23,6 +23,10 @@ struct ReflectanceModelSettings {
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included
 };
 
+/// Chooses the size of the observations' voxels, and with it the records that the default's surface takes then: a
+/// surface crosses voxels by the square of their number per metre.
+void set_observation_voxel(ReflectanceModelSettings& settings, float voxel_m);
+
 /// What a camera sees of the reflectance.
 struct PredictedView {
     PredictedImages images;

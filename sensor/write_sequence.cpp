@@ -134,8 +134,10 @@ void SequenceWriter::write_lists() const {
 
 void SequenceWriter::write_sequence_file() const {
     Json color = to_json(info_.color);
-    color["exposure_s"] = exposures_.front().exposure_s;
-    color["gain"] = exposures_.front().gain;
+    if (info_.exposure_known) {
+        color["exposure_s"] = exposures_.front().exposure_s;
+        color["gain"] = exposures_.front().gain;
+    }
     Json depth = to_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;

@@ -155,6 +155,11 @@ class Run {
         const gpu::MapCounters& counters = reconstruction_.counters();
         const uint64_t capacity = options_.settings.map.capacity_blocks;
         record.voxel_pool = {fusion_.blocks_used(), capacity, counters.refused_blocks};
+        const ObservationCounters& observed = reconstruction_.observation_counters();
+        if (const auto& reflectance = fusion_.settings().reflectance) {
+            record.observation_pool = {observed.records.high_water, reflectance->capacity_records,
+                                       observed.records.refused_blocks, observed.blocks.refused_blocks};
+        }
         for (const auto& pool : reconstruction_.map().memory()) {
             record.memory.push_back({pool.name, pool.bytes, fusion_.blocks_used(), capacity});
         }
@@ -199,6 +204,19 @@ class Run {
                 fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
                             "map.capacity_blocks, or map.voxel_m",
                             counters.refused_blocks, options_.settings.map.capacity_blocks));
+        }
+        const ObservationCounters& observed = reconstruction_.observation_counters();
+        if (const uint32_t refused = observed.records.refused_blocks; refused > 0) {
+            list.push_back(
+                fmt::format("the pool of observed voxels was full: {} were refused, its capacity is {}; raise "
+                            "reflectance.capacity_records, or reflectance.voxel_m",
+                            refused, fusion_.settings().reflectance->capacity_records));
+        }
+        if (const uint32_t refused = observed.blocks.refused_blocks; refused > 0) {
+            list.push_back(
+                fmt::format("the pool of observed blocks was full: {} were refused, its capacity is {}; raise "
+                            "reflectance.capacity_blocks",
+                            refused, fusion_.settings().reflectance->capacity_blocks));
         }
         if (const uint32_t refused = reconstruction_.segment_counters().refused; refused > 0) {
             list.push_back(fmt::format(

@@ -100,7 +100,7 @@ void SequenceFusion::prepare_reflectance(ReflectanceModel& reflectance) {
 
 void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& after_frame) {
     Progress progress(info_.frames, options_.quiet);
-    bool warned_full = false;
+    bool warned_full = false, warned_observations = false;
     for (uint32_t done = 0; done < info_.frames; ++done) {
         stop_if_interrupted();
         const auto reading = source_->next();
@@ -116,6 +116,15 @@ void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& a
             progress.say(
                 fmt::format("warning: the voxel pool of {} blocks is full; new surface is left out from here on",
                             settings().map.capacity_blocks));
+        }
+        const ObservationCounters& observed = reconstruction_->observation_counters();
+        if (!warned_observations && observed.records.refused_blocks + observed.blocks.refused_blocks > 0) {
+            warned_observations = true;
+            progress.say(fmt::format(
+                "warning: the pool of {} {} is full; the reflectance of new surface is left out from here on",
+                observed.records.refused_blocks > 0 ? settings().reflectance->capacity_records
+                                                    : settings().reflectance->capacity_blocks,
+                observed.records.refused_blocks > 0 ? "observed voxels" : "observed blocks"));
         }
         progress.update(done + 1, fmt::format("{} blocks", blocks_used()));
     }

@@ -12,6 +12,7 @@ const float kOnPlaneVox = 0.5;
 const float kOffPlaneVox = 1.0;
 const float kLeastWeight = 1e-6;     // trilinear shares below it are none
 const float kOtherSurface2 = 100.0;  // added to squared distances: what is of another surface comes last
+const float kOpposedCosine = -0.5;   // below it a surface is the back of something thin, and tells nothing
 const float kNowhere2 = 1e9;         // farther than every record, squared
 
 struct SurfacePoint {
@@ -20,12 +21,17 @@ struct SurfacePoint {
     vec3 to_viewer;
 };
 
+// Between the point's normal and a record's. Where the model has no normal, all that faces the viewer agrees, and
+// nothing else.
+float cosine_with(SurfacePoint point, vec3 normal) {
+    if (point.normal != vec3(0.0)) return dot(point.normal, normal);
+    return dot(point.to_viewer, normal) > 0.0 ? 1.0 : -1.0;
+}
+
 // How much the surface of a record is that of the point, 0 to 1; `surface` is packed_surface, `away_vox` leads from the
 // record's voxel to the point.
 float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
-    const bool known = point.normal != vec3(0.0);
-    // Where the model has no normal, all that faces the viewer will do.
-    const float cosine = known ? dot(point.normal, surface.xyz) : dot(point.to_viewer, surface.xyz) > 0.0 ? 1.0 : 0.0;
+    const float cosine = cosine_with(point, surface.xyz);
     const float off = abs(dot(surface.xyz, away_vox) - surface.w);
     return clamp((cosine - kOtherCosine) / (kAgreeingCosine - kOtherCosine), 0.0, 1.0) *
            clamp((kOffPlaneVox - off) / (kOffPlaneVox - kOnPlaneVox), 0.0, 1.0);
@@ -79,8 +85,10 @@ NearestRecords nearest_after(Reflectance found) {
 
 // Looks at a record, or at kNoRecord with any content. Without branches, which cost software devices both sides.
 void look_at_record(inout NearestRecords nearest, SurfacePoint point, uint record, uvec4 content, vec3 away_vox) {
-    const bool same = same_surface(point, away_vox, packed_surface(content)) > 0.0;
-    const float distance2 = record == kNoRecord ? kNowhere2 : dot(away_vox, away_vox) + (same ? 0.0 : kOtherSurface2);
+    const vec4 surface = packed_surface(content);
+    const bool same = same_surface(point, away_vox, surface) > 0.0;
+    const bool tells = record != kNoRecord && cosine_with(point, surface.xyz) > kOpposedCosine;
+    const float distance2 = tells ? dot(away_vox, away_vox) + (same ? 0.0 : kOtherSurface2) : kNowhere2;
     const float known2 = packed_is_known(content) ? distance2 : kNowhere2;
     const float labelled2 = packed_has_label(content) ? distance2 : kNowhere2;
     nearest.known = known2 < nearest.known2 ? record : nearest.known;

@@ -207,7 +207,7 @@ void main() {
         const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss);
         known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
-        received = found.known ? vec4(seen.light, seen.arrives) : vec4(0.0);
+        received = vec4(seen.light, seen.arrives);
     }
     imageStore(kd, pixel, known_kd);
     imageStore(label, pixel, uvec4(segment));

@@ -169,6 +169,32 @@ TEST_F(BadInput, FullVoxelPoolEndsWell) {
     EXPECT_GT(record["totals"]["triangles"], 0);
 }
 
+TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
+    write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
+    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "2", "--lights", beside("l.json"), "--out",
+                                    out(), "--set", "reflectance.capacity_records=1000"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    const nlohmann::json record = record_of(out());
+    EXPECT_GT(record["observation_pool"]["records_used"], 900);
+    EXPECT_LE(record["observation_pool"]["records_used"], 1000);
+    const uint64_t refused = record["observation_pool"]["records_refused"];
+    EXPECT_GT(refused, 0u);
+    EXPECT_THAT(outcome.err, HasSubstr("the pool of 1000 observed voxels is full"));
+    EXPECT_THAT(outcome.out, HasSubstr("observed voxels was full: " + std::to_string(refused) + " were refused"));
+    EXPECT_THAT(record["warnings"].dump(), HasSubstr("reflectance.capacity_records"));
+}
+
+TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {
+    write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
+    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"),
+                                    "--observation-mm", "10", "--out", out(), "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    const nlohmann::json record = record_of(out());
+    EXPECT_EQ(record["settings"]["reflectance.voxel_m"], 0.01);
+    EXPECT_EQ(record["observation_pool"]["records_capacity"], 4 * 262144);
+    EXPECT_EQ(record["observation_pool"]["records_refused"], 0);
+}
+
 const Program::Environment kNoDriver{{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
 
 TEST_F(BadInput, NoDevice) {

@@ -60,20 +60,21 @@ class Render : public RunFolderTest {
 };
 
 TEST_F(Render, RecordedPosesOrbitAndVideo) {
-    render_cubes(beside("recorded"), {});
+    render_cubes(beside("recorded"), {"--lighting", "none"});
     EXPECT_EQ(files_in(beside("recorded")).size(), 2u);
     EXPECT_EQ(read(beside("recorded") / "000001.png").extent(), (Extent2D{64, 48}));
 
-    render_cubes(beside("orbit"), {"--orbit", "5", "--orbit-seconds", "2", "--video", beside("orbit.avi")});
+    render_cubes(beside("orbit"),
+                 {"--lighting", "none", "--orbit", "5", "--orbit-seconds", "2", "--video", beside("orbit.avi")});
     EXPECT_EQ(files_in(beside("orbit")).size(), 5u);
     EXPECT_GT(fs::file_size(beside("orbit.avi")), 1000u);
 }
 
 TEST_F(Render, PosesOfAFileAreThoseOfASequence) {
-    const Outcome run = patina({"run", kCubes, "--frames", "2", "--out", out(), "--quiet"});
+    const Outcome run = patina({"run", kCubes, "--frames", "2", "--lighting", "none", "--out", out(), "--quiet"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    render_cubes(beside("recorded"), {});
-    render_cubes(beside("given"), {"--poses", out() / "trajectory.txt"});
+    render_cubes(beside("recorded"), {"--lighting", "none"});
+    render_cubes(beside("given"), {"--lighting", "none", "--poses", out() / "trajectory.txt"});
     const auto recorded = read(beside("recorded") / "000001.png"), given = read(beside("given") / "000001.png");
     size_t same = 0;
     for (size_t i = 0; i < given.pixels().size(); ++i) same += given.pixels()[i] == recorded.pixels()[i];

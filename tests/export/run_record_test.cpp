@@ -21,8 +21,9 @@ std::vector<std::string> keys(const ordered_json& object) {
 
 TEST(RunRecord, KeysKeepTheirOrder) {
     const ordered_json run = ordered_json::parse(run_json(test::full_record()));
-    EXPECT_THAT(keys(run), ElementsAre("format", "version", "device", "driver", "seed", "settings", "sequence",
-                                       "frames", "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
+    EXPECT_THAT(keys(run),
+                ElementsAre("format", "version", "device", "driver", "seed", "settings", "lights", "sequence", "frames",
+                            "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
     EXPECT_THAT(keys(run["settings"]), ElementsAre("voxel_mm", "truncation_vox", "note"));
     EXPECT_THAT(keys(run["passes"]), ElementsAre("input.filter_depth", "fusion.integrate", "fusion.raycast"));
     EXPECT_THAT(keys(ordered_json::parse(run_json({}))), keys(run));
@@ -53,6 +54,14 @@ TEST(RunRecord, EveryFieldArrives) {
     EXPECT_EQ(run["passes"].at("fusion.integrate"),
               ordered_json({{"count", 298}, {"min_ms", 3.2}, {"median_ms", 4.75}, {"max_ms", 61.0}}));
     EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
+}
+
+TEST(RunRecord, ThePoolOfObservationsIsToldWhereThereIsOne) {
+    RunRecord record = test::full_record();
+    record.observation_pool = {900, 1000, 7, 3};
+    EXPECT_EQ(ordered_json::parse(run_json(record))["observation_pool"],
+              ordered_json(
+                  {{"records_used", 900}, {"records_capacity", 1000}, {"records_refused", 7}, {"blocks_refused", 3}}));
 }
 
 TEST(RunRecord, GainsAndHeldOutPicturesAreToldWhereThereAreAny) {

@@ -30,6 +30,7 @@ std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, 
                 const auto found = scene.records.find({x, y, z});
                 if (found == scene.records.end()) continue;
                 const ShadedRecord& record = found->second;
+                if (glm::dot(record.normal, normal) <= -0.5) continue;
                 const glm::dvec3 away = at - glm::dvec3(x, y, z), shares = 1.0 - glm::abs(away);
                 const double off = std::abs(glm::dot(record.normal, away) - record.offset_vox);
                 const double weight = fall(glm::dot(record.normal, normal), 0.75, 0.25) * fall(off, 0.5, 1.0);

@@ -49,8 +49,10 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command
         .add_option_function<uint32_t>(
             "--observation-mm",
-            [&options](uint32_t mm) { reflectance_of(options.settings).voxel_m = static_cast<float>(mm) / 1000; },
-            "Size of the voxels of reflectance, 20 or 10")
+            [&options](uint32_t mm) {
+                set_observation_voxel(reflectance_of(options.settings), static_cast<float>(mm) / 1000);
+            },
+            "Size of the voxels of reflectance, 20 or 10; records for them are allotted accordingly")
         ->check(CLI::IsMember({10, 20}));
     command.add_flag("--quiet", options.quiet, "Print nothing but errors");
     command.add_option("--settings", settings_file, "TOML file with settings");

@@ -34,6 +34,12 @@ std::string facts(const RunRecord& record) {
     html +=
         report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
     if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));
+    if (const auto& observed = record.observation_pool) {
+        html += report_fact("Observed voxels", fmt::format("{} of {}", grouped(observed->records_used),
+                                                           grouped(observed->records_capacity)));
+        if (observed->records_refused > 0)
+            html += report_fact("Observed voxels refused", grouped(observed->records_refused));
+    }
     for (const auto& [name, count] : record.totals) html += report_fact(name, grouped(count));
     for (const auto& [name, seconds] : record.times_s)
         html += report_fact("Time, " + name, fmt::format("{:.2f} s", seconds));

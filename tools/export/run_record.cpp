@@ -93,6 +93,12 @@ std::string run_json(const RunRecord& record) {
     run["voxel_pool"] = {{"blocks_used", record.voxel_pool.blocks_used},
                          {"blocks_capacity", record.voxel_pool.blocks_capacity},
                          {"blocks_refused", record.voxel_pool.blocks_refused}};
+    if (const auto& pool = record.observation_pool) {
+        run["observation_pool"] = {{"records_used", pool->records_used},
+                                   {"records_capacity", pool->records_capacity},
+                                   {"records_refused", pool->records_refused},
+                                   {"blocks_refused", pool->blocks_refused}};
+    }
     run["memory"] = memory_json(record.memory);
     run["totals"] = object_of(record.totals);
     if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);

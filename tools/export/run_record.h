@@ -37,6 +37,14 @@ struct VoxelPoolRecord {
     uint64_t blocks_refused = 0;  ///< block requests that found the pool full
 };
 
+/// How full the pool of observed voxels was at the end.
+struct ObservationPoolRecord {
+    uint64_t records_used = 0;
+    uint64_t records_capacity = 0;
+    uint64_t records_refused = 0;  ///< voxels that found the pool full
+    uint64_t blocks_refused = 0;   ///< blocks of voxels that found theirs full
+};
+
 /// One pool of device memory; `used` and `capacity` count its elements.
 struct MemoryRecord {
     std::string name;
@@ -84,6 +92,7 @@ struct RunRecord {
     sensor::SequenceInfo sequence;
     FrameLedger frames;
     VoxelPoolRecord voxel_pool;
+    std::optional<ObservationPoolRecord> observation_pool{};  ///< empty without reflectance
     std::vector<MemoryRecord> memory;
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
     std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none

@@ -1,0 +1,24 @@
+#include "passes/shading/restore_detail.h"
+
+#include "shared/restore_detail.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+PredictedImages add_restore_detail(graph::Frame& frame, const PredictedImages& predicted,
+                                   const RestoreDetailInputs& inputs) {
+    const Extent2D extent =
+        frame.common_extent({inputs.position_m, inputs.normal, inputs.color, predicted.kd, predicted.rgb});
+    auto pass = frame.compute("shading.restore_detail", spirv::restore_detail);
+    pass.read("position_m", inputs.position_m).read("normal", inputs.normal).read("color", inputs.color);
+    pass.read("light", predicted.light).read("kd", predicted.kd).read("rgb", predicted.rgb);
+    pass.read("ks_alpha", predicted.ks_alpha);
+    PredictedImages detailed = predicted;
+    detailed.kd = pass.create("detailed_kd", {extent, vulkan::Format::kRgba16f});
+    detailed.rgb = pass.create("detailed_rgb", {extent, vulkan::Format::kRgba16f});
+    pass.push(gpu::RestoreDetailParams{inputs.focal_px, inputs.voxel_m});
+    pass.dispatch_covering(extent);
+    return detailed;
+}
+
+}  // namespace patina
