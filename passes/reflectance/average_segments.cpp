@@ -6,6 +6,13 @@
 
 namespace patina {
 
+namespace {
+
+// The dispatch covers the pool, used or not, and software devices run a group that finds nothing at nearly full cost.
+constexpr uint32_t kRecordsPerItem = 8;
+
+}  // namespace
+
 graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
                                      uint32_t labels) {
     const graph::BufferId sums =
@@ -14,7 +21,8 @@ graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& 
     pass.read("RecordCounters", records.record_counters).read("Records", records.records);
     pass.read("Albedo", records.albedo);
     const graph::BufferId averaged = pass.modify("Segments", sums);
-    pass.dispatch_covering(map.settings().capacity_records);
+    pass.specialise("kRecordsPerItem", kRecordsPerItem);
+    pass.dispatch_covering((map.settings().capacity_records + kRecordsPerItem - 1) / kRecordsPerItem);
     return averaged;
 }
 

@@ -5,14 +5,13 @@
 #include "lib/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
+layout(constant_id = 0) const uint kRecordsPerItem = 1u;  // a group of the dispatch has as many groups of records
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 3) buffer Segments { SegmentAlbedo segments[]; };
 
-void main() {
-    const uint record = gl_GlobalInvocationID.x;
-    if (record >= counters.high_water) return;
+void add_record(uint record) {
     const uint label = record_label(records[record]);
     if (label == 0u || label >= uint(segments.length())) return;
     atomicAdd(segments[label].kd.w, 1u);
@@ -25,4 +24,10 @@ void main() {
         atomicAdd(segments[label].kd[c], kd[c]);
         atomicAdd(segments[label].weight[c], weight[c]);
     }
+}
+
+void main() {
+    const uint end = counters.high_water;
+    uint record = gl_WorkGroupID.x * kRecordsPerItem * kRecordGroup + gl_LocalInvocationID.x;
+    for (uint i = 0u; i < kRecordsPerItem && record < end; ++i, record += kRecordGroup) add_record(record);
 }
