@@ -76,6 +76,7 @@ PredictedView ReflectanceModel::add_predict(graph::Frame& frame, const VoxelMapI
     inputs.view = visible.view;
     inputs.view_grid = visible.grid;
     inputs.lights = lights_.upload(frame);
+    inputs.most_lights = static_cast<uint32_t>(lights_.point_lights().size());
     inputs.materials = materials_.import(frame);
     inputs.material_count = materials_.capacity();
     const ObservationMapIds records = observations_.import(frame);

@@ -44,6 +44,11 @@ PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_
     pass.read("Records", records.records).read("Visibility", records.visibility);
     pass.read("Lights", inputs.lights).read("Materials", inputs.materials);
     pass.read("Segments", inputs.segments);
+    // A pipeline for each of three classes, not for every number of lights.
+    const uint32_t most_lights = inputs.most_lights <= gpu::kFewLights         ? gpu::kFewLights
+                                 : inputs.most_lights <= gpu::kLightsOfOneWord ? gpu::kLightsOfOneWord
+                                                                               : gpu::kMaxPointLights;
+    pass.specialise("kMostLights", most_lights);
     PredictedImages out;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});

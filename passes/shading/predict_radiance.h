@@ -6,6 +6,7 @@
 #include "passes/model/reflectance_state.h"
 #include "passes/model/segment_materials.h"
 #include "passes/model/voxel_map.h"
+#include "shared/lights.h"
 
 namespace patina {
 
@@ -19,7 +20,8 @@ struct PredictRadianceInputs {
     graph::BufferId materials;  ///< gpu::SegmentMaterial[material_count]
     graph::BufferId segments;   ///< gpu::SegmentAlbedo[material_count] (add_average_segments)
     uint32_t material_count = 0;
-    bool shadows = true;  ///< false: every light reaches every surface, as in the paper
+    uint32_t most_lights = gpu::kMaxPointLights;  ///< no fewer than `lights` has; few take a faster shader
+    bool shadows = true;                          ///< false: every light reaches every surface, as in the paper
     MapAccess access = MapAccess::kStorage;
 };
 

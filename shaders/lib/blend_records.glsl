@@ -78,35 +78,31 @@ Reflectance mean_of(RecordSums sums) {
 struct NearestRecords {
     float known2, labelled2;
     uint known, labelled;
-    uvec4 content;  // of `known`
 };
 NearestRecords nearest_after(Reflectance found) {
-    return NearestRecords(kNowhere2, found.labelled == kNoRecord ? kNowhere2 : -1.0, kNoRecord, found.labelled,
-                          uvec4(0u));
+    return NearestRecords(kNowhere2, found.labelled == kNoRecord ? kNowhere2 : -1.0, kNoRecord, found.labelled);
 }
 
+// Looks at a record, or at kNoRecord with any content. Without branches, which cost software devices both sides.
 void look_at_record(inout NearestRecords nearest, SurfacePoint point, uint record, uvec4 content, vec3 away_vox) {
     const vec4 surface = packed_surface(content);
-    if (cosine_with(point, surface.xyz) <= kOpposedCosine) return;
     const bool same = same_surface(point, away_vox, surface) > 0.0;
-    const float distance2 = dot(away_vox, away_vox) + (same ? 0.0 : kOtherSurface2);
-    if (distance2 < nearest.known2 && packed_certainty(content) != vec3(0.0)) {
-        nearest.known2 = distance2;
-        nearest.known = record;
-        nearest.content = content;
-    }
-    if (distance2 < nearest.labelled2 && packed_has_label(content)) {
-        nearest.labelled2 = distance2;
-        nearest.labelled = record;
-    }
+    const bool tells = record != kNoRecord && cosine_with(point, surface.xyz) > kOpposedCosine;
+    const float distance2 = tells ? dot(away_vox, away_vox) + (same ? 0.0 : kOtherSurface2) : kNowhere2;
+    const float known2 = packed_is_known(content) ? distance2 : kNowhere2;
+    const float labelled2 = packed_has_label(content) ? distance2 : kNowhere2;
+    nearest.known = known2 < nearest.known2 ? record : nearest.known;
+    nearest.known2 = min(known2, nearest.known2);
+    nearest.labelled = labelled2 < nearest.labelled2 ? record : nearest.labelled;
+    nearest.labelled2 = min(labelled2, nearest.labelled2);
 }
 
-// What the nearest records fill in for a point that knows nothing.
-Reflectance filled(Reflectance found, NearestRecords nearest) {
+// What the nearest records fill in for a point that knows nothing; `content` is that of nearest.known, if any.
+Reflectance filled(Reflectance found, NearestRecords nearest, uvec4 content) {
     found.labelled = nearest.labelled;
     if (nearest.known == kNoRecord) return found;
-    return Reflectance(packed_kd(nearest.content), packed_certainty(nearest.content), true,
-                       packed_surface(nearest.content).xyz, nearest.labelled);
+    return Reflectance(packed_kd(content), packed_certainty(content), true, packed_surface(content).xyz,
+                       nearest.labelled);
 }
 
 // What the records do not know, or not surely, is what the rest of their segment has; `segment` is segment_kd.

@@ -1,6 +1,9 @@
-// Seeds of one lamp end in one place: keeps the heaviest mode of each neighbourhood, heaviest first.
+// Seeds of one lamp end in one place: keeps the heaviest mode of each neighbourhood, heaviest first. What shines before
+// or behind a heavier mode is that one's rim, whose depth readings mix with what is behind, or a lamp partly hidden.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "lib/camera.glsl"
+#include "lib/cone.glsl"
 #include "shared/find_lights.h"
 
 layout(local_size_x = 1) in;
@@ -15,9 +18,20 @@ bool near(EmitterMode a, EmitterMode b) {
     return a.has_depth == b.has_depth && distance(a.point.xyz, b.point.xyz) <= reach;
 }
 
+vec3 bearing_of(EmitterMode mode) {
+    return mode.has_depth != 0u ? normalize(mode.point.xyz - camera_center_m(params.camera)) : mode.point.xyz;
+}
+
+// Whether the discs as which two modes appear touch, to a pixel.
+bool overlap(EmitterMode a, EmitterMode b) {
+    const float pixel = 1.0 / params.camera.focal_center_px.x;
+    const float reach = sine_of_cone(a.angle_sr) + sine_of_cone(b.angle_sr) + pixel;
+    return distance(bearing_of(a), bearing_of(b)) <= reach;
+}
+
 bool is_new(EmitterMode mode, uint count) {
     for (uint k = 0u; k < count; ++k) {
-        if (near(mode, chosen[k])) return false;
+        if (near(mode, chosen[k]) || overlap(mode, chosen[k])) return false;
     }
     return true;
 }
@@ -25,7 +39,7 @@ bool is_new(EmitterMode mode, uint count) {
 void main() {
     uint count = 0u;
     while (count < kMaxLightCandidates) {
-        EmitterMode best = EmitterMode(vec4(0.0), 0.0, 0u, 0u, 0u);
+        EmitterMode best = EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0u);
         for (uint i = 0u; i < kMeanShiftSeeds; ++i) {
             const EmitterMode mode = modes[i];
             if (mode.weight > best.weight && is_new(mode, count)) best = mode;
@@ -34,6 +48,6 @@ void main() {
         chosen[count++] = best;
     }
     for (uint k = 0u; k < kMaxLightCandidates; ++k) {
-        candidates[k] = k < count ? chosen[k] : EmitterMode(vec4(0.0), 0.0, 0u, 0u, 0u);
+        candidates[k] = k < count ? chosen[k] : EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0u);
     }
 }

@@ -1,13 +1,8 @@
 // Body of the shaders that find which lights reach a voxel. The includer declares the map's table and distances and how
-// to load them:
-//   KEYS(bucket)    uvec4, the keys of a bucket
-//   BLOCK(slot)     uint, the block id of a table slot
-//   VOXEL(C, i)     uint, voxel i of the literal chunk C
-// The march reads nearest voxels. Space that was never seen is open.
-#include "lib/block_lookup.glsl"
+// to load them, as lib/march_map.glsl says.
+#include "lib/march_map.glsl"
 #include "lib/record_list.glsl"
 #include "lib/reflectance.glsl"
-#include "lib/voxel_chunks.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -22,66 +17,14 @@ layout(std430, binding = 5) buffer Refine { uint refine[]; };
 layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
 layout(push_constant) uniform Push { ReflectanceParams params; };
 
-const uint kMaxSteps = 1024u;
 const float kLiftVox = 2.5;         // from where the march starts, above the surface
 const float kMostSkippedVox = 7.5;  // of the way, to get there
-const float kInsideVox = 0.5;       // a voxel this deep is inside, whatever the noise of a nearest voxel
 const float kGrazeShare = 0.75;     // of a record's voxel
-const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
 const float kLampMarginVox = 3.0;   // kept from a lamp, whose own surface is in the map
 const float kUnknownLampM = 0.15;   // the radius assumed of a lamp whose radius is not known
 const float kMostLampShare = 0.3;   // of the way to it
 const float kGrazingCosine = 0.12;  // 7 degrees above the surface, about what its normal may be off
 const float kBackCosine = -0.2;     // lights behind the surface by more do not reach it
-
-// A copy of the voxel map's, whose loads software devices do not hoist out of loops.
-VoxelGrid grid;
-
-// The voxel at voxel coordinates; `block` is its block.
-uint load_voxel(uint block, ivec3 coordinates) {
-    const ivec3 within = coordinates & 7;
-    const uint index =
-        index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
-    uint voxel;
-#define LOAD_VOXEL(C) voxel = VOXEL(C, index)
-    WITH_CHUNK(grid.chunk_shift, block, LOAD_VOXEL)
-    return voxel;
-}
-
-// How far a ray goes on within the block that it is in.
-float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
-    const vec3 ends = (vec3(block * 8) + 8.0 * step(vec3(0.0), inverse_direction) - at) * inverse_direction;
-    return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
-}
-
-struct Passage {
-    bool open;
-    bool uncertain;  // it passes a surface, on either side, so near that another point of the voxel may see otherwise
-};
-
-// Along a ray from `gone` to `reach` (voxels), which begins `lift` above a surface and leaves it with `slope`.
-Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, float lift, float graze_vox) {
-    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
-    float deepest = 1e6;
-    bool grazed = false;
-    for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
-        const vec3 at = start + direction * gone;
-        const ivec3 voxel = ivec3(floor(at));
-        const uint block = find_block(grid, voxel >> 3);
-        const bool have = block != kNoBlock;
-        const uint loaded = load_voxel(have ? block : 0u, voxel);
-        const uint found = have ? loaded : 0u;
-        const bool seen = voxel_weight(found) > 0u;
-        const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
-        deepest = min(deepest, here);
-        // The surface itself is this far.
-        grazed = grazed || here < min(graze_vox, 0.5 * (lift + gone * slope));
-        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
-        gone += have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
-    }
-    const bool open = deepest > -kInsideVox;
-    return Passage(open, grazed && deepest > -graze_vox);
-}
 
 Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
     const float inverse_voxel = 1.0 / grid.voxel_m;

@@ -29,6 +29,8 @@ layout(binding = 13, rgba16f) uniform writeonly image2D rgb;    // linear pixel 
 layout(binding = 15, rgba16f) uniform writeonly image2D light;  // irradiance / pi; a: the part that shadows leave
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
+layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
+
 const float kLeastAlpha = 0.01;
 const float kCreaseCosine = 0.7;  // between neighbouring pixels' normals; at it, neighbours do not smooth
 
@@ -83,39 +85,41 @@ Reflectance interpolate(SurfacePoint point) {
 Reflectance fill(SurfacePoint point, Reflectance found) {
     const ivec3 low = ivec3(floor(point.at_vox)) - 1;
     NearestRecords nearest = nearest_after(found);
-    for (int i = 0; i < 64; ++i) {
-        const ivec3 voxel = low + ivec3(i & 3, i >> 2 & 3, i >> 4);
-        const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
-        const uint record = find_record(cell, voxel_number(voxel, params.edge_shift));
-        if (record != kNoRecord) look_at_record(nearest, point, record, PACKED(record), point.at_vox - vec3(voxel));
+    for (int row = 0; row < 16; ++row) {
+        [[unroll]] for (int x = 0; x < 4; ++x) {
+            const ivec3 voxel = low + ivec3(x, row & 3, row >> 2);
+            const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
+            const uint record = find_record(cell, voxel_number(voxel, params.edge_shift));
+            const uvec4 content = PACKED(record == kNoRecord ? 0u : record);
+            look_at_record(nearest, point, record, content, point.at_vox - vec3(voxel));
+        }
     }
+    const uvec4 content = PACKED(nearest.known == kNoRecord ? 0u : nearest.known);
     float marched = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) marched += share_of[i];
     if (nearest.known != kNoRecord && marched == 0.0) {
         near_record[0] = nearest.known;
         share_of[0] = 1.0;
-        visible_from[0] = uvec2(nearest.content.w, 0u);
+        visible_from[0] = uvec2(content.w, 0u);
     }
-    return filled(found, nearest);
+    return filled(found, nearest, content);
 }
 
 // Makes the shares sum to 1. Where no light was marched yet, every light reaches the point.
 void normalise_shares() {
     float all = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) all += share_of[i];
-    if (all == 0.0) {
-        share_of[0] = 1.0;
-        visible_from[0] = uvec2(0xffffffffu);
-        return;
-    }
-    [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] /= all;
+    const float scale = all > 0.0 ? 1.0 / all : 0.0;
+    [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] *= scale;
+    share_of[0] = all > 0.0 ? share_of[0] : 1.0;
+    visible_from[0] = all > 0.0 ? visible_from[0] : uvec2(0xffffffffu);
 }
 
 // The share of the surface around the point that a light reaches.
 float share_lit(uint light) {
     float lit = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) {
-        const uint bits = light < 32u ? visible_from[i].x : visible_from[i].y;
+        const uint bits = light < kLightsOfOneWord ? visible_from[i].x : visible_from[i].y;
         lit += (bits >> (light & 31u) & 1u) != 0u ? share_of[i] : 0.0;
     }
     return params.shadows == 0u ? 1.0 : lit;
@@ -125,31 +129,46 @@ void load_further_visibility() {
     [[unroll]] for (int i = 0; i < 8; ++i) visible_from[i].y = visibility[near_record[i]].y;
 }
 
+// What arrives of the lamps' light, and what of it the surface sends to the viewer, while it is summed up.
+struct LampLight {
+    vec3 received;  // irradiance
+    vec3 glossy;    // radiance where ks is 1
+    float arriving, all;
+};
+
+void add_lamp(inout LampLight sums, uint i, bool counts, SurfacePoint point, vec3 point_m, float alpha) {
+    const vec3 offset = lights[i].position_m.xyz - point_m;
+    const float inverse2 = 1.0 / max(dot(offset, offset), 1e-20);
+    const vec3 to_light = offset * sqrt(inverse2);
+    const float facing = counts ? max(dot(point.normal, to_light), 0.0) * inverse2 : 0.0;
+    const vec3 unshadowed = lights[i].intensity.rgb * facing;
+    const float lit = share_lit(i);
+    const vec3 received = lit * unshadowed;
+    sums.received += received;
+    sums.glossy += received * ward_lobe(alpha, point.normal, to_light, point.to_viewer);
+    const float strength = unshadowed.r + unshadowed.g + unshadowed.b;
+    sums.arriving += lit * strength;
+    sums.all += strength;
+}
+
 struct Shade {
     vec3 rgb;       // radiance towards the viewer
     vec3 light;     // of it what kd multiplies: irradiance / pi
     float arrives;  // the part of the lamps' unshadowed light that arrives
 };
 
-Shade shade(vec3 point_m, vec3 normal, vec3 to_viewer, vec3 kd, vec4 gloss) {
-    vec3 diffuse = header.ambient.rgb, glossy = vec3(0.0);
-    float arriving = 0.0, all = 0.0;
+Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss) {
+    LampLight sums = LampLight(vec3(0.0), vec3(0.0), 0.0, 0.0);
+    const float alpha = max(gloss.w, kLeastAlpha);
     // Below the viewer's horizon an interpolated normal shows nothing of the lamps.
-    const uint count = dot(normal, to_viewer) > 0.0 ? header.count : 0u;
-    for (uint i = 0u; i < count; ++i) {
-        const vec3 offset = lights[i].position_m.xyz - point_m;
-        const float distance2 = dot(offset, offset);
-        const vec3 to_light = offset * inversesqrt(max(distance2, 1e-20));
-        const vec3 unshadowed = lights[i].intensity.rgb * (max(dot(normal, to_light), 0.0) / max(distance2, 1e-20));
-        const float lit = share_lit(i);
-        const vec3 received = lit * unshadowed;
-        diffuse += received * (1.0 / kWardPi);
-        glossy += received * ward_lobe(max(gloss.w, kLeastAlpha), normal, to_light, to_viewer);
-        const float strength = unshadowed.r + unshadowed.g + unshadowed.b;
-        arriving += lit * strength;
-        all += strength;
+    const uint count = dot(point.normal, point.to_viewer) > 0.0 ? header.count : 0u;
+    if (kMostLights <= kFewLights) {
+        [[unroll]] for (uint i = 0u; i < kFewLights; ++i) add_lamp(sums, i, i < count, point, point_m, alpha);
+    } else {
+        for (uint i = 0u; i < count; ++i) add_lamp(sums, i, true, point, point_m, alpha);
     }
-    return Shade(kd * diffuse + gloss.rgb * glossy, diffuse, all > 0.0 ? arriving / all : 0.0);
+    const vec3 light = header.ambient.rgb + sums.received * (1.0 / kWardPi);
+    return Shade(kd * light + gloss.rgb * sums.glossy, light, sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
 
 // The normal of a pixel, smoothed by those of the four beside it as far as they agree: the model's is the gradient of
@@ -182,15 +201,13 @@ void main() {
         const bool has_entry = segment != 0u && segment < params.materials;
         gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
         found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
-        if (header.count > 32u) load_further_visibility();
+        if (kMostLights > kLightsOfOneWord) load_further_visibility();
         normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
-        const Shade seen = shade(hit.xyz, facing, point.to_viewer, found.kd, gloss);
+        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss);
+        known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
+        shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, seen.arrives);
-        if (found.known) {
-            known_kd = vec4(found.kd, 1.0);
-            shaded = vec4(seen.rgb, 1.0);
-        }
     }
     imageStore(kd, pixel, known_kd);
     imageStore(label, pixel, uvec4(segment));

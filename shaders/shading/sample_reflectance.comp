@@ -45,7 +45,7 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
         if (record != kNoRecord)
             look_at_record(nearest, point, record, packed_records[record], point.at_vox - vec3(voxel));
     }
-    return filled(found, nearest);
+    return filled(found, nearest, packed_records[nearest.known == kNoRecord ? 0u : nearest.known]);
 }
 
 void main() {

@@ -54,8 +54,8 @@ struct EmitterMode {
     vec4 point;      // xyz: world m with depth, unit bearing without; w unused
     float weight;    // luminous mass within the kernel; 0: no mode
     uint has_depth;  // 1 or 0
+    float angle_sr;  // solid angle of the emitters within the kernel
     uint pad0;
-    uint pad1;
 };
 
 // A lamp as one frame shows it.

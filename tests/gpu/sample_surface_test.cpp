@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <numbers>
+#include <set>
 
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation_rig.h"
@@ -60,10 +61,18 @@ class SampleSurface : public GpuTest {
     std::unique_ptr<ObservationRig> make_model() {
         auto rig = std::make_unique<ObservationRig>(device(), runner(), ObservationMapSettings{});
         for (const RigFrame& frame : frames()) {
-            rig->fuse(frame);
+            rig->fuse(frame, 2);
             rig->collect(frame);
         }
         return rig;
+    }
+
+    /// Blocks that have a voxel with enough observations: there is a place for one sample of each.
+    static size_t blocks_to_sample(ObservationRig& rig) {
+        std::set<uint32_t> blocks;
+        for (const auto& [voxel, known] : rig.content())
+            if (known.count() >= gpu::kLeastForSample) blocks.insert(known.record.block_key);
+        return blocks.size();
     }
 
     std::vector<gpu::LightSample> draw(ObservationRig& rig) {
@@ -93,7 +102,9 @@ TEST_F(SampleSurface, TellsTheColourWithoutHighlightsAndWhereHighlightsAreSeenFr
         const glm::vec3 to_viewer = glm::normalize(bright_camera_m - glm::vec3(s.point_m));
         EXPECT_GT(glm::dot(to_viewer, glm::vec3(s.highlight)), 0.999f);
     }
-    EXPECT_GT(samples, 300u);
+    const size_t blocks = blocks_to_sample(*rig);
+    EXPECT_GT(blocks, 150u);
+    EXPECT_GT(samples, 0.9 * static_cast<double>(blocks)) << "few blocks compete for one place";
     EXPECT_GT(highlights, 100u);
 }
 
@@ -106,7 +117,7 @@ TEST_F(SampleSurface, DoesNotDependOnTheOrderOfRecords) {
 TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheBoxIsBetween) {
     const auto rig = make_model();
     const auto drawn = draw(*rig);
-    const std::vector<glm::vec3> places_m{{0.8f, -1.0f, 0.1f}, {-0.5f, -1.4f, -0.6f}};
+    const std::vector<glm::vec3> places_m{{0.8f, -0.5f, 0.1f}, {-0.5f, -0.6f, -0.6f}};
     graph::Frame frame = runner().begin();
     const VoxelMap& map = rig->fusion().map();
     const auto samples = frame.upload<gpu::LightSample>("samples", drawn);

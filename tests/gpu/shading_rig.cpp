@@ -145,6 +145,7 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         materials.import(frame),
         add_average_segments(frame, observations_.map(), observations_.map().import(frame), materials.capacity()),
         materials.capacity(),
+        static_cast<uint32_t>(lights.point_lights().size()),
         shadows,
         preferred_map_access(runner_.device().caps(), map)};
     const PredictedImages predicted = add_predict_radiance(

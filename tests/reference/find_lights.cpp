@@ -25,6 +25,7 @@ struct Mode {
     glm::dvec3 place{0};
     double mass = 0;
     bool has_depth = false;
+    double angle_sr = 0;
 };
 
 std::vector<Shining> shining_pixels(const Image<glm::vec3>& color, const Image<float>& depth_m,
@@ -54,41 +55,56 @@ double bandwidth(const LightFinding& settings, bool has_depth) {
     return has_depth ? settings.bandwidth_m : settings.bandwidth_chord;
 }
 
+bool counts_for(const Shining& s, const Mode& mode, const LightFinding& settings) {
+    return s.point_m.has_value() == mode.has_depth &&
+           glm::distance(s.place(), mode.place) <= bandwidth(settings, mode.has_depth);
+}
+
 Mode shifted(const std::vector<Shining>& list, const Shining& seed, const LightFinding& settings) {
     Mode mode{seed.place(), 0, seed.point_m.has_value()};
     for (int i = 0; i < kShifts; ++i) {
         glm::dvec3 sum(0);
         double mass = 0;
         for (const Shining& s : list) {
-            if (s.point_m.has_value() != mode.has_depth) continue;
-            if (glm::distance(s.place(), mode.place) > bandwidth(settings, mode.has_depth)) continue;
+            if (!counts_for(s, mode, settings)) continue;
             sum += s.place() * s.mass();
             mass += s.mass();
         }
         mode.place = sum / mass;
         mode.mass = mass;
     }
+    for (const Shining& s : list)
+        if (counts_for(s, mode, settings)) mode.angle_sr += s.angle_sr;
     if (!mode.has_depth) mode.place = glm::normalize(mode.place);
     return mode;
 }
 
-std::vector<Mode> modes_of(const std::vector<Shining>& list, const LightFinding& settings) {
+/// Half the opening angle of the cone of that solid angle.
+double cone_half_angle(double solid_angle_sr) { return std::acos(1 - solid_angle_sr / (2 * std::numbers::pi)); }
+
+/// Whether two modes' discs touch, to a pixel, seen from the camera.
+bool overlap(const Mode& a, const Mode& b, glm::dvec3 camera_m, double pixel) {
+    const auto bearing = [&](const Mode& m) { return m.has_depth ? glm::normalize(m.place - camera_m) : m.place; };
+    const double reach = std::sin(cone_half_angle(a.angle_sr)) + std::sin(cone_half_angle(b.angle_sr)) + pixel;
+    return glm::distance(bearing(a), bearing(b)) <= reach;
+}
+
+std::vector<Mode> modes_of(const std::vector<Shining>& list, glm::dvec3 camera_m, double pixel,
+                           const LightFinding& settings) {
     std::vector<Mode> all, kept;
     const size_t seeds = std::min(list.size(), kSeeds);
     for (size_t i = 0; i < seeds; ++i) all.push_back(shifted(list, list[i * list.size() / seeds], settings));
     std::stable_sort(all.begin(), all.end(), [](const Mode& a, const Mode& b) { return a.mass > b.mass; });
     for (const Mode& mode : all) {
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const Mode& k) {
-            return k.has_depth == mode.has_depth &&
-                   glm::distance(k.place, mode.place) <= bandwidth(settings, mode.has_depth);
+            const bool near = k.has_depth == mode.has_depth &&
+                              glm::distance(k.place, mode.place) <= bandwidth(settings, mode.has_depth);
+            return near || overlap(k, mode, camera_m, pixel);
         });
         if (!known) kept.push_back(mode);
     }
     return kept;
 }
-
-/// Half the opening angle of the cone of that solid angle.
-double cone_half_angle(double solid_angle_sr) { return std::acos(1 - solid_angle_sr / (2 * std::numbers::pi)); }
 
 Sighting measured(const std::vector<Shining>& list, const std::vector<Mode>& modes, const Mode& mode,
                   glm::dvec3 camera_m, const LightFinding& settings) {
@@ -146,10 +162,10 @@ Sighting measured(const std::vector<Shining>& list, const std::vector<Mode>& mod
 std::vector<Sighting> find_lights(const Image<glm::vec3>& color, const Image<float>& depth_m, const Intrinsics& camera,
                                   const RigidTransform& world_from_camera, const LightFinding& settings) {
     const std::vector<Shining> list = shining_pixels(color, depth_m, camera, world_from_camera, settings);
-    const std::vector<Mode> modes = modes_of(list, settings);
+    const glm::dvec3 camera_m(world_from_camera[3]);
+    const std::vector<Mode> modes = modes_of(list, camera_m, 1 / camera.fx, settings);
     std::vector<Sighting> sightings;
-    for (const Mode& mode : modes)
-        sightings.push_back(measured(list, modes, mode, glm::dvec3(world_from_camera[3]), settings));
+    for (const Mode& mode : modes) sightings.push_back(measured(list, modes, mode, camera_m, settings));
     return sightings;
 }
 

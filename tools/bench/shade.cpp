@@ -162,7 +162,7 @@ class Bench {
                 {model.position_m, model.normal, blocks.view, blocks.grid, lights_.upload(frame),
                  materials_.import(frame),
                  add_average_segments(frame, records_, records_.import(frame), materials_.capacity()),
-                 materials_.capacity(), true, access()});
+                 materials_.capacity(), static_cast<uint32_t>(lights_.point_lights().size()), true, access()});
             for (const graph::ImageId image : {predicted.kd, predicted.label, predicted.ks_alpha, predicted.rgb})
                 frame.keep(image);
             if (read_back) rgb = frame.read_back(predicted.rgb);
