@@ -86,7 +86,7 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
     render_cubes(beside("own"), {"--lights", own});
     render_cubes(beside("dim"), {"--lights", own, "--relight", dim});
     render_cubes(beside("exposed"), {"--lights", own, "--relight", dim, "--exposure", "4"});
-    render_cubes(beside("kd"), {"--lights", own, "--show", "kd"});
+    render_cubes(beside("kd"), {"--lights", own, "--relight", own, "--show", "kd"});
     render_cubes(beside("kd_dim"), {"--lights", own, "--relight", dim, "--show", "kd"});
     const auto picture = [&](const char* name) { return read(beside(name) / "000000.png"); };
     EXPECT_LT(brightness(picture("dim")), 0.8 * brightness(picture("own")));
