@@ -164,11 +164,11 @@ void Reconstruction::refine_all() {
     runner_.submit(std::move(graph));
 }
 
-void Reconstruction::relight(std::span<const PointLight> lights) {
+void Reconstruction::relight(std::span<const PointLight> lights, glm::vec3 ambient) {
     if (!reflectance_ || frames_ == 0) return;
     refine_all();
     graph::Frame graph = runner_.begin();
-    reflectance_->relight(graph, map_.import(graph), lights);
+    reflectance_->relight(graph, map_.import(graph), lights, ambient);
     runner_.submit(std::move(graph));
 }
 

@@ -141,8 +141,9 @@ class Reconstruction {
     const SegmentationModel* segmentation() const { return segmentation_ ? &*segmentation_ : nullptr; }
 
     /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
+    /// Brings the reflectance up to date first.
     /// Without reflectance nothing changes. Throws Error as Lights::set does.
-    void relight(std::span<const PointLight> lights);
+    void relight(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
 
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
     /// any time.

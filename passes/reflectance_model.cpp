@@ -62,8 +62,9 @@ void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels
     ObservationMap::keep(frame, records);
 }
 
-void ReflectanceModel::relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights) {
-    lights_.set(lights);
+void ReflectanceModel::relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights,
+                               glm::vec3 ambient) {
+    lights_.set(lights, ambient);
     settings_.refine.albedo = false;
     refine_all(frame, voxels);
 }

@@ -66,7 +66,7 @@ class ReflectanceModel {
 
     /// Puts the model under other lights than those it was observed under: their visibility is found, kd stays. Nothing
     /// may be added or refined after that.
-    void relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights);
+    void relight(graph::Frame& frame, const VoxelMapIds& voxels, std::span<const PointLight> lights, glm::vec3 ambient);
 
     /// What a camera sees that was cast into the model.
     PredictedView add_predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& visible,

@@ -14,6 +14,7 @@
 #include "tools/frame_dumps.h"
 #include "tools/orbit.h"
 #include "tools/progress.h"
+#include "tools/run_lights.h"
 
 namespace patina::tools {
 
@@ -141,17 +142,18 @@ void render(const RenderOptions& options) {
         for (const sensor::StampedPose& pose : sensor::read_trajectory(options.poses))
             given.push_back(pose.world_from_camera);
     }
-    const std::vector<PointLight> other_lights =
-        options.relight.empty() ? std::vector<PointLight>() : lights_from_file(options.relight);
+    const Illumination other = options.relight.empty() ? Illumination{} : illumination_from_file(options.relight);
     SequenceFusion fusion(options, interrupt);
     const Intrinsics& recorded = fusion.info().color;
     const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
     const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : fusion.info().fps;
     if (!options.video.empty()) sink.open_video(options.video, camera.extent, fps);
     fusion.fuse_all([](const sensor::Frame&) {});
-    fusion.reconstruction().refine_all();
     const std::vector<RigidTransform> poses = view_poses(options, fusion, given);
-    if (!options.relight.empty()) fusion.reconstruction().relight(other_lights);
+    if (options.relight.empty())
+        fusion.reconstruction().refine_all();
+    else
+        fusion.reconstruction().relight(point_lights(other), other.ambient);
     render_views(options, fusion, camera, poses, sink);
     sink.finish();
     if (!options.quiet) fmt::print("{} views\n", poses.size());

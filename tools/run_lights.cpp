@@ -5,6 +5,10 @@
 namespace patina::tools {
 namespace {
 
+nlohmann::ordered_json to_json(glm::vec3 v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
 Illumination illumination_from_file(const std::filesystem::path& file) {
     Illumination given;
     given.found_by = "file";
@@ -18,10 +22,6 @@ Illumination illumination_from_file(const std::filesystem::path& file) {
     given.ambient = glm::vec3(sensor::read_ambient(file));
     return given;
 }
-
-nlohmann::ordered_json to_json(glm::vec3 v) { return {v.x, v.y, v.z}; }
-
-}  // namespace
 
 Illumination lights_of(const SequenceOptions& options) {
     if (!options.lights.empty()) return illumination_from_file(options.lights);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,9 @@
 #include "tools/sequence_fusion.h"
 
 namespace patina::tools {
+
+/// Lights and ambient term of a lights.json. Throws Error as sensor::read_lights does.
+Illumination illumination_from_file(const std::filesystem::path& file);
 
 /// The lights of a run: those of the file that the user gives, those found where the user says, or in the lighting
 /// sequence that the main sequence has; none where there is none of these. Throws Error as find_lights does, and when

@@ -63,14 +63,6 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
 
 }  // namespace
 
-std::vector<PointLight> lights_from_file(const std::filesystem::path& file) {
-    std::vector<PointLight> lights;
-    for (const sensor::PointLight& light : sensor::read_lights(file)) {
-        lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
-    }
-    return lights;
-}
-
 SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt)
     : options_(options), interrupt_(interrupt), held_out_(options.hold_out) {
     // A recording is opened before the device, so that a wrong path is told at once.

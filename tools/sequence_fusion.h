@@ -47,9 +47,6 @@ struct SequenceOptions {
     ReconstructionSettings settings;
 };
 
-/// Lights of a lights.json.
-std::vector<PointLight> lights_from_file(const std::filesystem::path& file);
-
 /// A sequence with all that belongs to it, and the reconstruction that its frames are fused into.
 class SequenceFusion {
   public:

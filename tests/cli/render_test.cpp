@@ -88,8 +88,12 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
     render_cubes(beside("exposed"), {"--lights", own, "--relight", dim, "--exposure", "4"});
     render_cubes(beside("kd"), {"--lights", own, "--relight", own, "--show", "kd"});
     render_cubes(beside("kd_dim"), {"--lights", own, "--relight", dim, "--show", "kd"});
+    const fs::path bright = beside("bright.json");
+    sensor::write_lights(bright, std::vector<sensor::PointLight>{{{0, -1.5, 0}, glm::dvec3(2)}}, glm::dvec3(0.5));
+    render_cubes(beside("bright"), {"--lights", own, "--relight", bright});
     const auto picture = [&](const char* name) { return read(beside(name) / "000000.png"); };
     EXPECT_LT(brightness(picture("dim")), 0.8 * brightness(picture("own")));
+    EXPECT_GT(brightness(picture("bright")), brightness(picture("dim")) + 10) << "ambient light";
     EXPECT_NEAR(brightness(picture("exposed")), brightness(picture("own")), 2);
     EXPECT_EQ(picture("kd").pixels(), picture("kd_dim").pixels()) << "albedo does not change with the lights of a view";
 }
