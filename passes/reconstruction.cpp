@@ -10,6 +10,7 @@
 #include "passes/fusion/measure_slope.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/shade_color.h"
+#include "passes/fusion/sharpen_normals.h"
 #include "passes/fusion/visible_blocks.h"
 #include "passes/sample_mesh.h"
 #include "passes/shading/restore_detail.h"
@@ -116,7 +117,8 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
                   fusion.color && !frame.held_out ? std::optional(input.color) : std::nullopt);
     if (segmentation_ || reflectance_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
-        ObservationInputs observed{model.position_m, model.normal, input.depth_m, slope, input.color, {}};
+        const RaycastImages sharp = sharpened(graph, model, frame.depth.camera);
+        ObservationInputs observed{sharp.position_m, sharp.normal, input.depth_m, slope, input.color, {}};
         if (segmentation_) observed.labels = segment(graph, ids, visible, model, input, frame);
         if (segmentation_ && reflectance_) {
             ObservationMapIds records = reflectance_->observations().import(graph);
@@ -132,6 +134,11 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
         add_remove_empty_blocks(graph, map_, ids, visible, params);
     }
     return visible;
+}
+
+RaycastImages Reconstruction::sharpened(graph::Frame& graph, const RaycastImages& model,
+                                        const Intrinsics& camera) const {
+    return add_sharpen_normals(graph, model, static_cast<float>(camera.fx), settings_.map.voxel_m);
 }
 
 graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
@@ -206,7 +213,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
     const VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_camera),
                                                      settings_.near_m, 2 * settings_.fusion.max_depth_m);
-    const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
+    const RaycastImages model = sharpened(graph, add_raycast(graph, map_, ids, visible, access_), camera);
     const graph::ImageId color = add_shade_color(graph, map_, ids, visible, model.position_m);
     PendingView pending;
     pending.position_m_ = graph.read_back(model.position_m);

@@ -161,6 +161,7 @@ class Reconstruction {
 
   private:
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
+    RaycastImages sharpened(graph::Frame& graph, const RaycastImages& model, const Intrinsics& camera) const;
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                            const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
     void observe(graph::Frame& graph, const VoxelMapIds& ids, ObservationInputs inputs, const RgbdFrame& frame);

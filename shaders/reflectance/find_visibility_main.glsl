@@ -19,7 +19,7 @@ layout(push_constant) uniform Push { ReflectanceParams params; };
 
 const float kLiftVox = 2.5;         // from where the march starts, above the surface
 const float kMostSkippedVox = 7.5;  // of the way, to get there
-const float kGrazeShare = 0.75;     // of a record's voxel
+const float kGrazeShare = 0.5;      // of a record's voxel
 const float kLampMarginVox = 3.0;   // kept from a lamp, whose own surface is in the map
 const float kUnknownLampM = 0.15;   // the radius assumed of a lamp whose radius is not known
 const float kMostLampShare = 0.3;   // of the way to it

@@ -32,7 +32,6 @@ layout(push_constant) uniform Push { PredictRadianceParams params; };
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
 
 const float kLeastAlpha = 0.01;
-const float kCreaseCosine = 0.7;  // between neighbouring pixels' normals; at it, neighbours do not smooth
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
 ivec3 grid_low;
@@ -171,19 +170,6 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss) {
     return Shade(kd * light + gloss.rgb * sums.glossy, light, sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
 
-// The normal of a pixel, smoothed by those of the four beside it as far as they agree: the model's is the gradient of
-// one voxel cell, which is noisy. Outside the image there is none: images read zero there.
-vec3 smooth_normal(ivec2 pixel) {
-    const ivec2 sides[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
-    const vec3 own = imageLoad(normal, pixel).xyz;
-    vec3 sum = own * (1.0 - kCreaseCosine);
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-        const vec3 beside = imageLoad(normal, pixel + sides[i]).xyz;
-        sum += beside * max(dot(own, beside) - kCreaseCosine, 0.0);
-    }
-    return own == vec3(0.0) ? own : normalize(sum);
-}
-
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(position_m)))) return;
@@ -193,7 +179,7 @@ void main() {
     vec4 known_kd = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
     uint segment = 0u;
     if (hit.w > 0.0) {
-        const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, smooth_normal(pixel),
+        const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, imageLoad(normal, pixel).xyz,
                                                 normalize(camera_center_m(view.camera) - hit.xyz));
         Reflectance found = interpolate(point);
         if (!found.known) found = fill(point, found);
