@@ -58,6 +58,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
         visit("reflectance.capacity_records", s.reflectance->capacity_records);
         visit("reflectance.shadows", s.reflectance->refine.shadows);
+        visit("reflectance.first_marched_records", s.reflectance->refine.first_marched_records);
         visit("reflectance.marched_records", s.reflectance->refine.marched_records);
         visit("reflectance.refreshed_records", s.reflectance->refine.refreshed_records);
         visit("observe.stride_px", s.reflectance->observe.stride_px);

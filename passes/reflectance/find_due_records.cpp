@@ -31,20 +31,29 @@ void add_due_window(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecor
     pass.dispatch_covering(buckets * gpu::kBucketSlots);
 }
 
-/// Returns the records that wait for marching.
-RecordList add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed,
-                           RecordList& refine) {
-    RecordList waiting = create_record_list(frame, "reflectance.waiting", reflectance.map.settings().capacity_records);
+/// Records that wait for marching.
+struct WaitingRecords {
+    RecordList never_marched, changed;
+};
+
+WaitingRecords add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed,
+                               RecordList& refine) {
+    const uint32_t capacity = reflectance.map.settings().capacity_records;
+    WaitingRecords waiting{create_record_list(frame, "reflectance.never_marched", capacity),
+                           create_record_list(frame, "reflectance.waiting", capacity)};
     auto pass = frame.compute("reflectance.due_changed", spirv::due_changed);
-    bind(pass, reflectance, waiting, refine);
+    bind(pass, reflectance, waiting.changed, refine);
     pass.read("ChangedList", changed.list);
+    waiting.never_marched.list = pass.modify("NeverMarched", waiting.never_marched.list);
+    waiting.never_marched.arguments = pass.modify("NeverMarchedArguments", waiting.never_marched.arguments);
     pass.dispatch_indirect(changed.arguments);
     return waiting;
 }
 
-void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& waiting, RecordList& march) {
+void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& waiting,
+                    const gpu::AcceptParams& params, RecordList& march) {
     auto pass = frame.compute("reflectance.accept_due", spirv::accept_due);
-    pass.read("Waiting", waiting.list).read("Records", reflectance.records.records).push(reflectance.params);
+    pass.read("Waiting", waiting.list).read("Records", reflectance.records.records).push(params);
     reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
     march.list = pass.modify("March", march.list);
     march.arguments = pass.modify("MarchArguments", march.arguments);
@@ -58,8 +67,11 @@ DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectan
     DueRecords due{create_record_list(frame, "reflectance.march", capacity),
                    create_record_list(frame, "reflectance.refine", capacity)};
     add_due_window(frame, reflectance, due);
-    const RecordList waiting = add_due_changed(frame, reflectance, changed, due.refine);
-    add_accept_due(frame, reflectance, waiting, due.march);
+    const WaitingRecords waiting = add_due_changed(frame, reflectance, changed, due.refine);
+    const uint32_t stamp = reflectance.params.stamp;
+    add_accept_due(frame, reflectance, waiting.never_marched, {stamp, reflectance.budgets.first_marched_records, 1},
+                   due.march);
+    add_accept_due(frame, reflectance, waiting.changed, {stamp, reflectance.budgets.marched_records, 0}, due.march);
     return due;
 }
 

@@ -24,7 +24,6 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     params.voxels = models.voxel_map.grid();
     params.edge_shift = models.observation_map.edge_shift();
     params.stamp = models.state.next_stamp();
-    params.most_changed = settings.marched_records;
     params.refreshed = settings.refreshed_records;
     params.max_window = max_window;
     params.shadows = settings.shadows ? 1 : 0;
@@ -34,7 +33,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
 
 RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
                               ObservationMapIds& records, const RecordList& changed, const ReflectanceAccess& access,
-                              const gpu::ReflectanceParams& params, bool albedo) {
+                              const gpu::ReflectanceParams& params, const ReflectanceSettings& settings) {
     ReflectanceStateIds state = models.state.import(frame);
     ReflectanceFrame reflectance{models.voxel_map,
                                  voxels,
@@ -44,10 +43,11 @@ RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& mode
                                  state,
                                  models.lights.upload(frame),
                                  models.materials.import(frame),
-                                 params};
+                                 params,
+                                 {settings.first_marched_records, settings.marched_records}};
     DueRecords due = add_find_due_records(frame, reflectance, changed);
     add_find_visibility(frame, reflectance, due);
-    if (albedo) add_refine_albedo(frame, reflectance, due.refine);
+    if (settings.albedo) add_refine_albedo(frame, reflectance, due.refine);
     ReflectanceState::keep(frame, state);
     return {due.march, due.refine};
 }
@@ -63,21 +63,22 @@ RefinedReflectance add_refine_reflectance(graph::Frame& frame, const Reflectance
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings) {
+    check_budget("first_marched_records", settings.first_marched_records);
     check_budget("marched_records", settings.marched_records);
     check_budget("refreshed_records", settings.refreshed_records);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
     return add_update(frame, models, voxels, records, changed, access,
-                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)), settings.albedo);
+                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)), settings);
 }
 
 RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings) {
     ReflectanceSettings all = settings;
-    all.marched_records = all.refreshed_records = kEverything;
+    all.first_marched_records = all.marched_records = all.refreshed_records = kEverything;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
-    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets), settings.albedo);
+    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets), all);
 }
 
 }  // namespace patina

@@ -10,7 +10,9 @@ namespace patina {
 struct ReflectanceSettings {
     bool shadows = true;               ///< false: every light reaches every surface, as in the paper
     bool albedo = true;                ///< false: only visibility is found, under lights that never shone
-    uint32_t marched_records = 1024;   ///< changed records whose lights are marched in a frame at most, about
+    /// New records whose lights are marched in a frame at most, about: until then nothing is known of their albedo.
+    uint32_t first_marched_records = 8192;
+    uint32_t marched_records = 1024;   ///< others whose surface moved, about
     uint32_t refreshed_records = 512;  ///< and others, looked at again in turn, about
 };
 

@@ -16,6 +16,12 @@ struct ReflectanceAccess {
     MapAccess observations = MapAccess::kStorage;
 };
 
+/// How many records' lights are marched in an update at most, about.
+struct MarchBudgets {
+    uint32_t first_marched_records;  ///< that never were
+    uint32_t marched_records;        ///< whose surface moved since
+};
+
 /// What the passes of one update share.
 struct ReflectanceFrame {
     const VoxelMap& voxel_map;
@@ -27,6 +33,7 @@ struct ReflectanceFrame {
     graph::BufferId lights;      ///< Lights::upload
     graph::BufferId materials;   ///< SegmentMaterials::import
     gpu::ReflectanceParams params;
+    MarchBudgets budgets;
 };
 
 }  // namespace patina

@@ -1,4 +1,5 @@
-// Body of the passes that look for records whose visibility or albedo is out of date, and list them, each once.
+// Body of the passes that look for records whose visibility or albedo is out of date, and list them, each once. The
+// includer defines list_for_marching.
 #include "lib/record_list.glsl"
 #include "lib/reflectance.glsl"
 
@@ -15,13 +16,17 @@ layout(std430, binding = 6) buffer Refine { uint refine[]; };
 layout(std430, binding = 7) buffer RefineArguments { uint refine_arguments[]; };
 layout(push_constant) uniform Push { ReflectanceParams params; };
 
+// `marched`: its lights were marched at their present positions, but not since it changed.
+void list_for_marching(uint record, bool marched);
+
 // `observed`: its observations, surface or label changed. `refresh`: what is around it may have.
 void consider(uint record, bool observed, bool refresh) {
     const VoxelRecord known = records[record];
     if (observation_count(known) == 0u) return;
-    const bool march_again = refresh || !is_marched_from(status[record].marched, known, header.position_version);
+    const uint marched = status[record].marched;
+    const bool march_again = refresh || !is_marched_from(marched, known, header.position_version);
     if (march_again && atomicExchange(status[record].march_stamp, params.stamp) != params.stamp) {
-        APPEND_RECORD(march, march_arguments, record)
+        list_for_marching(record, is_marched(marched, header.position_version));
     }
     const uint label = record_label(known);
     const uint version = label != 0u && label < params.materials ? materials[label].version : 0u;

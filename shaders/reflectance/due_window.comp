@@ -12,6 +12,8 @@ layout(std430, binding = 10) readonly buffer RecordTable { uvec4 record_table[];
 layout(std430, binding = 11) readonly buffer RecordCounters { MapCounters record_counters; };
 layout(std430, binding = 12) buffer Cursors { RefreshCursors cursors; };
 
+void list_for_marching(uint record, bool marched) { APPEND_RECORD(march, march_arguments, record) }
+
 void consider_quad(uvec4 entries) {
     for (uint i = 0u; i < 4u; ++i) {
         if (entries[i] < kNewRecord) consider(entries[i], false, true);

@@ -38,8 +38,9 @@ struct RecordStatus {
 
 // Where the next update goes on; its parity says which entry it reads, and it writes the other.
 struct RefreshCursors {
-    uvec2 changed;  // bin of voxel hashes
-    uvec2 window;   // bucket of the table
+    uvec2 never_marched;  // bin of voxel hashes
+    uvec2 changed;        // the same
+    uvec2 window;         // bucket of the table
 };
 
 struct ReflectanceParams {
@@ -47,12 +48,19 @@ struct ReflectanceParams {
     VoxelGrid voxels;   // the voxel map's
     uint edge_shift;    // of the observation map
     uint stamp;         // the update's index + 1
-    uint most_changed;  // changed records whose lights are marched in one update, about
-    uint refreshed;     // and others, about
+    uint refreshed;     // records marched again in one update though nothing says that they have changed, about
     uint max_window;    // buckets of the table looked at
     uint shadows;       // 0: every light reaches every voxel
     uint materials;     // entries of the table
     uint pad0;
+    uint pad1;
+};
+
+// Which of the records that wait for marching are taken.
+struct AcceptParams {
+    uint stamp;          // as ReflectanceParams
+    uint most;           // about
+    uint never_marched;  // 1: they never were; 0: they have changed since
 };
 
 INTEROP_END

@@ -75,7 +75,7 @@ class RefineAlbedoTest : public GpuTest {
     std::vector<RefinedRecord> refine(const std::vector<FilledRecord>& records) {
         ReflectanceSettings settings;
         settings.shadows = false;
-        settings.marched_records = 1u << 20;
+        settings.first_marched_records = 1u << 20;
         const auto counts = rig_.update(settings, [&](graph::Frame& frame, ObservationMapIds& ids) {
             add_fill_records(frame, map_, ids, records);
             return add_list_records(frame, static_cast<uint32_t>(records.size()));

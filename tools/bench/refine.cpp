@@ -1,6 +1,5 @@
 // patina_refine_bench: how long the refinement of albedos takes, on records that are made up. See docs/benchmarks.md.
 #include <cmath>
-#include <ctime>
 #include <exception>
 #include <random>
 
@@ -12,6 +11,7 @@
 #include "passes/reflectance/reflectance.h"
 #include "tools/bench/distribution.h"
 #include "tools/bench/filled_records.h"
+#include "tools/bench/processor_time.h"
 #include "tools/commands/commands.h"
 
 namespace patina::bench {
@@ -27,13 +27,6 @@ struct Options {
     uint32_t warmup = 4;
     bool diffuse = false;
 };
-
-/// Processor time of this process, all threads together.
-double processor_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 /// A floor of voxels side by side, each seen from random directions above it, of one glossy material.
 std::vector<FilledRecord> floor_records(const Options& options, float voxel_m) {
@@ -71,7 +64,7 @@ struct Bench {
         lights.set(lamps, glm::vec3(0.02f));
         if (!options.diffuse) materials.set(1, glm::vec3(0.1f), 0.2f);
         settings.shadows = false;
-        settings.marched_records = UINT32_MAX;
+        settings.first_marched_records = settings.marched_records = UINT32_MAX;
         graph::Frame frame = runner.begin();
         voxel_map.reset(frame, glm::dvec3(0));
         map.reset(frame, glm::dvec3(0));

@@ -1,7 +1,6 @@
 // patina_segment_bench: how long it takes to divide a frame into segments, and pictures of them. See
 // docs/benchmarks.md.
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <filesystem>
 
@@ -13,6 +12,7 @@
 #include "passes/segmentation/segment_frame.h"
 #include "sensor/picture_file.h"
 #include "tools/bench/distribution.h"
+#include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
 #include "tools/commands/commands.h"
 #include "tools/rgbd_frame.h"
@@ -30,13 +30,6 @@ struct Options {
     uint32_t frames = 20;
     uint32_t warmup = 4;
 };
-
-/// Processor time of this process, all threads together.
-double processor_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 /// One colour per segment, black for none: hues a golden angle apart.
 Image<sensor::SrgbPixel> in_colors(const Image<uint32_t>& segment) {

@@ -1,6 +1,5 @@
 // patina_shade_bench: how long re-rendering takes, on the model of a recording. See docs/benchmarks.md.
 #include <cstdio>
-#include <ctime>
 #include <exception>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +13,7 @@
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "tools/bench/distribution.h"
+#include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
 #include "tools/commands/commands.h"
 #include "tools/rgbd_frame.h"
@@ -32,13 +32,6 @@ struct Options {
     uint32_t frames = 20;
     uint32_t warmup = 4;
 };
-
-/// Processor time of this process, all threads together.
-double processor_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 ObservationMapSettings map_settings(float voxel_m) {
     ObservationMapSettings settings;
