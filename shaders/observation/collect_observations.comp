@@ -35,6 +35,7 @@ layout(constant_id = 1) const bool kColorApart = false;  // the colour camera is
 
 const int kSightSteps = 16;
 const float kNearestOccluder = 0.3;  // metres
+const float kSameFaceCosine = 0.85;  // 32 degrees: normals of one face within a voxel
 
 struct Surface {
     vec3 normal;
@@ -46,9 +47,10 @@ vec2 pixel_of(Camera camera, vec3 in_camera_m) {
     return in_camera_m.z > kNearestDepth ? project(camera, in_camera_m) : vec2(-1e6);
 }
 
-// The mean plane of the cast model around `guess_m`, over about the voxel's own size. `samples` is 1, or 0 where the
-// camera does not see the model near the guess.
-Surface seen_surface(vec3 guess_m, vec3 center_m) {
+// The mean plane of the cast model around `guess_m`, over about the voxel's own size, of one face: that of `known`, or
+// where it shows none, of the point seen nearest to the guess. `samples` is 1, or 0 where the camera does not see the
+// model near the guess.
+Surface seen_surface(vec3 guess_m, vec3 center_m, Surface known) {
     const float voxel_m = frame.grid.voxel_m;
     const vec3 in_camera = to_camera(frame.depth_camera, guess_m);
     const ivec2 pixel = ivec2(floor(pixel_of(frame.depth_camera, in_camera) + 0.5));
@@ -56,29 +58,41 @@ Surface seen_surface(vec3 guess_m, vec3 center_m) {
     const int spread = max(int(voxel_m / (3.0 * max(pixel_m, 1e-6)) + 0.5), 1);
     const float reach_m = 1.25 * voxel_m + pixel_m;
     const ivec2 taps[5] = ivec2[](ivec2(0), ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1), ivec2(1, 1));
-    vec3 normals = vec3(0.0);
-    vec4 points = vec4(0.0);
+    vec3 normals[5];
+    vec3 points[5];
+    vec3 face = vec3(0.0);
+    float agreement = known.samples > 0u ? kSameFaceCosine : 2.0;  // of a tap with the known normal: the best so far
     [[unroll]] for (int i = 0; i < 5; ++i) {
         const vec4 point = imageLoad(position_m, pixel + spread * taps[i]);
         const vec3 n = imageLoad(normal, pixel + spread * taps[i]).xyz;
         const vec3 apart = point.xyz - guess_m;
-        const bool same = point.w > 0.0 && dot(n, n) > 0.5 && dot(apart, apart) <= reach_m * reach_m;
-        normals += same ? n : vec3(0.0);
-        points += same ? vec4(point.xyz - center_m, 1.0) : vec4(0.0);
+        const bool near = point.w > 0.0 && dot(n, n) > 0.5 && dot(apart, apart) <= reach_m * reach_m;
+        normals[i] = near ? n : vec3(0.0);
+        points[i] = point.xyz - center_m;
+        const float agrees = dot(normals[i], known.normal);
+        face = face == vec3(0.0) || agrees > agreement ? normals[i] : face;
+        agreement = max(agreement, agrees);
     }
-    const float size = length(normals);
-    const vec3 mean = normals / max(size, 1e-6);
-    const float offset_vox = dot(mean, points.xyz) / (max(points.w, 1.0) * voxel_m);
-    // Opposite normals are two sides of a thin object.
-    const bool known = size > 0.5 * points.w && points.w > 0.0 && abs(offset_vox) <= 1.0;
-    return Surface(mean, offset_vox, known ? 1u : 0u);
+    vec3 sum = vec3(0.0);
+    vec4 place = vec4(0.0);
+    [[unroll]] for (int i = 0; i < 5; ++i) {
+        const bool same = dot(normals[i], face) > kSameFaceCosine;
+        sum += same ? normals[i] : vec3(0.0);
+        place += same ? vec4(points[i], 1.0) : vec4(0.0);
+    }
+    const vec3 mean = sum / max(length(sum), 1e-6);
+    const float offset_vox = dot(mean, place.xyz) / (max(place.w, 1.0) * voxel_m);
+    return Surface(mean, offset_vox, place.w > 0.0 && abs(offset_vox) <= 1.0 ? 1u : 0u);
 }
 
 // A running mean; once it is one over many frames, only what contradicts it moves it, so that a resting camera changes
-// nothing.
+// nothing. Another face than the known one takes samples from it, and its place when none are left.
 Surface updated(Surface known, Surface seen) {
     if (seen.samples == 0u) return known;
     if (known.samples == 0u) return seen;
+    if (dot(known.normal, seen.normal) < kSameFaceCosine) {
+        return known.samples == 1u ? seen : Surface(known.normal, known.offset_vox, known.samples - 1u);
+    }
     const bool settled = known.samples == kMostSurfaceSamples &&
                          dot(known.normal, seen.normal) > 0.9986 &&  // 3 degrees
                          abs(known.offset_vox - seen.offset_vox) < 0.1;
@@ -97,10 +111,10 @@ bool has_moved(Surface now, Surface before) {
 
 struct Reading {
     bool shown;  // the depth image shows the point
-    bool even;   // and no edge nearby
+    bool even;   // and no edge nearby, and of the face that is known
 };
 
-Reading read_depth(vec3 in_camera, vec2 pixel) {
+Reading read_depth(vec3 in_camera, vec2 pixel, vec3 facing) {
     const vec2 nearest = floor(pixel + 0.5);
     const float reading = imageLoad(depth_m, ivec2(nearest)).x;
     const uint inclination = imageLoad(slope, ivec2(nearest)).x;
@@ -115,7 +129,9 @@ Reading read_depth(vec3 in_camera, vec2 pixel) {
         even = even && there > 0.0 && abs(there - reading - dot(depth_per_px, offset)) <= jump_m;
     }
     const bool shown = reading > 0.0 && inclination != 0u && abs(off_m) <= tolerance_m;
-    return Reading(shown, shown && even);
+    const vec3 shown_normal = imageLoad(normal, ivec2(nearest)).xyz;
+    const bool same_face = shown_normal == vec3(0.0) || dot(shown_normal, facing) > kSameFaceCosine;
+    return Reading(shown, shown && even && same_face);
 }
 
 // The colour camera sees the point too: from there to it, nothing that the depth image shows is in between. What the
@@ -183,7 +199,7 @@ void main() {
     const Surface before = Surface(surface_normal(known), surface_offset_vox(known), surface_samples(known));
     const vec3 guess_m =
         center_m + (before.samples > 0u ? before.normal * (before.offset_vox * frame.grid.voxel_m) : vec3(0.0));
-    const Surface surface = updated(before, seen_surface(guess_m, center_m));
+    const Surface surface = updated(before, seen_surface(guess_m, center_m, before));
     const vec3 point_m = center_m + surface.normal * (surface.offset_vox * frame.grid.voxel_m);
 
     const vec3 in_depth = to_camera(frame.depth_camera, point_m);
@@ -191,7 +207,7 @@ void main() {
     const vec3 in_color = to_camera(frame.color_camera, point_m);
     const vec3 toward = camera_center_m(frame.color_camera) - point_m;
     const float distance_m = length(toward);
-    const Reading reading = read_depth(in_depth, depth_px);
+    const Reading reading = read_depth(in_depth, depth_px, surface.normal);
     const bool faces = surface.samples > 0u && distance_m <= frame.max_distance_m &&
                        dot(surface.normal, toward) >= frame.min_cosine * distance_m;
     vec3 rgb;
