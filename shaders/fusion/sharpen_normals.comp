@@ -13,11 +13,12 @@ layout(binding = 2, rgba16f) uniform writeonly image2D sharp_normal;
 layout(push_constant) uniform Push { SharpenNormalsParams params; };
 
 const int kTaps = 8;
-const float kReachVox = 2.0;       // of the taps
-const float kOnPlaneVox = 0.5;     // farther from a plane is not on it
-const float kEvenCosine = 0.985;   // 10 degrees: normals of a smooth surface, beside which there is no edge
-const float kSameCosine = 0.94;    // 20 degrees: normals of one face
-const float kOwnSupport = 0.5;     // points that another face must have more than the gradient's own
+const float kReachVox = 1.5;     // of the taps
+const float kOnPlaneVox = 0.7;   // farther from a plane is not on it
+const float kEvenCosine = 0.7;   // 45 degrees: normals that differ by less around a point are a curved face's
+const float kSameCosine = 0.94;  // 20 degrees: those that differ by more are not averaged
+const float kFaceSupport = 2.0;  // points that a face has at least,
+const float kOwnSupport = 0.5;   // and more than the plane of the gradient's own normal
 
 vec3 around[kTaps];   // where the points are, from the pixel's own; far away: there is none
 vec3 normals[kTaps];  // 0: not known
@@ -34,7 +35,7 @@ float support_of(vec3 facing) {
 
 // The normal of the face that most of the points around lie on; `own` unless another has clearly more of them.
 vec3 best_face(vec3 own) {
-    float most = own == vec3(0.0) ? 0.0 : support_of(own) + kOwnSupport;
+    float most = own == vec3(0.0) ? 0.0 : max(support_of(own) + kOwnSupport, kFaceSupport);
     vec3 best = own;
     [[unroll]] for (int i = 0; i < kTaps; ++i) {
         const bool on_plane = abs(dot(normals[i], around[i])) < kOnPlaneVox * params.voxel_m;
@@ -52,9 +53,8 @@ void main() {
     const vec3 own = imageLoad(normal, pixel).xyz;
     const int reach = max(int(kReachVox * params.voxel_m * params.focal_px / max(hit.w, 1e-3) + 0.5), 1);
     const int diagonal = int(0.7 * float(reach) + 0.5);
-    const ivec2 taps[kTaps] =
-        ivec2[](ivec2(reach, 0), ivec2(diagonal), ivec2(0, reach), ivec2(-diagonal, diagonal), ivec2(-reach, 0),
-                ivec2(-diagonal), ivec2(0, -reach), ivec2(diagonal, -diagonal));
+    const ivec2 taps[kTaps] = ivec2[](ivec2(reach, 0), ivec2(diagonal), ivec2(0, reach), ivec2(-diagonal, diagonal),
+                                      ivec2(-reach, 0), ivec2(-diagonal), ivec2(0, -reach), ivec2(diagonal, -diagonal));
     bool even = true;
     [[unroll]] for (int i = 0; i < kTaps; ++i) {
         const vec4 there = imageLoad(position_m, pixel + taps[i]);  // zero outside the image
@@ -67,7 +67,8 @@ void main() {
     vec3 sum = face;
     [[unroll]] for (int i = 0; i < kTaps; ++i) {
         const bool on_plane = abs(dot(face, around[i])) < kOnPlaneVox * params.voxel_m;
-        sum += on_plane && dot(normals[i], face) > kSameCosine ? normals[i] : vec3(0.0);
+        const float agreement = max(dot(normals[i], face) - kSameCosine, 0.0) * (1.0 / (1.0 - kSameCosine));
+        sum += on_plane ? agreement * normals[i] : vec3(0.0);
     }
     imageStore(sharp_normal, pixel, vec4(face == vec3(0.0) ? face : normalize(sum), 0.0));
 }

@@ -25,8 +25,10 @@ void main() {
     const uint item = gl_GlobalInvocationID.x;
     if (item == 0u) {
         const uint next = (cursor + bins) % kAcceptBins;
-        if (never_marched) cursors.never_marched[parity ^ 1u] = next;
-        else cursors.changed[parity ^ 1u] = next;
+        if (never_marched)
+            cursors.never_marched[parity ^ 1u] = next;
+        else
+            cursors.changed[parity ^ 1u] = next;
     }
     if (item >= count) return;
     const uint record = waiting[1u + item];

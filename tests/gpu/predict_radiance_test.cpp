@@ -74,7 +74,7 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
             const glm::dvec3 point(view.position_m.at(x, y));
             // At the image's border the model has no normal: the records' does, which is kept with 8 bits.
             const bool known = view.normal.at(x, y) != glm::vec4(0);
-            const glm::dvec3 normal = known ? reference::smooth_normal(view.normal, x, y) : glm::dvec3(0, 0, -1);
+            const glm::dvec3 normal = known ? glm::dvec3(view.normal.at(x, y)) : glm::dvec3(0, 0, -1);
             const glm::dvec3 offset = glm::dvec3(kLamp.position_m) - point, to_light = glm::normalize(offset);
             const glm::dvec3 received =
                 glm::dvec3(kLamp.intensity) * std::max(glm::dot(normal, to_light), 0.0) / glm::dot(offset, offset);
@@ -322,7 +322,7 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
             const ShadedView view = rig.predict(camera, poses[0]);
             const size_t before = compared;
             for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
-                const glm::dvec3 normal = reference::smooth_normal(view.normal, x, y);
+                const glm::dvec3 normal(view.normal.at(x, y));
                 if (normal == glm::dvec3(0)) return;
                 const auto expected =
                     reference::predict_radiance(scene, glm::dvec3(view.position_m.at(x, y)), normal, glm::dvec3(0));

@@ -44,38 +44,75 @@ struct Plane {
     double offset_vox;
 };
 
-std::optional<Plane> plane_around(glm::dvec3 guess_m, glm::dvec3 center_m, const ObservedFrame& frame,
-                                  const ObservationRules& rules) {
+constexpr double kSameFaceCosine = 0.5;
+
+struct SeenPoint {
+    glm::dvec3 place_m, normal;
+};
+
+/// The pixel that shows the guess and four around it, as far as they show the model near the guess.
+std::vector<SeenPoint> points_around(glm::dvec3 guess_m, const ObservedFrame& frame, const ObservationRules& rules) {
     const auto pixel = pixel_of(frame.depth_camera, frame.world_from_depth, guess_m);
     if (!pixel) return {};
     const double z = transformed(rigid_inverse(frame.world_from_depth), guess_m).z;
     const double pixel_m = z / frame.depth_camera.fx;
     const int spread = std::max(static_cast<int>(rules.voxel_m / 3 / pixel_m + 0.5), 1);
-    glm::dvec3 normals(0), points(0);
-    double count = 0;
+    std::vector<SeenPoint> points;
     for (const glm::ivec2 side : {glm::ivec2(0), {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
         const glm::ivec2 at = nearest_to(*pixel) + spread * side;
         const glm::dvec4 point(load(frame.position_m, at));
         const glm::dvec3 normal(load(frame.normal, at));
         if (point.w <= 0 || glm::length(normal) < 0.7) continue;
         if (glm::distance(glm::dvec3(point), guess_m) > 1.25 * rules.voxel_m + pixel_m) continue;
-        normals += normal;
-        points += glm::dvec3(point);
+        points.push_back({glm::dvec3(point), normal});
+    }
+    return points;
+}
+
+/// The face that a voxel is of: the normal most like the known one, if any is; else that of the first point.
+glm::dvec3 face_of(const std::vector<SeenPoint>& points, const ObservedVoxel& voxel) {
+    glm::dvec3 face = points.front().normal;
+    double best = voxel.surface_samples > 0 ? kSameFaceCosine : 2;
+    for (const SeenPoint& point : points) {
+        const double agreement = glm::dot(point.normal, voxel.normal);
+        if (agreement <= best) continue;
+        best = agreement;
+        face = point.normal;
+    }
+    return face;
+}
+
+std::optional<Plane> plane_around(glm::dvec3 guess_m, glm::dvec3 center_m, const ObservedVoxel& voxel,
+                                  const ObservedFrame& frame, const ObservationRules& rules) {
+    const std::vector<SeenPoint> points = points_around(guess_m, frame, rules);
+    if (points.empty()) return {};
+    const glm::dvec3 face = face_of(points, voxel);
+    glm::dvec3 normals(0), places(0);
+    double count = 0;
+    for (const SeenPoint& point : points) {
+        if (glm::dot(point.normal, face) <= kSameFaceCosine) continue;
+        normals += point.normal;
+        places += point.place_m;
         ++count;
     }
-    if (count == 0 || glm::length(normals) <= 0.5 * count) return {};
+    if (count == 0) return {};
     const glm::dvec3 normal = glm::normalize(normals);
-    const double offset_vox = glm::dot(normal, points / count - center_m) / rules.voxel_m;
+    const double offset_vox = glm::dot(normal, places / count - center_m) / rules.voxel_m;
     if (std::abs(offset_vox) > 1) return {};
     return Plane{normal, offset_vox};
 }
 
 void update_surface(ObservedVoxel& voxel, const Plane& seen) {
     constexpr int kMost = 16;
-    if (voxel.surface_samples == 0) {
+    const bool other_face = glm::dot(voxel.normal, seen.normal) < kSameFaceCosine;
+    if (voxel.surface_samples == 0 || (voxel.surface_samples == 1 && other_face)) {
         voxel.normal = seen.normal;
         voxel.offset_vox = seen.offset_vox;
         voxel.surface_samples = 1;
+        return;
+    }
+    if (other_face) {
+        --voxel.surface_samples;
         return;
     }
     const bool agrees =
@@ -97,6 +134,12 @@ std::optional<glm::ivec2> reading_of(glm::dvec3 point_m, const ObservedFrame& fr
     const double z = transformed(rigid_inverse(frame.world_from_depth), point_m).z;
     const double off = reading + glm::dot(slope.depth_per_px, *pixel - glm::dvec2(center)) - z;
     return std::abs(off) * slope.plane_factor <= tolerance_m(rules, z) ? std::optional(center) : std::nullopt;
+}
+
+/// The model shows the voxel's face at the pixel, or no normal.
+bool shows_face(glm::ivec2 pixel, const ObservedVoxel& voxel, const ObservedFrame& frame) {
+    const glm::dvec3 shown(load(frame.normal, pixel));
+    return shown == glm::dvec3(0) || glm::dot(shown, voxel.normal) > kSameFaceCosine;
 }
 
 bool is_even_around(glm::ivec2 center, const ObservedFrame& frame, const ObservationRules& rules) {
@@ -206,12 +249,13 @@ std::set<std::array<int, 3>> seen_voxels(const ObservedFrame& frame, const Obser
 void observe(ObservedVoxel& voxel, glm::ivec3 coordinates, const ObservedFrame& frame, const ObservationRules& rules) {
     const glm::dvec3 center_m = (glm::dvec3(coordinates) + 0.5) * rules.voxel_m;
     const auto point = [&] { return center_m + voxel.normal * voxel.offset_vox * rules.voxel_m; };
-    if (const auto plane = plane_around(point(), center_m, frame, rules)) update_surface(voxel, *plane);
+    if (const auto plane = plane_around(point(), center_m, voxel, frame, rules)) update_surface(voxel, *plane);
     if (voxel.surface_samples == 0) return;
     const glm::dvec3 toward = glm::dvec3(frame.world_from_color[3]) - point();
     const auto pixel = reading_of(point(), frame, rules);
     if (!pixel || !faces(voxel.normal, toward, rules)) return;
     vote(voxel, load(frame.labels, *pixel));
+    if (!shows_face(*pixel, voxel, frame)) return;
     if (!is_even_around(*pixel, frame, rules) || !line_of_sight_is_free(point(), frame, rules)) return;
     if (const auto seen = seen_color(point(), frame)) add(voxel.seen, *seen, rules.merge_angle_degrees);
 }

@@ -141,17 +141,4 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
     return result;
 }
 
-glm::dvec3 smooth_normal(const Image<glm::vec4>& normals, uint32_t x, uint32_t y) {
-    const glm::dvec3 own(normals.at(x, y));
-    if (own == glm::dvec3(0)) return own;
-    glm::dvec3 sum = 0.3 * own;
-    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
-        const int column = static_cast<int>(x) + dx, row = static_cast<int>(y) + dy;
-        if (!normals.extent().contains(column, row)) continue;
-        const glm::dvec3 beside(normals.at(static_cast<uint32_t>(column), static_cast<uint32_t>(row)));
-        sum += std::max(glm::dot(own, beside) - 0.7, 0.0) * beside;
-    }
-    return glm::normalize(sum);
-}
-
 }  // namespace patina::reference

@@ -54,8 +54,4 @@ struct ShadedPoint {
 /// Reflectance and radiance of a surface point as passes/shading/predict_radiance.h defines them.
 ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 viewer_m);
 
-/// The normal at a pixel as shading takes it: the mean of its own and of those of the four pixels beside it, each
-/// weighted by how far the cosine between the two is above 0.7. 0 where it has none.
-glm::dvec3 smooth_normal(const Image<glm::vec4>& normals, uint32_t x, uint32_t y);
-
 }  // namespace patina::reference

@@ -1,0 +1,89 @@
+#include "tests/reference/sharpen_normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace patina::reference {
+
+namespace {
+
+/// A point near another one, and its normal where that is known.
+struct Neighbour {
+    glm::dvec3 away_m;
+    glm::dvec3 normal;
+};
+
+struct Neighbourhood {
+    std::vector<Neighbour> points;
+    bool curved_at_most = true;  // all eight are there and their normals are within 45 degrees
+};
+
+Neighbourhood look_around(const SeenSurface& seen, glm::ivec2 pixel, int reach) {
+    const glm::dvec4 own = seen.position_m.at(pixel.x, pixel.y);
+    const int diagonal = static_cast<int>(std::floor(0.7 * reach + 0.5));
+    Neighbourhood found;
+    for (const glm::ivec2 side : {glm::ivec2(1, 0), {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) {
+        const glm::ivec2 at = pixel + side * (side.x != 0 && side.y != 0 ? diagonal : reach);
+        const bool inside = seen.position_m.extent().contains(at.x, at.y);
+        const glm::dvec3 normal = inside ? seen.normal.at(at.x, at.y) : glm::dvec3(0);
+        if (glm::dot(normal, seen.normal.at(pixel.x, pixel.y)) < 0.7) found.curved_at_most = false;
+        if (!inside || seen.position_m.at(at.x, at.y).w <= 0) continue;
+        found.points.push_back({glm::dvec3(seen.position_m.at(at.x, at.y)) - glm::dvec3(own), normal});
+    }
+    return found;
+}
+
+double points_on_plane(const Neighbourhood& around, glm::dvec3 normal, double tolerance_m) {
+    double count = 0;
+    for (const Neighbour& point : around.points) {
+        const double off = glm::dot(normal, point.away_m) / tolerance_m;
+        count += std::max(1 - off * off, 0.0);
+    }
+    return count;
+}
+
+glm::dvec3 face_of(const Neighbourhood& around, glm::dvec3 own, double tolerance_m) {
+    if (around.curved_at_most) return own;
+    glm::dvec3 best = own;
+    double most = own == glm::dvec3(0) ? 0 : std::max(points_on_plane(around, own, tolerance_m) + 0.5, 2.0);
+    for (const Neighbour& point : around.points) {
+        if (point.normal == glm::dvec3(0)) continue;
+        if (std::abs(glm::dot(point.normal, point.away_m)) >= tolerance_m) continue;
+        const double count = points_on_plane(around, point.normal, tolerance_m);
+        if (count <= most) continue;
+        most = count;
+        best = point.normal;
+    }
+    return best;
+}
+
+glm::dvec3 smoothed(const Neighbourhood& around, glm::dvec3 face, double tolerance_m) {
+    if (face == glm::dvec3(0)) return face;
+    glm::dvec3 sum = face;
+    for (const Neighbour& point : around.points) {
+        if (std::abs(glm::dot(face, point.away_m)) >= tolerance_m) continue;
+        sum += std::max(glm::dot(point.normal, face) - 0.94, 0.0) / 0.06 * point.normal;
+    }
+    return glm::normalize(sum);
+}
+
+}  // namespace
+
+Image<glm::dvec3> sharpen_normals(const SeenSurface& seen, double focal_px, double voxel_m) {
+    Image<glm::dvec3> sharp(seen.position_m.extent());
+    for (uint32_t y = 0; y < sharp.extent().height; ++y) {
+        for (uint32_t x = 0; x < sharp.extent().width; ++x) {
+            const double depth = seen.position_m.at(x, y).w;
+            const double reach = 1.5 * voxel_m * focal_px / std::max(depth, 1e-3);
+            const Neighbourhood around =
+                look_around(seen, glm::ivec2(x, y), std::max(static_cast<int>(std::floor(reach + 0.5)), 1));
+            const glm::dvec3 own = seen.normal.at(x, y);
+            const glm::dvec3 face = depth > 0 ? face_of(around, own, 0.7 * voxel_m) : own;
+            sharp.at(x, y) = smoothed(around, face, 0.7 * voxel_m);
+        }
+    }
+    return sharp;
+}
+
+}  // namespace patina::reference
