@@ -4,10 +4,12 @@
 
 #include <cstring>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation_rig.h"
+#include "tests/reference/light_samples.h"
 
 namespace patina {
 namespace {
@@ -151,6 +153,51 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheBoxIsBetween) {
     EXPECT_GT(lit, 200u);
     EXPECT_GT(shaded, 20u);
     EXPECT_LE(wrong, (lit + shaded) / 100);
+}
+
+TEST_F(SampleSurface, LampsAgreeWithTheReferenceOnEverySurface) {
+    const auto rig = make_model();
+    const auto drawn = draw(*rig);
+    const reference::Volume volume = rig->fusion().volume();
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> side_m(-1, 1), height_m(-0.9f, -0.05f);
+    std::vector<glm::vec3> places_m;
+    // Every other one is near the box, or within.
+    for (int i = 0; i < 8; ++i) {
+        const float near = i % 2 == 0 ? 1.0f : 0.35f;
+        places_m.emplace_back(near * side_m(random), near * height_m(random), near * side_m(random));
+    }
+    graph::Frame frame = runner().begin();
+    const VoxelMap& map = rig->fusion().map();
+    const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
+    const graph::Readback read = frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m));
+    run(std::move(frame));
+    const auto received = read.as<float>();
+    uint32_t lit = 0, shaded = 0, low = 0;
+    for (size_t lamp = 0; lamp < places_m.size(); ++lamp) {
+        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+            const gpu::LightSample& s = drawn[i];
+            if (s.point_m.w == 0) continue;
+            const float got = received[lamp * gpu::kLightSamples + i];
+            const auto expected =
+                reference::try_light(volume, glm::dvec3(s.point_m), glm::dvec3(s.normal), glm::dvec3(places_m[lamp]));
+            // The march looks at nearest voxels, and takes half a voxel for noise.
+            const double least_vox = expected.least_distance_m / volume.voxel_m;
+            if (expected.received == 0) {
+                ++low;
+                EXPECT_EQ(got, 0);
+            } else if (least_vox > 0.5) {
+                ++lit;
+                EXPECT_NEAR(got, expected.received, 1e-4 * expected.received) << i << " from lamp " << lamp;
+            } else if (least_vox < -1.5) {
+                ++shaded;
+                EXPECT_EQ(got, 0) << i << " from lamp " << lamp;
+            }
+        }
+    }
+    EXPECT_GT(lit, 2000u);
+    EXPECT_GT(shaded, 100u);
+    EXPECT_GT(low, 30u);
 }
 
 }  // namespace
