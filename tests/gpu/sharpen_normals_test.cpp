@@ -45,7 +45,7 @@ SeenSurface blurred_edge(Extent2D extent, double blur_m) {
 
 class SharpenNormals : public GpuTest {
   protected:
-    Image<glm::vec3> sharpen(const SeenSurface& seen) {
+    Image<glm::dvec3> sharpen(const SeenSurface& seen) {
         graph::Frame frame = runner().begin();
         const std::vector<glm::vec4> positions(seen.position_m.pixels().begin(), seen.position_m.pixels().end());
         std::vector<uint64_t> normals;
@@ -58,8 +58,8 @@ class SharpenNormals : public GpuTest {
             add_sharpen_normals(frame, model, static_cast<float>(kFocalPx), static_cast<float>(kVoxelM)).normal);
         run(std::move(frame));
         const Image<uint64_t> words = read.image<uint64_t>();
-        Image<glm::vec3> sharp(extent);
-        for (size_t i = 0; i < extent.area(); ++i) sharp.pixels()[i] = glm::unpackHalf4x16(words.pixels()[i]);
+        Image<glm::dvec3> sharp(extent);
+        for (size_t i = 0; i < extent.area(); ++i) sharp.pixels()[i] = glm::dvec3(glm::unpackHalf4x16(words.pixels()[i]));
         return sharp;
     }
 };
@@ -69,9 +69,9 @@ double degrees_between(glm::dvec3 a, glm::dvec3 b) {
 }
 
 TEST_F(SharpenNormals, EachSideOfAnEdgeHasItsOwnFacesNormal) {
-    const SeenSurface seen = blurred_edge(kExtent, 0.009);
-    ASSERT_GT(degrees_between(seen.normal.at(31, 20), face_normal(1)), 20) << "the edge is blurred";
-    const Image<glm::vec3> sharp = sharpen(seen);
+    const SeenSurface seen = blurred_edge(kExtent, 0.005);
+    ASSERT_GT(degrees_between(seen.normal.at(31, 20), face_normal(1)), 15) << "the edge is blurred";
+    const Image<glm::dvec3> sharp = sharpen(seen);
     for (uint32_t y = 2; y + 2 < kExtent.height; ++y) {
         for (uint32_t x = 2; x + 2 < kExtent.width; ++x) {
             ASSERT_LT(degrees_between(sharp.at(x, y), face_normal(seen.position_m.at(x, y).x)), 3) << x << ' ' << y;
@@ -87,10 +87,15 @@ TEST_F(SharpenNormals, CurvedFacesStayAsTheyAre) {
     const SeenSurface seen = surface(
         kExtent, [&](double x, double y) { return 2 - height(x, y); },
         [&](double x, double y) { return glm::normalize(glm::dvec3(x, y, -height(x, y) - 1e-9)); });
-    const Image<glm::vec3> sharp = sharpen(seen);
-    for (uint32_t y = 15; y < 32; ++y)
-        for (uint32_t x = 22; x < 39; ++x)
-            ASSERT_LT(degrees_between(sharp.at(x, y), seen.normal.at(x, y)), 1.5) << x << ' ' << y;
+    const Image<glm::dvec3> sharp = sharpen(seen);
+    size_t compared = 0;
+    for (size_t i = 0; i < kExtent.area(); ++i) {
+        const glm::dvec3 normal = seen.normal.pixels()[i];
+        if (-normal.z < 0.6) continue;  // towards the rim a pixel is no longer small
+        ASSERT_LT(degrees_between(sharp.pixels()[i], normal), 1) << i % kExtent.width << ' ' << i / kExtent.width;
+        ++compared;
+    }
+    EXPECT_GT(compared, 250u);
 }
 
 TEST_F(SharpenNormals, WhatIsNotKnownIsTakenFromItsPlane) {
@@ -98,9 +103,9 @@ TEST_F(SharpenNormals, WhatIsNotKnownIsTakenFromItsPlane) {
     seen.normal.at(20, 20) = glm::dvec3(0);
     seen.position_m.at(10, 10) = glm::dvec4(0);
     seen.normal.at(10, 10) = glm::dvec3(0);
-    const Image<glm::vec3> sharp = sharpen(seen);
+    const Image<glm::dvec3> sharp = sharpen(seen);
     EXPECT_LT(degrees_between(sharp.at(20, 20), face_normal(-1)), 0.1);
-    EXPECT_EQ(sharp.at(10, 10), glm::vec3(0)) << "nothing was hit there";
+    EXPECT_EQ(sharp.at(10, 10), glm::dvec3(0)) << "nothing was hit there";
 }
 
 TEST_F(SharpenNormals, MatchesTheReferenceOnWholeGroupsAndTails) {
@@ -117,11 +122,11 @@ TEST_F(SharpenNormals, MatchesTheReferenceOnWholeGroupsAndTails) {
                 i % 17 == 5 ? glm::dvec3(0) : glm::dvec3(glm::unpackHalf4x16(glm::packHalf4x16(glm::vec4(normal, 0))));
             if (i % 23 == 7) seen.position_m.pixels()[i] = glm::dvec4(0);
         }
-        const Image<glm::vec3> got = sharpen(seen);
+        const Image<glm::dvec3> got = sharpen(seen);
         const Image<glm::dvec3> expected = reference::sharpen_normals(seen, kFocalPx, kVoxelM);
         size_t off = 0;
         for (size_t i = 0; i < extent.area(); ++i) {
-            if (glm::distance(glm::dvec3(got.pixels()[i]), expected.pixels()[i]) > 2e-3) ++off;
+            if (glm::distance(got.pixels()[i], expected.pixels()[i]) > 2e-3) ++off;
         }
         // Where two faces have equally many points, rounding decides.
         EXPECT_LE(off, extent.area() / 500) << extent.width << " x " << extent.height;
