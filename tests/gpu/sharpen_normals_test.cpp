@@ -59,7 +59,8 @@ class SharpenNormals : public GpuTest {
         run(std::move(frame));
         const Image<uint64_t> words = read.image<uint64_t>();
         Image<glm::dvec3> sharp(extent);
-        for (size_t i = 0; i < extent.area(); ++i) sharp.pixels()[i] = glm::dvec3(glm::unpackHalf4x16(words.pixels()[i]));
+        for (size_t i = 0; i < extent.area(); ++i)
+            sharp.pixels()[i] = glm::dvec3(glm::unpackHalf4x16(words.pixels()[i]));
         return sharp;
     }
 };

@@ -75,12 +75,13 @@ Image<glm::dvec3> sharpen_normals(const SeenSurface& seen, double focal_px, doub
     for (uint32_t y = 0; y < sharp.extent().height; ++y) {
         for (uint32_t x = 0; x < sharp.extent().width; ++x) {
             const double depth = seen.position_m.at(x, y).w;
-            const double reach = 1.5 * voxel_m * focal_px / std::max(depth, 1e-3);
-            const Neighbourhood around =
-                look_around(seen, glm::ivec2(x, y), std::max(static_cast<int>(std::floor(reach + 0.5)), 1));
+            const double pixel_m = std::max(depth, 1e-3) / focal_px;
+            const int reach = std::max(static_cast<int>(std::floor(1.5 * voxel_m / pixel_m + 0.5)), 1);
+            const double tolerance_m = 0.35 * reach * pixel_m;
+            const Neighbourhood around = look_around(seen, glm::ivec2(x, y), reach);
             const glm::dvec3 own = seen.normal.at(x, y);
-            const glm::dvec3 face = depth > 0 ? face_of(around, own, 0.7 * voxel_m) : own;
-            sharp.at(x, y) = smoothed(around, face, 0.7 * voxel_m);
+            const glm::dvec3 face = depth > 0 ? face_of(around, own, tolerance_m) : own;
+            sharp.at(x, y) = smoothed(around, face, tolerance_m);
         }
     }
     return sharp;
