@@ -9,10 +9,14 @@ PredictedImages add_restore_detail(graph::Frame& frame, const PredictedImages& p
                                    const RestoreDetailInputs& inputs) {
     const Extent2D extent =
         frame.common_extent({inputs.position_m, inputs.normal, inputs.color, predicted.kd, predicted.rgb});
+    auto pack = frame.compute("shading.pack_detail", spirv::pack_detail);
+    pack.read("color", inputs.color).read("light", predicted.light).read("kd", predicted.kd);
+    const graph::ImageId detail = pack.create("detail", {extent, vulkan::Format::kRgba32u});
+    pack.dispatch_covering(extent);
+
     auto pass = frame.compute("shading.restore_detail", spirv::restore_detail);
-    pass.read("position_m", inputs.position_m).read("normal", inputs.normal).read("color", inputs.color);
-    pass.read("light", predicted.light).read("kd", predicted.kd).read("rgb", predicted.rgb);
-    pass.read("ks_alpha", predicted.ks_alpha);
+    pass.read("position_m", inputs.position_m).read("normal", inputs.normal).read("detail", detail);
+    pass.read("light", predicted.light).read("rgb", predicted.rgb).read("ks_alpha", predicted.ks_alpha);
     PredictedImages detailed = predicted;
     detailed.kd = pass.create("detailed_kd", {extent, vulkan::Format::kRgba16f});
     detailed.rgb = pass.create("detailed_rgb", {extent, vulkan::Format::kRgba16f});

@@ -1,64 +1,50 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Restores what of the diffuse albedo is finer than a voxel of the observations: the fused colour over the light,
 // scaled so that its mean over the voxels around the point is that of kd.
+#include "lib/packed_detail.glsl"
 #include "shared/restore_detail.h"
 
 layout(local_size_x = kRestoreDetailGroup, local_size_y = kRestoreDetailGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform readonly image2D normal;
-layout(binding = 2, rgba16f) uniform readonly image2D color;
+layout(binding = 2, rgba32ui) uniform readonly uimage2D detail;
 layout(binding = 3, rgba16f) uniform readonly image2D light;
-layout(binding = 4, rgba16f) uniform readonly image2D kd;
-layout(binding = 5, rgba16f) uniform readonly image2D rgb;
-layout(binding = 6, rgba16f) uniform readonly image2D ks_alpha;
-layout(binding = 7, rgba16f) uniform writeonly image2D detailed_kd;
-layout(binding = 8, rgba16f) uniform writeonly image2D detailed_rgb;
+layout(binding = 4, rgba16f) uniform readonly image2D rgb;
+layout(binding = 5, rgba16f) uniform readonly image2D ks_alpha;
+layout(binding = 6, rgba16f) uniform writeonly image2D detailed_kd;
+layout(binding = 7, rgba16f) uniform writeonly image2D detailed_rgb;
 layout(push_constant) uniform Push { RestoreDetailParams params; };
 
 const int kTaps = 2;              // on each side of the pixel, along each axis
 const float kReachVox = 1.0;      // of the taps: as far as kd is interpolated
 const float kOffPlaneVox = 0.5;   // farther from the tangent plane is another surface
-const float kLeastLight = 0.004;  // irradiance over pi: a white surface would be as dark as 8 bits' first step
 const float kEvenLight = 0.05;    // shadows that vary by less leave all detail,
 const float kUnevenLight = 0.25;  // those that vary by more leave none: it may be their border
 const float kMostBrighter = 4.0;  // than the voxels' kd: what is still brighter is a highlight
 const float kShading = 0.1;       // relative contrast that normals and light are off by within a voxel,
 const float kHighlight = 0.5;     // and that of what highlights leave in a mean of views, over ks / kd
 
-struct Tap {
-    vec3 kd;
-    vec3 apparent;  // fused colour over light: the albedo of what is evenly lit and has no highlight
-    float shadow;   // the part of the light that shadows leave
-    bool lit;       // and its colour is known
-    bool known;     // kd is
-};
-
 float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
-Tap tap_at(ivec2 pixel) {
-    const vec4 known = imageLoad(kd, pixel), seen = imageLoad(color, pixel), received = imageLoad(light, pixel);
-    const bool lit = all(greaterThan(received.rgb, vec3(kLeastLight)));
-    return Tap(known.rgb, seen.rgb / max(received.rgb, vec3(kLeastLight)), received.a, lit && seen.a > 0.0,
-               known.a > 0.0);
-}
-
 // The albedo with its detail.
-vec3 restored(ivec2 pixel, vec4 hit, Tap own) {
+vec3 restored(ivec2 pixel, vec4 hit, Detail own) {
     const float reach_m = kReachVox * params.voxel_m;
     const float step_px = max(reach_m * params.focal_px / hit.w / float(kTaps), 1.0);
     const vec3 facing = imageLoad(normal, pixel).xyz;
     vec3 sum_kd = vec3(0.0), sum_apparent = vec3(0.0);
     float least = own.shadow, most = own.shadow, shares = 0.0, sum = 0.0, squares = 0.0;
     for (int y = -kTaps; y <= kTaps; ++y) {
-        for (int x = -kTaps; x <= kTaps; ++x) {
+        // Every second one, as on a draughts-board: they tell as much.
+        for (int x = -kTaps + (y & 1); x <= kTaps; x += 2) {
             const ivec2 at = pixel + ivec2(round(vec2(x, y) * step_px));
             const vec4 there = imageLoad(position_m, at);  // zero outside the image
             const vec3 away_m = there.xyz - hit.xyz;
             const bool near = there.w > 0.0 && dot(away_m, away_m) < 4.0 * reach_m * reach_m &&
                               abs(dot(away_m, facing)) < kOffPlaneVox * params.voxel_m;
             if (!near) continue;
-            const Tap tap = tap_at(at);
+            const Detail tap = unpack_detail(imageLoad(detail, at));
             if (!tap.lit || !tap.known) continue;
             const float share = exp(-2.0 * dot(away_m, away_m) / (reach_m * reach_m));
             sum_kd += share * tap.kd;
@@ -71,19 +57,19 @@ vec3 restored(ivec2 pixel, vec4 hit, Tap own) {
             most = max(most, tap.shadow);
         }
     }
-    const vec3 detail = min(own.apparent / max(sum_apparent, vec3(1e-6)) * sum_kd, kMostBrighter * own.kd);
+    const vec3 detailed = min(own.apparent / max(sum_apparent, vec3(1e-6)) * sum_kd, kMostBrighter * own.kd);
     const float even = 1.0 - smoothstep(kEvenLight, kUnevenLight, most - least);
     // What the contrast owes to paint, if it is as strong as what it may owe to shading and highlights.
     const float contrast2 = max(squares * shares / max(sum * sum, 1e-12) - 1.0, 0.0);
     const float doubt = kShading + kHighlight * mean_of(imageLoad(ks_alpha, pixel).rgb) / max(mean_of(own.kd), 0.01);
-    return mix(own.kd, min(detail, vec3(1.0)), even * contrast2 / (contrast2 + doubt * doubt));
+    return mix(own.kd, min(detailed, vec3(1.0)), even * contrast2 / (contrast2 + doubt * doubt));
 }
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(kd)))) return;
+    if (any(greaterThanEqual(pixel, imageSize(detail)))) return;
     const vec4 hit = imageLoad(position_m, pixel), shaded = imageLoad(rgb, pixel);
-    const Tap own = tap_at(pixel);
+    const Detail own = unpack_detail(imageLoad(detail, pixel));
     vec4 detailed = vec4(own.kd, own.known ? 1.0 : 0.0);
     if (hit.w > 0.0 && own.lit) {
         detailed = vec4(own.known ? restored(pixel, hit, own) : min(own.apparent, vec3(1.0)), 1.0);

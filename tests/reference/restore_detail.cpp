@@ -29,13 +29,15 @@ glm::dvec3 apparent(const DetailView& view, Pixel p) {
     return glm::dvec3(view.color.at(p.x, p.y)) / glm::dvec3(view.light.at(p.x, p.y));
 }
 
-/// The pixels of a 5 x 5 pattern, two voxels wide, that show the same surface where it is lit and known.
+/// The pixels of every second place of a 5 x 5 pattern, two voxels wide, that show the same surface where it is lit and
+/// known.
 std::vector<Neighbour> neighbours(const DetailView& view, Pixel p) {
     const glm::dvec4 hit = view.position_m.at(p.x, p.y);
     const double step_px = std::max(view.voxel_m * view.focal_px / hit.w / 2, 1.0);
     std::vector<Neighbour> found;
     for (int dy = -2; dy <= 2; ++dy) {
         for (int dx = -2; dx <= 2; ++dx) {
+            if ((dx + dy) % 2 != 0) continue;
             const int x = static_cast<int>(p.x) + static_cast<int>(std::lround(dx * step_px));
             const int y = static_cast<int>(p.y) + static_cast<int>(std::lround(dy * step_px));
             if (!view.kd.extent().contains(x, y)) continue;

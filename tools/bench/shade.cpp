@@ -8,10 +8,13 @@
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
+#include "passes/fusion/shade_color.h"
+#include "passes/fusion/sharpen_normals.h"
 #include "passes/observation/observation.h"
 #include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
+#include "passes/shading/restore_detail.h"
 #include "tools/bench/distribution.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
@@ -141,27 +144,35 @@ class Bench {
         runner().submit(std::move(frame));
     }
 
+    /// With shading, or without it; what shading reads is there in both.
     graph::Readback cast(bool shade, bool read_back = false) {
         graph::Readback rgb;
         graph::Frame frame = runner().begin();
         const VoxelMapIds voxels = map().import(frame);
         const VisibleBlocks blocks = visible(frame, voxels);
         const RaycastImages model = add_raycast(frame, map(), voxels, blocks, access());
-        frame.keep(model.position_m);
-        frame.keep(model.normal);
+        const graph::ImageId color = add_shade_color(frame, map(), voxels, blocks, model.position_m);
+        for (const graph::ImageId image : {model.position_m, model.normal, color}) frame.keep(image);
         if (shade) {
-            const PredictedImages predicted = add_predict_radiance(
-                frame, map(), voxels, records_, records_.import(frame), state_.import(frame),
-                {model.position_m, model.normal, blocks.view, blocks.grid, lights_.upload(frame),
-                 materials_.import(frame),
-                 add_average_segments(frame, records_, records_.import(frame), materials_.capacity()),
-                 materials_.capacity(), static_cast<uint32_t>(lights_.point_lights().size()), true, access()});
-            for (const graph::ImageId image : {predicted.kd, predicted.label, predicted.ks_alpha, predicted.rgb})
-                frame.keep(image);
-            if (read_back) rgb = frame.read_back(predicted.rgb);
+            const PredictedImages seen = predict(frame, voxels, blocks, model, color);
+            for (const graph::ImageId image : {seen.kd, seen.label, seen.ks_alpha, seen.rgb}) frame.keep(image);
+            if (read_back) rgb = frame.read_back(seen.rgb);
         }
         runner().submit(std::move(frame));
         return rgb;
+    }
+
+    PredictedImages predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& blocks,
+                            const RaycastImages& model, graph::ImageId color) {
+        const auto focal_px = static_cast<float>(last_.depth.camera.fx);
+        const RaycastImages sharp = add_sharpen_normals(frame, model, focal_px, map().settings().voxel_m);
+        const PredictedImages predicted = add_predict_radiance(
+            frame, map(), voxels, records_, records_.import(frame), state_.import(frame),
+            {sharp.position_m, sharp.normal, blocks.view, blocks.grid, lights_.upload(frame), materials_.import(frame),
+             add_average_segments(frame, records_, records_.import(frame), materials_.capacity()),
+             materials_.capacity(), static_cast<uint32_t>(lights_.point_lights().size()), true, access()});
+        return add_restore_detail(frame, predicted,
+                                  {sharp.position_m, sharp.normal, color, focal_px, records_.settings().voxel_m});
     }
 
     vulkan::Device& device_;
@@ -204,7 +215,8 @@ void run(const Options& options) {
                options.lights, options.frames, 100.0 * static_cast<double>(known) / static_cast<double>(extent.area()));
     fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
     for (const graph::Timing& timing : timings) {
-        if (timing.name.starts_with("shading.")) print(timing.name, distribution(timing.samples_ms));
+        if (timing.name.starts_with("shading.") || timing.name == "fusion.sharpen_normals")
+            print(timing.name, distribution(timing.samples_ms));
     }
     print("processor time of a view", with);
     print("the same without shading", without);
