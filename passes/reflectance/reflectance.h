@@ -8,8 +8,8 @@ namespace patina {
 
 /// How much of the reflectance is brought up to date in a frame.
 struct ReflectanceSettings {
-    bool shadows = true;               ///< false: every light reaches every surface, as in the paper
-    bool albedo = true;                ///< false: only visibility is found, under lights that never shone
+    bool shadows = true;  ///< false: every light reaches every surface, as in the paper
+    bool albedo = true;   ///< false: only visibility is found, under lights that never shone
     /// New records whose lights are marched in a frame at most, about: until then nothing is known of their albedo.
     uint32_t first_marched_records = 8192;
     uint32_t marched_records = 1024;   ///< others whose surface moved, about

@@ -67,8 +67,8 @@ void set_lights(Reconstruction& reconstruction, const RgbdFrame& frame, uint32_t
     std::vector<PointLight> lamps;
     for (uint32_t i = 0; i < count; ++i) {
         const auto across = static_cast<float>(i % 4) - 1.5f, along = static_cast<float>(i / 4);
-        lamps.push_back(
-            {glm::vec3(frame.world_from_depth * glm::dvec4(1.5f * across, -1.5f, 1.5f * along, 1)), glm::vec3(3), 0.05f});
+        lamps.push_back({glm::vec3(frame.world_from_depth * glm::dvec4(1.5f * across, -1.5f, 1.5f * along, 1)),
+                         glm::vec3(3), 0.05f});
     }
     reconstruction.reflectance()->set_lights(lamps, glm::vec3(0.02f));
 }
@@ -145,8 +145,7 @@ void print(std::span<const FrameTimes> frames, uint32_t averaged) {
 
 void run(const Options& options) {
     const vulkan::DeviceOptions device_options = options.device.options();
-    const Recording recording =
-        load({options.sequence, {}, tools::parse_extent(options.extent), 1}, device_options);
+    const Recording recording = load({options.sequence, {}, tools::parse_extent(options.extent), 1}, device_options);
     const RgbdFrame frame = tools::to_rgbd(recording.info, recording.frames.front());
     vulkan::Device device(device_options);
     if (!device.caps().timestamps) throw Error("the device '", device.caps().name, "' has no timestamps");
