@@ -10,7 +10,6 @@ constexpr uint32_t kCoarsePlaces = 1024;  // of the samples, from which new lamp
 constexpr uint32_t kCoarseSteps = 3, kFineSteps = 4;
 constexpr double kMostPlaces = 1500;                                              // that a new lamp may have
 constexpr float kMarginShare = 0.35f, kLeastMarginM = 0.5f, kMostMarginM = 2.5f;  // around what was seen
-constexpr float kSameLampM = 0.3f;
 constexpr float kFirstMoveM = 0.3f, kLastMoveM = 0.03f, kShorter = 0.6f;
 constexpr double kFewHighlights = 200;  // they count half
 constexpr double kLeastLight = 0.01;    // of the mean irradiance
@@ -31,8 +30,8 @@ std::vector<glm::vec3> directions() {
     return all;
 }
 
-/// A lattice around all samples.
-std::vector<glm::vec3> places_around(const LitSurface& surface) {
+/// A lattice around all samples, then what was seen.
+std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const glm::vec3> seen_m) {
     glm::vec3 low(1e9f), high(-1e9f);
     for (const gpu::LightSample& sample : surface.samples()) {
         low = glm::min(low, glm::vec3(sample.point_m));
@@ -47,6 +46,7 @@ std::vector<glm::vec3> places_around(const LitSurface& surface) {
     for (float z = spacing_m / 2; z < size.z; z += spacing_m)
         for (float y = spacing_m / 2; y < size.y; y += spacing_m)
             for (float x = spacing_m / 2; x < size.x; x += spacing_m) places.push_back(low + glm::vec3(x, y, z));
+    places.insert(places.end(), seen_m.begin(), seen_m.end());
     return places;
 }
 
@@ -56,10 +56,7 @@ class Search {
         : surface_(surface), try_(try_lamps), settings_(settings) {}
 
     std::vector<TrialLamp> run(std::span<const glm::vec3> seen_m) {
-        std::vector<TrialLamp> places = try_(places_around(surface_), kCoarsePlaces), seen;
-        if (!seen_m.empty()) seen = try_(seen_m, kCoarsePlaces);
-        for (TrialLamp& lamp : seen) lamp.seen = true;
-        places.insert(places.end(), seen.begin(), seen.end());
+        const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m), kCoarsePlaces);
         double best = cost(lamps_);
         while (lamps_.size() < settings_.most_lamps) {
             const std::vector<TrialLamp> before = lamps_;
@@ -72,7 +69,6 @@ class Search {
             }
             best = now;
         }
-        for (const TrialLamp& lamp : seen) add_seen(lamp.place_m);
         while (remove_one()) move_all();
         return lamps_;
     }
@@ -99,27 +95,7 @@ class Search {
             const double value = cost(trial, kCoarseSteps, count);
             if (value < least) best = &place, least = value;
         }
-        return tried(best->place_m, best->seen);
-    }
-
-    TrialLamp tried(glm::vec3 place_m, bool seen) const {
-        TrialLamp lamp = try_(std::span(&place_m, 1), gpu::kLightSamples).front();
-        lamp.seen = seen;
-        return lamp;
-    }
-
-    /// Adds what was seen shining, if it matters and is no lamp yet.
-    void add_seen(glm::vec3 place_m) {
-        const auto near = [&](const TrialLamp& lamp) { return glm::distance(lamp.place_m, place_m) < kSameLampM; };
-        if (lamps_.size() >= settings_.most_lamps) return;
-        if (const auto known = std::find_if(lamps_.begin(), lamps_.end(), near); known != lamps_.end()) {
-            known->seen = true;
-            return;
-        }
-        const std::vector<TrialLamp> before = lamps_;
-        const double least = (1 - 0.5 * settings_.least_gain_seen) * cost(lamps_);
-        lamps_.push_back(tried(place_m, true));
-        if (move_all() > least) lamps_ = before;
+        return try_(std::span(&best->place_m, 1), gpu::kLightSamples).front();
     }
 
     /// Moves each lamp in turn to the best of the places around it, by ever shorter moves. Returns the cost.
@@ -137,9 +113,7 @@ class Search {
                 for (size_t d = 0; d < around.size(); ++d) {
                     trial[l] = tried[l * around.size() + d];
                     const double value = cost(trial);
-                    if (value >= now) continue;
-                    trial[l].seen = lamps_[l].seen;
-                    lamps_[l] = trial[l], now = value;
+                    if (value < now) lamps_[l] = trial[l], now = value;
                 }
             }
             if (now > kWorthwhile * before) move_m *= kShorter;
@@ -147,18 +121,17 @@ class Search {
         return now;
     }
 
-    /// Leaves out the lamp that matters least for what it must, if that is too little.
+    /// Leaves out the lamp that matters least, if it matters too little.
     bool remove_one() {
         double least = 1e9;
         std::vector<TrialLamp> best;
         for (size_t l = 0; l < lamps_.size(); ++l) {
             std::vector<TrialLamp> trial = lamps_;
             trial.erase(trial.begin() + static_cast<ptrdiff_t>(l));
-            const float gain = lamps_[l].seen ? settings_.least_gain_seen : settings_.least_gain;
-            const double value = (1 - gain) * cost(trial);
+            const double value = cost(trial);
             if (value < least) best = trial, least = value;
         }
-        if (lamps_.empty() || cost(lamps_) < least) return false;
+        if (lamps_.empty() || cost(lamps_) < (1 - settings_.least_gain) * least) return false;
         lamps_ = best;
         return true;
     }

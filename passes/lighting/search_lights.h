@@ -13,9 +13,8 @@ namespace patina {
 
 struct LightSearchSettings {
     uint32_t most_lamps = 6;
-    float highlight_share = 0.5f;   ///< what unexplained highlights count beside the misfit of diffuse light
-    float least_gain = 0.12f;       ///< a lamp makes the sum of both smaller by this share, or is left out
-    float least_gain_seen = 0.02f;  ///< the same for one that was seen shining
+    float highlight_share = 0.5f;  ///< what unexplained highlights count beside the misfit of diffuse light
+    float least_gain = 0.12f;      ///< a lamp makes the sum of both smaller by this share, or is left out
 };
 
 /// A lamp's place, what it gives the samples, and how badly it explains each highlight.
@@ -23,7 +22,6 @@ struct TrialLamp {
     glm::vec3 place_m{0};
     ReceivedLight received;
     std::vector<float> unexplained;
-    bool seen = false;  ///< it was found where something shines
 };
 
 /// What lamps at these places would give the samples of a surface; of the first `count` places of samples only, if that
@@ -36,8 +34,7 @@ double unexplained_highlights(const LitSurface& surface, std::span<const TrialLa
                               std::span<const double> intensities);
 
 /// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, all moved to
-/// better places whenever there is a new one; then those of `seen_m` that are left, which need to matter less; and
-/// those that matter too little are left out.
+/// better places whenever there is a new one; then those that matter too little are left out.
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
                                      std::span<const glm::vec3> seen_m, const LightSearchSettings& settings);
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -179,24 +177,6 @@ TEST(SearchLights, FindsLampsFromShadingAndHighlights) {
             std::min(glm::distance(found[0].place_m, lamp.place_m), glm::distance(found[1].place_m, lamp.place_m));
         EXPECT_LT(off_m, 0.15f);
     }
-}
-
-TEST(SearchLights, ALampThatWasSeenShiningNeedsToMatterLess) {
-    std::vector<Lamp> lamps = kTwoLamps;
-    const glm::vec3 weak_m(0.3f, -0.9f, -1.4f);
-    lamps.push_back({weak_m, glm::vec3(0.25f)});
-    const Balls balls(lamps, glm::vec3(0.05f), 0.02f);
-    const LitSurface surface(balls.drawn(), 1);
-    const auto near = [&](const TrialLamp& lamp) { return glm::distance(lamp.place_m, weak_m) < 0.15f; };
-    LightSearchSettings settings;
-    settings.least_gain = 0.4f;
-    const auto unseen = search_lights(surface, balls.try_lamps(surface), {}, settings);
-    EXPECT_TRUE(std::none_of(unseen.begin(), unseen.end(), near));
-    const glm::vec3 behind_the_floor(0, 2, 0);
-    const auto seen = search_lights(surface, balls.try_lamps(surface), std::array{behind_the_floor, weak_m}, settings);
-    EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), near));
-    EXPECT_TRUE(std::none_of(seen.begin(), seen.end(),
-                             [&](const TrialLamp& lamp) { return glm::distance(lamp.place_m, behind_the_floor) < 1; }));
 }
 
 TEST(SearchLights, NothingSeenNothingFound) {
