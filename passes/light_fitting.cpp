@@ -83,8 +83,11 @@ class TryInVolume {
 /// What the brightest groups' albedo is when every sample receives 1 on the mean.
 double brightest_albedo(const std::array<FittedIntensities, 3>& channels) {
     std::vector<float> albedo;
-    for (size_t g = 0; g < channels[0].albedo.size(); ++g)
-        albedo.push_back(std::max({channels[0].albedo[g], channels[1].albedo[g], channels[2].albedo[g]}));
+    for (size_t g = 0; g < channels[0].albedo.size(); ++g) {
+        const float most = std::max({channels[0].albedo[g], channels[1].albedo[g], channels[2].albedo[g]});
+        if (most > 0) albedo.push_back(most);
+    }
+    if (albedo.empty()) return 0;
     const auto at = static_cast<ptrdiff_t>(kBrightQuantile * static_cast<float>(albedo.size() - 1));
     std::nth_element(albedo.begin(), albedo.begin() + at, albedo.end());
     return albedo[static_cast<size_t>(at)];
