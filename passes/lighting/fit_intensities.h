@@ -50,8 +50,8 @@ class LitSurface {
     /// Robust non-negative least squares for the intensities of all lamps and the ambient light at once, from the first
     /// `count` samples. A group's albedo k is eliminated: b_i sum_j(s_j) = s_i sum_j(b_j) over its samples j, where b
     /// are pixel values and s what the lamps give, is linear in the intensities. Weights are Geman and McClure's. Where
-    /// a group has two albedos, each sample has the one that explains it better; misfit is at least a quarter where that
-    /// is the rarer one.
+    /// a group has two albedos, each sample has the one that explains it better; misfit is at least a quarter where
+    /// that is the rarer one.
     FittedIntensities fit(std::span<const ReceivedLight> lamps, uint32_t steps, size_t count,
                           LightChannel channel = LightChannel::kMean) const;
 
