@@ -24,30 +24,48 @@ std::vector<gpu::LightSample> draw_samples(Reconstruction& reconstruction) {
     return samples.as<gpu::LightSample>();
 }
 
-/// Tries lamps in the reconstruction's volume, as many at once as a pass takes.
+/// The highlights as samples of a pass, which takes whole groups.
+std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
+    std::vector<gpu::LightSample> padded = highlights;
+    padded.resize((highlights.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+    return padded;
+}
+
+/// Tries lamps in the reconstruction's volume, as many at once as a pass takes. A highlight is not explained by a lamp
+/// that does not reach it.
 class TryInVolume {
   public:
     TryInVolume(Reconstruction& reconstruction, std::span<const gpu::LightSample> drawn, const LitSurface& surface)
-        : reconstruction_(reconstruction), drawn_(drawn), surface_(surface) {}
+        : reconstruction_(reconstruction),
+          drawn_(drawn),
+          surface_(surface),
+          highlights_(in_groups(surface.highlights())) {}
 
     std::vector<TrialLamp> operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
         std::vector<TrialLamp> lamps;
         while (!places_m.empty()) {
             const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
             places_m = places_m.subspan(batch.size());
-            const std::vector<float> received = try_batch(batch, count);
+            const std::vector<float> received = try_batch(drawn_, batch, count);
+            const std::vector<float> reached =
+                highlights_.empty() ? std::vector<float>()
+                                    : try_batch(highlights_, batch, static_cast<uint32_t>(highlights_.size()));
             for (size_t i = 0; i < batch.size(); ++i) {
                 const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
                 lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
+                TrialLamp& lamp = lamps.back();
+                for (size_t k = 0; k < lamp.unexplained.size(); ++k)
+                    if (reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
             }
         }
         return lamps;
     }
 
   private:
-    std::vector<float> try_batch(std::span<const glm::vec3> places_m, uint32_t count) const {
+    std::vector<float> try_batch(std::span<const gpu::LightSample> lit, std::span<const glm::vec3> places_m,
+                                 uint32_t count) const {
         graph::Frame frame = reconstruction_.runner().begin();
-        const auto samples = frame.upload<gpu::LightSample>("lighting.samples", drawn_);
+        const auto samples = frame.upload<gpu::LightSample>("lighting.samples", lit);
         const VoxelMap& map = reconstruction_.map();
         const graph::Readback received =
             frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m, count));
@@ -59,13 +77,17 @@ class TryInVolume {
     Reconstruction& reconstruction_;
     std::span<const gpu::LightSample> drawn_;
     const LitSurface& surface_;
+    std::vector<gpu::LightSample> highlights_;
 };
 
 /// What the brightest groups' albedo is when every sample receives 1 on the mean.
 double brightest_albedo(const std::array<FittedIntensities, 3>& channels) {
     std::vector<float> albedo;
-    for (size_t g = 0; g < channels[0].albedo.size(); ++g)
-        albedo.push_back(std::max({channels[0].albedo[g], channels[1].albedo[g], channels[2].albedo[g]}));
+    for (size_t g = 0; g < channels[0].albedo.size(); ++g) {
+        const float most = std::max({channels[0].albedo[g], channels[1].albedo[g], channels[2].albedo[g]});
+        if (most > 0) albedo.push_back(most);
+    }
+    if (albedo.empty()) return 0;
     const auto at = static_cast<ptrdiff_t>(kBrightQuantile * static_cast<float>(albedo.size() - 1));
     std::nth_element(albedo.begin(), albedo.begin() + at, albedo.end());
     return albedo[static_cast<size_t>(at)];

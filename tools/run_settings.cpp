@@ -67,6 +67,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("observe.depth_tolerance_m", s.reflectance->observe.depth_tolerance_m);
         visit("observe.edge_margin_px", s.reflectance->observe.edge_margin_px);
         visit("observe.max_blur_px", s.reflectance->observe.max_blur_px);
+        visit("observe.rest_px", s.reflectance->observe.rest_px);
     }
 }
 

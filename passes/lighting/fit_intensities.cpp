@@ -14,6 +14,11 @@ constexpr double kNoise = 0.01;             // of pixel values: residuals are to
 constexpr double kRelativeNoise = 0.1;      // what one albedo per group, highlights and shadow borders leave
 constexpr float kHighlightSpread = 0.2f;    // tangent of the half vector's angle at which a highlight is half explained
 constexpr double kLeastLit = 0.02;          // of the mean irradiance; darker samples count the same
+constexpr uint32_t kAlbedos = 2;            // of a group at most: tiles, print
+constexpr double kApart = 1.5;              // the factor between them, at least
+constexpr size_t kFewSamples = 12;          // of a group that has but one
+constexpr double kSecondMisfit = 0.25;      // of a sample that needs the rarer albedo, at least: shadows are none
+constexpr uint32_t kAssignments = 2;        // of samples to albedos, in a step
 constexpr double kLeastShare = 1e-6;        // of the mean irradiance, below which a lamp reaches nothing
 
 float brightness(const gpu::LightSample& sample, LightChannel channel) {
@@ -99,8 +104,9 @@ class IntensityFit {
   public:
     IntensityFit(std::span<const gpu::LightSample> samples, std::span<const uint32_t> group, uint32_t groups,
                  std::span<const ReceivedLight> lamps, size_t count, LightChannel channel)
-        : group_(group),
-          groups_(groups),
+        : members_(groups),
+          groups_(kAlbedos * groups),
+          part_(count),
           count_(count),
           unknowns_(lamps.size() + 1),
           given_(count * unknowns_, 1.0f),
@@ -112,29 +118,23 @@ class IntensityFit {
             for (size_t l = 0; l < lamps.size(); ++l) given_[i * unknowns_ + l] = lamps[l]->by_sample[i];
             for (size_t l = 0; l < unknowns_; ++l) mean_[l] += given(i, l) / static_cast<double>(count);
             bright_[i] = brightness(samples[i], channel);
+            members_[group[i]].push_back(static_cast<uint32_t>(i));
         }
         spread_evenly();
     }
 
-    /// Albedo and residuals under the present intensities, and from these the weights.
+    /// Albedos and residuals under the present intensities, and from these the weights.
     void weigh() {
-        std::vector<double> both(groups_), squares(groups_);
         for (size_t i = 0; i < count_; ++i) {
             double sum = 0;
             for (size_t l = 0; l < unknowns_; ++l) sum += fitted_.intensities[l] * given(i, l);
             lit_[i] = static_cast<float>(sum);
-            both[group_[i]] += double{weight_[i]} * bright_[i] * lit_[i];
-            squares[group_[i]] += double{weight_[i]} * lit_[i] * lit_[i];
         }
         fitted_.albedo.assign(groups_, 0);
-        for (uint32_t g = 0; g < groups_; ++g)
-            if (squares[g] > 0) fitted_.albedo[g] = static_cast<float>(both[g] / squares[g]);
         fitted_.misfit = 0;
-        for (size_t i = 0; i < count_; ++i) {
-            const double expected = fitted_.albedo[group_[i]] * lit_[i];
-            const double off = (bright_[i] - expected) / (2 * kNoise + kRelativeNoise * (bright_[i] + expected));
-            fitted_.misfit += off * off / (1 + off * off) / static_cast<double>(count_);
-            weight_[i] = static_cast<float>(1 / ((1 + off * off) * (1 + off * off)));
+        for (uint32_t g = 0; g < members_.size(); ++g) {
+            split(members_[g], kAlbedos * g);
+            weigh_group(members_[g], kAlbedos * g);
         }
     }
 
@@ -142,13 +142,13 @@ class IntensityFit {
     void solve() {
         std::vector<double> group_bright(groups_), group_given(groups_ * unknowns_), row(unknowns_);
         for (size_t i = 0; i < count_; ++i) {
-            group_bright[group_[i]] += double{weight_[i]} * bright_[i];
+            group_bright[part_[i]] += double{weight_[i]} * bright_[i];
             for (size_t l = 0; l < unknowns_; ++l)
-                group_given[group_[i] * unknowns_ + l] += double{weight_[i]} * given(i, l);
+                group_given[part_[i] * unknowns_ + l] += double{weight_[i]} * given(i, l);
         }
         NormalEquations equations(unknowns_);
         for (size_t i = 0; i < count_; ++i) {
-            const uint32_t g = group_[i];
+            const uint32_t g = part_[i];
             if (!(group_bright[g] > 0)) continue;
             const double share = bright_[i] / group_bright[g], scale = 1 / (kLeastLit + lit_[i]);
             for (size_t l = 0; l < unknowns_; ++l) row[l] = share * group_given[g * unknowns_ + l] - given(i, l);
@@ -162,6 +162,71 @@ class IntensityFit {
   private:
     float given(size_t sample, size_t lamp) const { return given_[sample * unknowns_ + lamp]; }
 
+    /// Gives each sample the albedo that explains it better, the first being the more frequent one, the second 0 where
+    /// one will do.
+    void split(std::span<const uint32_t> members, uint32_t first) {
+        for (const uint32_t i : members) part_[i] = first;
+        fitted_.albedo[first] = albedo_of(members, first);
+        if (members.size() < kFewSamples) return;
+        const auto [low, high] = extremes(members);
+        std::array<float, kAlbedos> albedo{low, high};
+        for (uint32_t step = 0; step < kAssignments; ++step) {
+            for (const uint32_t i : members)
+                part_[i] = first + (off(i, albedo[1]) * off(i, albedo[1]) < off(i, albedo[0]) * off(i, albedo[0]));
+            for (uint32_t k = 0; k < kAlbedos; ++k) albedo[k] = albedo_of(members, first + k);
+        }
+        const auto seconds = static_cast<size_t>(
+            std::count_if(members.begin(), members.end(), [&](uint32_t i) { return part_[i] != first; }));
+        if (!(albedo[0] > 0 && albedo[1] > kApart * albedo[0])) {
+            for (const uint32_t i : members) part_[i] = first;
+            return;
+        }
+        if (2 * seconds > members.size()) {
+            for (const uint32_t i : members) part_[i] = 2 * first + 1 - part_[i];
+            std::swap(albedo[0], albedo[1]);
+        }
+        for (uint32_t k = 0; k < kAlbedos; ++k) fitted_.albedo[first + k] = albedo[k];
+    }
+
+    void weigh_group(std::span<const uint32_t> members, uint32_t first) {
+        for (const uint32_t i : members) {
+            const double squared = off(i, fitted_.albedo[part_[i]]) * off(i, fitted_.albedo[part_[i]]);
+            const double misfit = squared / (1 + squared);
+            fitted_.misfit +=
+                (part_[i] == first ? misfit : std::max(misfit, kSecondMisfit)) / static_cast<double>(count_);
+            weight_[i] = static_cast<float>(1 / ((1 + squared) * (1 + squared)));
+        }
+    }
+
+    /// By how many standard deviations a sample differs from an albedo's.
+    double off(uint32_t i, float albedo) const {
+        const double expected = double{albedo} * lit_[i];
+        return (bright_[i] - expected) / (2 * kNoise + kRelativeNoise * (bright_[i] + expected));
+    }
+
+    /// Of the samples that are of a part, by weighted least squares.
+    float albedo_of(std::span<const uint32_t> members, uint32_t part) const {
+        double both = 0, squares = 0;
+        for (const uint32_t i : members) {
+            if (part_[i] != part) continue;
+            both += double{weight_[i]} * bright_[i] * lit_[i];
+            squares += double{weight_[i]} * lit_[i] * lit_[i];
+        }
+        return squares > 0 ? static_cast<float>(both / squares) : 0;
+    }
+
+    /// Albedos that few samples are darker and few are brighter than.
+    std::pair<float, float> extremes(std::span<const uint32_t> members) {
+        ratios_.clear();
+        for (const uint32_t i : members) ratios_.push_back(bright_[i] / (lit_[i] + static_cast<float>(kLeastLit)));
+        const auto quantile = [&](size_t percent) {
+            const auto at = ratios_.begin() + static_cast<ptrdiff_t>(percent * (ratios_.size() - 1) / 100);
+            std::nth_element(ratios_.begin(), at, ratios_.end());
+            return *at;
+        };
+        return {quantile(15), quantile(85)};
+    }
+
     /// Every lamp that reaches anything gives the same.
     void spread_evenly() {
         for (double& mean : mean_)
@@ -171,9 +236,11 @@ class IntensityFit {
             fitted_.intensities.push_back(mean > 0 ? 1 / (mean * static_cast<double>(reaching)) : 0);
     }
 
-    std::span<const uint32_t> group_;
-    size_t groups_, count_, unknowns_;  // the last unknown: ambient light, which gives every sample 1
-    std::vector<float> given_, lit_, bright_, weight_;
+    std::vector<std::vector<uint32_t>> members_;  // samples by group
+    size_t groups_;                               // all groups' albedos
+    std::vector<uint32_t> part_;                  // which of these a sample has
+    size_t count_, unknowns_;                     // the last unknown: ambient light, which gives every sample 1
+    std::vector<float> given_, lit_, bright_, weight_, ratios_;
     std::vector<double> mean_;
     FittedIntensities fitted_;
 };

@@ -25,10 +25,11 @@ enum class LightChannel : uint8_t { kRed, kGreen, kBlue, kMean };
 struct FittedIntensities {
     std::vector<double> intensities;  ///< one per lamp, then the ambient irradiance over pi; never below 0
     double misfit = 0;                ///< mean robust residual, 0 to 1
-    std::vector<float> albedo;        ///< by group: pi times the radiosity per irradiance; 0: unknown
+    std::vector<float> albedo;        ///< two by group: pi times the radiosity per irradiance; 0: unknown, or none
 };
 
-/// Samples of the surface, in groups that are taken to have one albedo each: samples of one chromaticity within a cube.
+/// Samples of the surface, in groups that are taken to have one albedo each, or one of two that are well apart (grey
+/// tiles on grey): samples of one chromaticity within a cube.
 /// How bright the albedo is, nobody says: intensities are known up to one factor per channel, and are told such that
 /// the mean sample receives an irradiance / pi of 1.
 class LitSurface {
@@ -48,7 +49,9 @@ class LitSurface {
 
     /// Robust non-negative least squares for the intensities of all lamps and the ambient light at once, from the first
     /// `count` samples. A group's albedo k is eliminated: b_i sum_j(s_j) = s_i sum_j(b_j) over its samples j, where b
-    /// are pixel values and s what the lamps give, is linear in the intensities. Weights are Geman and McClure's.
+    /// are pixel values and s what the lamps give, is linear in the intensities. Weights are Geman and McClure's. Where
+    /// a group has two albedos, each sample has the one that explains it better; misfit is at least a quarter where
+    /// that is the rarer one.
     FittedIntensities fit(std::span<const ReceivedLight> lamps, uint32_t steps, size_t count,
                           LightChannel channel = LightChannel::kMean) const;
 

@@ -5,14 +5,9 @@
 #include "engine/graph/frame.h"
 #include "passes/model/observation_map.h"
 #include "passes/model/record_list.h"
+#include "passes/observation/observation_params.h"
 
 namespace patina {
-
-/// How the colour camera moved while its shutter was open.
-struct CameraMotion {
-    glm::mat4 color_before_from_world{1.0f};  ///< the colour camera at the frame before
-    float shutter_share = 0;                  ///< of the time since then, that the shutter was open
-};
 
 /// What a frame's observations are made from; images of the depth camera but for the colour.
 struct ObservationInputs {

@@ -10,11 +10,8 @@ CollectedRecords add_collect_observations(graph::Frame& frame, const Observation
                                           uint32_t frame_index) {
     frame.common_extent({inputs.position_m, inputs.normal, inputs.depth_m, inputs.slope});
     if (inputs.labels) frame.common_extent({inputs.depth_m, *inputs.labels});
-    gpu::ObservationParams values = make_observation_params(map, settings, depth_camera, color_camera, frame_index);
-    if (inputs.motion) {
-        values.color_before_from_world = inputs.motion->color_before_from_world;
-        values.shutter_share = inputs.motion->shutter_share;
-    }
+    const gpu::ObservationParams values =
+        make_observation_params(map, settings, depth_camera, color_camera, frame_index, inputs.motion);
     const auto params = frame.upload<gpu::ObservationParams>("observation.params", std::span(&values, 1));
     const RecordList visible = add_allocate_records(frame, map, ids, inputs, params, values);
     const RecordList changed = add_update_records(frame, map, ids, inputs, visible, params, values);

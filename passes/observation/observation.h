@@ -1,7 +1,6 @@
 #pragma once
 
 #include "passes/observation/allocate_records.h"
-#include "passes/observation/observation_params.h"
 
 namespace patina {
 

@@ -1,9 +1,17 @@
 #pragma once
 
+#include <optional>
+
 #include "engine/core/camera.h"
 #include "passes/model/observation_map.h"
 
 namespace patina {
+
+/// How the colour camera moved while its shutter was open.
+struct CameraMotion {
+    glm::mat4 color_before_from_world{1.0f};  ///< the colour camera at the frame before
+    float shutter_share = 0;                  ///< of the time since then, that the shutter was open
+};
 
 /// What counts as an observation.
 struct ObservationSettings {
@@ -19,12 +27,15 @@ struct ObservationSettings {
     /// Where motion smears the picture by more, it is not observed. Less than a voxel of 2 cm is wide at 2 m; a limit
     /// of 1 refuses half of what a hand-held Kinect sees.
     float max_blur_px = 3;
+    /// Where the camera moved so little since the frame before, by points at 1 m, it sees what it saw: a quarter of the
+    /// pixels look.
+    float rest_px = 0.5f;
 };
 
 /// The parameters that one frame's passes share; phases and stamps follow from the frame's index. The colour camera may
-/// be the depth camera, and rests. Throws Error when a setting is out of its range.
+/// be the depth camera; without `motion` pictures are sharp. Throws Error when a setting is out of its range.
 gpu::ObservationParams make_observation_params(const ObservationMap& map, const ObservationSettings& settings,
                                                const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
-                                               uint32_t frame_index);
+                                               uint32_t frame_index, const std::optional<CameraMotion>& motion = {});
 
 }  // namespace patina

@@ -54,7 +54,6 @@ void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const Re
                     const gpu::AcceptParams& params, RecordList& march) {
     auto pass = frame.compute("reflectance.accept_due", spirv::accept_due);
     pass.read("Waiting", waiting.list).read("Records", reflectance.records.records).push(params);
-    reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
     march.list = pass.modify("March", march.list);
     march.arguments = pass.modify("MarchArguments", march.arguments);
     pass.dispatch_indirect(waiting.arguments);
@@ -69,9 +68,9 @@ DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectan
     add_due_window(frame, reflectance, due);
     const WaitingRecords waiting = add_due_changed(frame, reflectance, changed, due.refine);
     const uint32_t stamp = reflectance.params.stamp;
-    add_accept_due(frame, reflectance, waiting.never_marched, {stamp, reflectance.budgets.first_marched_records, 1},
+    add_accept_due(frame, reflectance, waiting.never_marched, {stamp, reflectance.budgets.first_marched_records},
                    due.march);
-    add_accept_due(frame, reflectance, waiting.changed, {stamp, reflectance.budgets.marched_records, 0}, due.march);
+    add_accept_due(frame, reflectance, waiting.changed, {stamp, reflectance.budgets.marched_records}, due.march);
     return due;
 }
 

@@ -63,9 +63,10 @@ uint bit_of(uvec2 bits, uint i) { return (i < 32u ? bits.x >> i : bits.y >> (i -
 // Adds up all lights. Ward's lobe (lib/ward.glsl) in a form without trigonometry: with unit l and v, h = l + v has
 // |h|^2 = 2 + 2 l.v, and tan^2 of its angle to the normal is |h|^2 / (n.h)^2 - 1. The error of this difference, 1e-6,
 // is small beside alpha^2.
-Irradiance add_lights(vec3 point_m, vec3 normal, float exponent_scale, bool specular, uvec2 reached, uvec2 uncertain) {
+Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scale, bool specular, uvec2 reached,
+                      uvec2 uncertain) {
     Irradiance irradiance = Irradiance(header.ambient.rgb, vec3(0.0));
-    for (uint i = 0u; i < header.count; ++i) {
+    for (uint i = 0u; i < count; ++i) {
         const vec3 offset_m = lights[i].position_m.xyz - point_m;
         const float distance2 = max(dot(offset_m, offset_m), 1e-6);
         const vec3 to_light = offset_m * inversesqrt(distance2);
@@ -208,8 +209,10 @@ void main() {
     const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
 
     unpack_directions(record, normal);
-    const Irradiance irradiance =
-        add_lights(point_m, normal, -kLog2E / (alpha * alpha), specular, visibility[record], status[record].uncertain);
+    // Were it the uniform alone, lavapipe would compile the loop anew in every frame: 6 ms.
+    const uint light_count = count > 0u ? header.count : 0u;
+    const Irradiance irradiance = add_lights(light_count, point_m, normal, -kLog2E / (alpha * alpha), specular,
+                                             visibility[record], status[record].uncertain);
     const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
     const Center guess = remove_highlights(record, count, ks / (4.0 * kWardPi * alpha * alpha));
     const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);

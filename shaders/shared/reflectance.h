@@ -38,9 +38,7 @@ struct RecordStatus {
 
 // Where the next update goes on; its parity says which entry it reads, and it writes the other.
 struct RefreshCursors {
-    uvec2 never_marched;  // bin of voxel hashes
-    uvec2 changed;        // the same
-    uvec2 window;         // bucket of the table
+    uvec2 window;  // bucket of the table
 };
 
 struct ReflectanceParams {
@@ -58,9 +56,8 @@ struct ReflectanceParams {
 
 // Which of the records that wait for marching are taken.
 struct AcceptParams {
-    uint stamp;          // as ReflectanceParams
-    uint most;           // about
-    uint never_marched;  // 1: they never were; 0: they have changed since
+    uint stamp;  // as ReflectanceParams
+    uint most;   // about
 };
 
 INTEROP_END

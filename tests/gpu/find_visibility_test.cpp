@@ -8,6 +8,7 @@
 #include "tests/gpu/observation_rig.h"
 #include "tests/gpu/reflectance_rig.h"
 #include "tests/reference/refine_albedo.h"
+#include "tools/bench/filled_records.h"
 
 namespace patina {
 namespace {
@@ -221,6 +222,27 @@ TEST_F(FindVisibilityTest, WorkFollowsChange) {
     rig.materials.set(7, glm::vec3(0.1f), 0.2f);
     go_around();
     EXPECT_EQ(refined, 0u);
+}
+
+TEST_F(FindVisibilityTest, WhatWasNeverMarchedHasABudgetOfItsOwn) {
+    const auto model = make_model();
+    ReflectanceRig& rig = model->reflectance;
+    const auto count = static_cast<uint32_t>(rig.records().size());
+    const auto all = [&](graph::Frame& frame, ObservationMapIds&) { return add_list_records(frame, count); };
+    ReflectanceSettings settings;
+    settings.refreshed_records = settings.marched_records = 1;
+    settings.first_marched_records = count / 3;
+    for (int update = 0; update < 4; ++update) {
+        const uint32_t marched = rig.update(settings, all).marched;
+        EXPECT_LT(marched, 0.4 * count);
+        EXPECT_GT(marched, update == 0 ? 0.25 * count : 0.0);
+    }
+    // Now that all were marched, what a light's move makes of them waits for the same budget.
+    EXPECT_LT(rig.update(settings, all).marched, 0.01 * count);
+    auto lights = kLights;
+    lights[0].position_m.x += 0.2f;
+    rig.lights.set(lights);
+    EXPECT_GT(rig.update(settings, all).marched, 0.25 * count);
 }
 
 TEST_F(FindVisibilityTest, SameInputSameBytes) {

@@ -19,9 +19,9 @@ class MotionBlur : public GpuTest {
   protected:
     /// The records of a wall that faces the camera at kPose, whose shutter was open for a share of the time since it
     /// was at `before`.
-    ObservationContent seen_after(const RigidTransform& before, float shutter_share) {
+    ObservationContent seen_after(const RigidTransform& before, float shutter_share, uint32_t stride_px = 1) {
         ObservationSettings settings;
-        settings.stride_px = 1;
+        settings.stride_px = stride_px;
         settings.max_blur_px = 1;
         ObservationRig rig(device(), runner(), {}, settings);
         RigFrame frame{kCamera,
@@ -49,6 +49,18 @@ TEST_F(MotionBlur, SidewaysMotionCountsByFocalLengthOverDepthTimesTheShareOfTheS
     EXPECT_EQ(observed_share(seen_after(before, 0.34f)), 0);
     const RigidTransform turned_away = glm::rotate(kPose, glm::radians(170.0), glm::dvec3(0, 1, 0));
     EXPECT_EQ(observed_share(seen_after(turned_away, 0.01f)), 0) << "what was behind the camera";
+}
+
+TEST_F(MotionBlur, ARestingCameraLooksAtAQuarterOfThePixels) {
+    const glm::dvec3 up(0, 1, 0);
+    const double half_pixel = 0.5 / kCamera.fx;
+    const size_t moving = seen_after(glm::translate(kPose, 1.1 * half_pixel * up), 0, 4).size();
+    EXPECT_EQ(seen_after(glm::rotate(kPose, 1.1 * half_pixel, up), 0, 4).size(), moving);
+    for (const RigidTransform& rest :
+         {kPose, glm::translate(kPose, 0.9 * half_pixel * up), glm::rotate(kPose, 0.9 * half_pixel, up)}) {
+        const auto looked = static_cast<double>(seen_after(rest, 0, 4).size());
+        EXPECT_NEAR(looked / static_cast<double>(moving), 0.25, 0.05);
+    }
 }
 
 TEST_F(MotionBlur, RotationAboutTheAxisLeavesTheMiddleSharp) {

@@ -22,11 +22,13 @@ float received(const gpu::LightSample& sample, glm::vec3 place_m) {
     return std::max(cosine, 0.0f) / (std::numbers::pi_v<float> * distance_m * distance_m);
 }
 
-/// Balls on a floor (y points down), of one albedo each, under lamps and ambient light: a sample per place, and
-/// highlights on the balls for viewers that see a lamp mirrored.
+/// Balls on a floor (y points down), of one albedo each but for tiles of the floor, under lamps and ambient light: a
+/// sample per place, and highlights on the balls for viewers that see a lamp mirrored.
 class Balls {
   public:
-    Balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise = 0) : lamps_(std::move(lamps)), ambient_(ambient) {
+    /// Every other tile of the floor, 0.4 m wide, has `dark_tiles` times the albedo of the others.
+    Balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise = 0, float dark_tiles = 1)
+        : lamps_(std::move(lamps)), ambient_(ambient), dark_tiles_(dark_tiles) {
         std::normal_distribution<float> normal(0, 1);
         for (uint32_t place = 0; place < gpu::kLightSamples; ++place) {
             if (place % 4 == 3) continue;  // not all places have a sample
@@ -65,7 +67,11 @@ class Balls {
         return sample;
     }
 
-    gpu::LightSample on_floor() { return lit({uniform(-2, 2), 0, uniform(-2, 2)}, {0, -1, 0}, {0.34f, 0.33f, 0.3f}); }
+    gpu::LightSample on_floor() {
+        const glm::vec3 point_m(uniform(-2, 2), 0, uniform(-2, 2));
+        const bool dark = (std::lround(point_m.x / 0.4f) + std::lround(point_m.z / 0.4f)) % 2 != 0;
+        return lit(point_m, {0, -1, 0}, (dark ? dark_tiles_ : 1) * glm::vec3(0.34f, 0.33f, 0.3f));
+    }
 
     gpu::LightSample on_ball(uint32_t ball) {
         const glm::vec3 normal =
@@ -91,6 +97,7 @@ class Balls {
 
     std::vector<Lamp> lamps_;
     glm::vec3 ambient_;
+    float dark_tiles_;
     std::mt19937 random_{5};
     std::vector<gpu::LightSample> drawn_ = std::vector<gpu::LightSample>(2 * gpu::kLightSamples);
 };
@@ -134,6 +141,21 @@ TEST(FitIntensities, OutliersCountLess) {
     for (const Lamp& lamp : kTwoLamps) received.push_back(balls.received_from(surface, lamp.place_m));
     const auto fitted = surface.fit(received, 10, surface.size());
     EXPECT_NEAR(fitted.intensities[1] / fitted.intensities[0], 5.1667 / 7.5, 0.03);
+}
+
+TEST(FitIntensities, TilesOfOneChromaticityHaveTwoAlbedos) {
+    for (const float dark_tiles : {0.2f, 0.6f}) {
+        const Balls balls(kTwoLamps, glm::vec3(0.3f), 0.02f, dark_tiles);
+        const LitSurface surface(balls.drawn(), 1);
+        std::vector<ReceivedLight> received;
+        for (const Lamp& lamp : kTwoLamps) received.push_back(balls.received_from(surface, lamp.place_m));
+        const auto fitted = surface.fit(received, 4, surface.size());
+        EXPECT_NEAR(fitted.intensities[1] / fitted.intensities[0], 5.1667 / 7.5, 0.02) << dark_tiles;
+        EXPECT_NEAR(fitted.intensities[2] / fitted.intensities[0], 0.3 / 7.5, 0.004) << dark_tiles;
+        // The rarer tiles, up to half the floor's, count somewhat as misfit.
+        EXPECT_LT(fitted.misfit, 0.1) << dark_tiles;
+        EXPECT_GT(fitted.misfit, 0.03) << dark_tiles;
+    }
 }
 
 TEST(FitIntensities, HighlightsAreExplainedByTheLampThatTheyMirror) {
