@@ -56,8 +56,8 @@ FrameSegments SegmentationModel::segments(graph::Frame& frame, const Segmentatio
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
     if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
-    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera, settings,
-                             ColorGuide{inputs.color_linear, color_camera});
+    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera,
+                             {inputs.color_linear, color_camera}, settings);
 }
 
 graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,

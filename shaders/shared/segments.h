@@ -54,6 +54,10 @@ struct SegmentVote {
     uint best_pixels;
     uint second_label;
     uint second_pixels;
+    uint known_pixels;  // that have a label
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 // One entry of the overlap table.
