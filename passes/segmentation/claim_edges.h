@@ -23,15 +23,15 @@ ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, grap
 
 /// When two components that touch are one thing.
 struct FoldSettings {
-    float strong_chroma = 0.12f;   ///< both lie farther than this from grey, which many things share,
-    float same_hue_degrees = 2;    ///< in directions from grey that differ by no more along their contact;
-    float same_saturation = 0.1f;  ///< highlights change the distance from grey, by so much
-    float least_weight = 2;        ///< pixels of the contact times that distance squared: noise does less then
+    float strong_chroma = 0.12f;    ///< both lie farther than this from grey, which many things share,
+    float same_hue_degrees = 2.5f;  ///< in directions from grey that differ by no more along their contact;
+    float same_saturation = 0.1f;   ///< highlights change the distance from grey, by so much
+    float least_weight = 1;         ///< pixels of the contact times that distance squared: noise does less then
 };
 
-/// Joins components across creases within one colour, as a figure has. `parents` and `pixels` as in Components; `pixels`
-/// of a component that was joined to another forwards to that one: gpu::kForwardedKey | key. If the table of contacts
-/// has overflowed nothing is joined. Returns the new version of `pixels`.
+/// Joins components across creases within one colour, as a figure has. `parents` and `pixels` as in Components;
+/// `pixels` of a component that was joined to another forwards to that one: gpu::kForwardedKey | key. If the table of
+/// contacts has overflowed nothing is joined. Returns the new version of `pixels`.
 graph::BufferId add_join_folds(graph::Frame& frame, const Contacts& contacts, graph::BufferId parents,
                                graph::BufferId pixels, const FoldSettings& settings);
 

@@ -78,7 +78,8 @@ graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, cons
 graph::ImageId add_find_edges(graph::Frame& frame, const FrameSurface& surface, graph::ImageId normal,
                               const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.find_edges";
-    const Extent2D extent = checked_extent(kPass, frame.common_extent({surface.depth_m, surface.chroma, normal}), params);
+    const Extent2D extent =
+        checked_extent(kPass, frame.common_extent({surface.depth_m, surface.chroma, normal}), params);
     auto pass = frame.compute(kPass, spirv::find_edges);
     pass.read("depth_m", surface.depth_m).read("normal", normal).read("chroma", surface.chroma);
     const graph::ImageId inner_depth_m = pass.create("inner_depth_m", {extent, vulkan::Format::kR32f});

@@ -14,8 +14,7 @@ constexpr uint32_t kGivenIds = 65536;
 }  // namespace
 
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::Camera& camera, const ColorPicture& color,
-                                const SegmentSettings& settings) {
+                                const gpu::Camera& camera, const ColorPicture& color, const SegmentSettings& settings) {
     const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
     const FrameSurface surface = add_choose_depth(frame, model_position_m, reading_m, camera, color);
     const graph::ImageId normal = add_fit_normals(frame, surface.depth_m, params);

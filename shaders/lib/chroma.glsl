@@ -1,5 +1,5 @@
-// Chromaticity, r and g over r + g + b, in 32 bits: 12 bits each | 8 bits of light, the sum's square root; 0 where it is
-// not known. Functions without bindings.
+// Chromaticity, r and g over r + g + b, in 32 bits: 12 bits each | 8 bits of light, the sum's square root; 0 where it
+// is not known. Functions without bindings.
 #ifndef PATINA_LIB_CHROMA_GLSL
 #define PATINA_LIB_CHROMA_GLSL
 
