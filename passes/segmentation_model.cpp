@@ -55,7 +55,7 @@ void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds&
 FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
-    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
+    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, settings.capacity);
     return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera,
                              {inputs.color_linear, color_camera}, settings);
 }
@@ -69,7 +69,8 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
     LabelMapIds labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, surface, access_);
+    const graph::ImageId known =
+        add_sample_labels(frame, map_, labels, table.parents, surface, access_, gpu::kSampleStride);
     const SegmentOverlaps overlaps =
         add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);

@@ -23,19 +23,19 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
         add_label_components(frame, inner_depth_m, params.jump_m, params.jump_slope);
     const ClaimedEdges claimed = add_claim_edges(frame, component, pixels, surface, normal, params);
     const graph::BufferId joined = add_join_folds(frame, claimed.contacts, parents, pixels, settings.folds);
-    return add_number_segments(frame, joined, claimed.component, surface.depth_m, camera, settings.min_pixels,
+    return add_number_segments(frame, joined, claimed.component, surface.depth_m, settings.min_pixels,
                                settings.capacity);
 }
 
 FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,
-                                 const gpu::Camera& camera, uint32_t capacity) {
+                                 uint32_t capacity) {
     const Extent2D extent = frame.common_extent({given, depth_m});
     auto count = frame.compute("segmentation.count_given", spirv::count_given);
     count.read("given", given).read("depth_m", depth_m);
     count.push(gpu::CountGivenParams{{extent.width, extent.height}, row_words_of(extent), kGivenIds});
     const graph::BufferId pixels = count.modify("Pixels", add_empty_keys(frame, "segmentation.pixels", kGivenIds));
     count.dispatch_covering(words_of(extent));
-    return add_number_segments(frame, pixels, given, depth_m, camera, 1, capacity);
+    return add_number_segments(frame, pixels, given, depth_m, 1, capacity);
 }
 
 }  // namespace patina

@@ -26,6 +26,6 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
 /// 65535; larger ids count as unknown, as do pixels where `depth_m`, W x H r32f, is 0. gpu::FrameSegment::key holds the
 /// id. Throws Error when extents differ.
 FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,
-                                 const gpu::Camera& camera, uint32_t capacity = gpu::kMaxFrameSegments);
+                                 uint32_t capacity = gpu::kMaxFrameSegments);
 
 }  // namespace patina

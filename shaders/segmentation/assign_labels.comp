@@ -212,7 +212,7 @@ void count_pairs(uint count) {
         pairs[pair].stamp = frame.stamp;
         pairs[pair].count += 1u;
         if (pairs[pair].count < frame.merge_count || !same_chroma(low, high)) continue;
-        merge_labels(low, high);
+        merge_labels(vote.best_label, vote.second_label);
         merged = 1u;
     }
 }

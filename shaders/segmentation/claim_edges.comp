@@ -24,11 +24,8 @@ const float kChromaWeightM = 0.05;  // a difference of colour counts as so much 
 
 ivec2 clamped(ivec2 pixel) { return clamp(pixel, ivec2(0), ivec2(params.extent) - 1); }
 
-// The pixel's component, 0 where it is too small.
-uint component_at(ivec2 pixel) {
-    const uint key = imageLoad(component, pixel).x;
-    return pixels[key] >= params.min_pixels ? key : 0u;
-}
+// 0 for components that are too small.
+uint large(uint key) { return pixels[key] >= params.min_pixels ? key : 0u; }
 
 // A table that is three quarters full takes no more pairs, and none of them counts then.
 void add_contact(uint a, uint a_chroma, uint b, uint b_chroma) {
@@ -56,7 +53,7 @@ void add_contact(uint a, uint a_chroma, uint b, uint b_chroma) {
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
-    uint own = component_at(pixel);
+    uint own = large(imageLoad(component, pixel).x);
     const float z = imageLoad(depth_m, pixel).x;
     const bool wanting = own == 0u && z > 0.0;
 
@@ -66,12 +63,14 @@ void main() {
     ivec4 apart = ivec4(0);
     for (int step = 1; wanting && any(equal(found, uvec4(0u))) && step <= params.claim_reach_px; ++step) {
         [[unroll]] for (int i = 0; i < 4; ++i) {
-            const uint there = component_at(clamped(pixel + step * kDirections[i]));
+            // Beyond the image loads are zero.
+            const uint there = imageLoad(component, pixel + step * kDirections[i]).x;
             apart[i] = found[i] == 0u ? step : apart[i];
             found[i] = found[i] == 0u ? there : found[i];
         }
     }
     if (any(notEqual(found, uvec4(0u)))) {
+        [[unroll]] for (int i = 0; i < 4; ++i) found[i] = large(found[i]);
         const vec3 point_m = surface_point_m(params, pixel, z);
         const float limit_m = params.claim_m + params.claim_sigmas * depth_sigma_m(params, z);
         const uint color = imageLoad(chroma, pixel).x;

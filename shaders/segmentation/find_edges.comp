@@ -26,6 +26,7 @@ Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
                 joined ? surface_point_m(params, place, z) : here.point_m);
 }
 
+const int kColorReach = 2;            // how far on both sides colours are compared (pixels)
 const float kParallelCosine = 0.9;  // of the normals on both sides of a step, which it tilts
 
 bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine, float step_m) {
@@ -39,13 +40,11 @@ bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine
     return (concave && between < cosine) || is_step;
 }
 
-// Two pixels on each side.
-bool differ(ivec2 pixel, ivec2 step) {
-    const uint a0 = imageLoad(chroma, pixel - step).x, a1 = imageLoad(chroma, pixel - 2 * step).x;
-    const uint b0 = imageLoad(chroma, pixel + step).x, b1 = imageLoad(chroma, pixel + 2 * step).x;
-    const vec2 apart = 0.5 * abs(unpack_chroma(a0) + unpack_chroma(a1) - unpack_chroma(b0) - unpack_chroma(b1));
+bool differ(ivec2 pixel, ivec2 offset) {
     // Outside the image loads are zero: not known.
-    const float light = chroma_light(min(min(a0, a1), min(b0, b1)));
+    const uint a = imageLoad(chroma, pixel - offset).x, b = imageLoad(chroma, pixel + offset).x;
+    const vec2 apart = abs(unpack_chroma(a) - unpack_chroma(b));
+    const float light = chroma_light(min(a, b));
     return light > 0.0 && max(apart.x, apart.y) > params.cut_chroma + params.cut_light / max(light, 1e-3);
 }
 
@@ -68,6 +67,7 @@ void main() {
 
     const bool crease = is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m) ||
                         is_crease(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
-    const bool edge = packed == 0u || crease || differ(pixel, ivec2(1, 0)) || differ(pixel, ivec2(0, 1));
+    const bool edge = packed == 0u || crease || differ(pixel, ivec2(kColorReach, 0)) ||
+                      differ(pixel, ivec2(0, kColorReach));
     imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

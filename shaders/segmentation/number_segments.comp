@@ -54,7 +54,7 @@ void begin_segment(uint key, uint number) {
     const bool placed = number <= params.capacity;
     numbers[key] = placed ? number : 0u;
     if (placed) {
-        segments[number] = FrameSegment(0u, key, 0u, 0u, 0xffffffffu, 0xffffffffu, 0u, 0u, 0, 0, 0, 0, 0u, 0u, 0u, 0u);
+        segments[number] = FrameSegment(0u, key, 0u, 0u);
     }
 }
 

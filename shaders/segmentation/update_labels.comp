@@ -37,11 +37,12 @@ uint seen_label(vec3 center_m, vec3 camera_m) {
     const ivec2 pixel = ivec2(floor(project(view.camera, at) + 0.5));
     const uint here = imageLoad(segment, pixel).x;
     if (here == 0u) return kNoLabel;
-    const vec3 point = imageLoad(position_m, pixel).xyz;
+    const float depth_m = imageLoad(position_m, pixel).w;  // one channel is gathered faster than three
     const vec3 facing = imageLoad(normal, pixel).xyz;
     const vec3 toward = camera_m - center_m;
     const bool grazing = dot(facing, toward) < kGrazingCosine * length(toward);
-    const bool apart = abs(dot(facing, center_m - point)) > kNearVox * view.grid.voxel_m;
+    const vec3 offset_m = to_world_direction(view.camera, at - unproject(view.camera, vec2(pixel)) * depth_m);
+    const bool apart = abs(dot(facing, offset_m)) > kNearVox * view.grid.voxel_m;
     return grazing || apart ? kNoLabel : imageLoad(SegmentLabels, int(here)).x;
 }
 
@@ -83,7 +84,7 @@ void main() {
 #define STORE_WORDS(C) words[C].quads[first_quad + quad] = known
         WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORDS)
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        for (int j = 0; j < 4; ++j) {
+        [[unroll]] for (int j = 0; j < 4; ++j) {
             const vec3 center_m = (vec3(corner + within + ivec3(j, 0, 0)) + 0.5) * view.grid.voxel_m;
             const uint label = near[j] ? seen_label(center_m, camera_m) : kNoLabel;
             known[j] = updated(known[j], label, votes, flips);

@@ -1,7 +1,6 @@
 // From components, known by sparse keys, to segments numbered 1, 2, ... in the order of the keys.
 #ifndef PATINA_SHARED_NUMBER_SEGMENTS_H
 #define PATINA_SHARED_NUMBER_SEGMENTS_H
-#include "shared/camera.h"
 #include "shared/frame_segments.h"
 INTEROP_BEGIN
 
@@ -31,11 +30,13 @@ struct CountGivenParams {
 };
 
 struct MeasureSegmentsParams {
-    Camera camera;
+    uvec2 extent;  // pixels
     uint row_words;
     uint keys;
     uint min_pixels;
     uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 INTEROP_END
