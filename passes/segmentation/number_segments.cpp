@@ -47,8 +47,8 @@ FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, g
     out.segments = measure.modify("Segments", out.segments);
     out.segment = measure.create("segment", {extent, vulkan::Format::kR32u});
     const auto keys = static_cast<uint32_t>(frame.bytes(pixels) / sizeof(uint32_t));
-    measure.push(gpu::MeasureSegmentsParams{
-        {extent.width, extent.height}, row_words_of(extent), keys, min_pixels, 0, 0, 0});
+    measure.push(
+        gpu::MeasureSegmentsParams{{extent.width, extent.height}, row_words_of(extent), keys, min_pixels, 0, 0, 0});
     measure.dispatch_covering(words_of(extent));
     return out;
 }

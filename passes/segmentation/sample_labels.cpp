@@ -5,7 +5,8 @@
 namespace patina {
 
 graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
-                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access, uint32_t stride) {
+                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access,
+                                 uint32_t stride) {
     const Extent2D full = frame.common_extent({surface.position_m, surface.normal});
     const Extent2D extent{(full.width + stride - 1) / stride, (full.height + stride - 1) / stride};
     const bool texel = access == MapAccess::kTexel;

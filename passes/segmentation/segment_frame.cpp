@@ -27,8 +27,7 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
                                settings.capacity);
 }
 
-FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,
-                                 uint32_t capacity) {
+FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m, uint32_t capacity) {
     const Extent2D extent = frame.common_extent({given, depth_m});
     auto count = frame.compute("segmentation.count_given", spirv::count_given);
     count.read("given", given).read("depth_m", depth_m);

@@ -26,8 +26,8 @@ Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
                 joined ? surface_point_m(params, place, z) : here.point_m);
 }
 
-const int kColorReach = 2;            // how far on both sides colours are compared (pixels)
-const float kParallelCosine = 0.9;  // of the normals on both sides of a step, which it tilts
+const int kColorReach = 2;           // how far on both sides colours are compared (pixels)
+const float kParallelCosine = 0.95;  // of the normals on both sides of a step, which it tilts
 
 bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine, float step_m) {
     const Side a = side_at(pixel, here, -offset, limit_m);
@@ -67,7 +67,7 @@ void main() {
 
     const bool crease = is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m) ||
                         is_crease(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
-    const bool edge = packed == 0u || crease || differ(pixel, ivec2(kColorReach, 0)) ||
-                      differ(pixel, ivec2(0, kColorReach));
+    const bool edge =
+        packed == 0u || crease || differ(pixel, ivec2(kColorReach, 0)) || differ(pixel, ivec2(0, kColorReach));
     imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

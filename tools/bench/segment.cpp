@@ -1,5 +1,5 @@
-// patina_segment_bench: how long it takes to divide a frame into segments and to label the map, and pictures of segments. See
-// docs/benchmarks.md.
+// patina_segment_bench: how long it takes to divide a frame into segments and to label the map, and pictures of
+// segments. See docs/benchmarks.md.
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -89,7 +89,8 @@ class Bench {
             const double start = processor_ms();
             graph::Frame frame = runner().begin();
             const SegmentationInputs inputs = cast(frame);
-            for (const auto id : {inputs.surface.position_m, inputs.surface.normal, inputs.depth_m, inputs.color_linear})
+            for (const auto id :
+                 {inputs.surface.position_m, inputs.surface.normal, inputs.depth_m, inputs.color_linear})
                 frame.keep(id);
             if (part == Part::kFrame) {
                 const FrameSegments out = divided(frame, inputs);
@@ -195,7 +196,8 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace patina;
-    CLI::App app("Measures how long it takes to divide a frame into segments and to label the map", "patina_segment_bench");
+    CLI::App app("Measures how long it takes to divide a frame into segments and to label the map",
+                 "patina_segment_bench");
     bench::Options options;
     app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
     app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
