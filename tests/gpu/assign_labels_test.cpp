@@ -245,7 +245,7 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
             segment.pixels = 20 + below(300);
             for (uint32_t n = below(4); n > 0; --n) {
                 const uint32_t label = book.root(1 + below(kCapacity - 1));
-                if (label != 0) segment.shared[label] = 1 + below(segment.pixels / 2);
+                if (label != 0) segment.shared[label] = 1 + below(segment.pixels / 3);
             }
         }
         std::map<uint32_t, uint32_t> voxels;
