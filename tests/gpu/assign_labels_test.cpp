@@ -239,7 +239,7 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
     std::mt19937 random(3);
     const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
     const auto alike = [](uint32_t a, uint32_t b) { return (a + b) % 2 == 0; };
-    for (uint32_t i = 1; i <= 300; ++i) {
+    for (uint32_t i = 1; i <= 450; ++i) {
         std::vector<SeenSegment> seen(below(12));
         for (SeenSegment& segment : seen) {
             segment.pixels = 20 + below(300);
