@@ -17,8 +17,9 @@ using ::testing::HasSubstr;
 
 class Eval : public ::testing::Test {
   protected:
+    /// The rig has truth, but no pictures in which surfaces could be counted.
     Outcome eval(std::vector<std::string> more = {}) const {
-        std::vector<std::string> arguments{"eval", rig_.sequence(), rig_.run()};
+        std::vector<std::string> arguments{"eval", rig_.sequence(), rig_.run(), "--seen", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return patina(arguments);
     }
@@ -83,6 +84,11 @@ TEST_F(Eval, LightRadiusDecidesAboutMatches) {
     EXPECT_THAT(expect_failure(eval({"--light-radius", "0"}), 2), HasSubstr("--light-radius"));
 }
 
+TEST_F(Eval, CountingSightingsTakesTheSequencesPictures) {
+    EXPECT_THAT(expect_failure(patina({"eval", sequence(), run(), "--quiet"})), HasSubstr(sequence().string()));
+    EXPECT_THAT(expect_failure(eval({"--seen", "0"}), 2), HasSubstr("--seen"));
+}
+
 TEST_F(Eval, SequenceWithoutTruth) {
     fs::remove_all(sequence() / "truth");
     EXPECT_THAT(failure(), AllOf(HasSubstr("truth/frames"), HasSubstr("--truth-every")));
@@ -125,12 +131,16 @@ TEST_F(FromSceneToScores, GeometryIsReconstructed) {
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
     // At this size, pixels are farther apart than the voxels would be by default.
     run_quietly(recording, {"--dump-every", "1", "--set", "map.voxel_m=0.03"});
-    const Outcome outcome = patina({"eval", recording, out()});
+    EXPECT_THAT(patina({"eval", recording, out()}).out, HasSubstr("No surface was seen in at least 5 frames"));
+    const Outcome outcome = patina({"eval", recording, out(), "--seen", "2"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("2 frames of 96 x 80"), HasSubstr("\nDepth error"),
                                    HasSubstr("hold no kd, kd refined, ks, alpha and RGB.")));
     const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
     EXPECT_EQ(json["frames"], (nlohmann::json{0, 2}));
+    EXPECT_EQ(json["seen_frames"], 2);
+    EXPECT_GT(json["seen_share"], 0.4);  // nothing in frame 0, nearly everything in frame 2
+    EXPECT_LT(json["seen_share"], 0.55);
     EXPECT_LT(json["depth_mm"]["median"], 10);
     EXPECT_GT(json["depth_mm"]["coverage"], 0.8);
     EXPECT_LT(json["trajectory"]["ate_rmse_m"], 1e-6);
@@ -150,7 +160,7 @@ TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
         EXPECT_GE(lamp["sightings"], 5);
         EXPECT_LT(lamp["spread_m"], 0.02);
     }
-    const Outcome outcome = patina({"eval", recording, out(), "--quiet"});
+    const Outcome outcome = patina({"eval", recording, out(), "--seen", "1", "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
     EXPECT_LT(json["object_means"]["kd"]["filled"]["mad"], 0.1);

@@ -56,6 +56,8 @@ TEST(EvalJson, ReadsBackAsMeasured) {
     const json got = parsed(evaluation);
     EXPECT_EQ(got["run"], evaluation.run);
     EXPECT_EQ(got["frames"], json(evaluation.frames));
+    EXPECT_EQ(got["seen_frames"], 5);
+    EXPECT_EQ(got["seen_share"], 0.953125);
     ASSERT_EQ(got["objects"].size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
         const ObjectResult& object = evaluation.objects[i];
@@ -84,9 +86,10 @@ TEST(EvalJson, ReadsBackAsMeasured) {
 
 TEST(EvalJson, KeysKeepTheirOrder) {
     const auto got = nlohmann::ordered_json::parse(eval_json(full_evaluation()));
-    EXPECT_THAT(keys_of(got), ElementsAre("format", "version", "sequence", "run", "width", "height", "frames",
-                                          "truth_frames", "run_frames", "objects", "object_means", "depth_mm",
-                                          "normal_deg", "segmentation", "trajectory", "lights"));
+    EXPECT_THAT(keys_of(got),
+                ElementsAre("format", "version", "sequence", "run", "width", "height", "frames", "truth_frames",
+                            "run_frames", "seen_frames", "seen_share", "objects", "object_means", "depth_mm",
+                            "normal_deg", "segmentation", "trajectory", "lights"));
     EXPECT_THAT(keys_of(got["objects"][0]["quantities"]),
                 ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb"));
 }

@@ -52,6 +52,7 @@ std::vector<std::string> unbalanced(const std::string& html) {
 TEST(EvalReport, HasScoresPlotsAndPictures) {
     const std::string html = report();
     EXPECT_THAT(html, HasSubstr("<th>kd refined</th><td class='number'>0.0300</td>"));
+    EXPECT_THAT(html, HasSubstr("<p>Scores over pixels whose surface was seen in at least 5 frames, 95.3% of"));
     EXPECT_THAT(html, HasSubstr("Depth error</td><td>1.50 mm median"));
     EXPECT_THAT(html, HasSubstr("true light 2</td>"));
     EXPECT_THAT(html, HasSubstr("93.8%"));

@@ -50,7 +50,8 @@ class EvalRig {
     /// Writes the run's frames anew, each changed by `change`, without some groups of channels.
     void change_frames(const std::function<void(EvalFrame&)>& change, const std::set<std::string>& without = {}) const;
 
-    eval::Evaluation evaluate() const { return eval::evaluate(sequence(), run()); }
+    /// Over every pixel: there are no pictures whose surface could be counted.
+    eval::Evaluation evaluate() const { return eval::evaluate(sequence(), run(), {.seen_frames = 1}); }
 
   private:
     TemporaryFolder folder_;

@@ -45,6 +45,7 @@ TEST(EvalText, LooksLikeTable1) {
     EXPECT_EQ(eval_text(small_evaluation()),
               R"(out/<b>run</b> against recordings/bunnies: 10 frames of 512 x 424 (truth has 10, the run 15)
 
+Scores over pixels whose surface was seen in at least 5 frames, 95.3% of those that have truth.
 S1 floor, S2 yellow <script> figure
 
                      MAD                  RMSE                PSNR, dB                SSIM
@@ -108,6 +109,24 @@ TEST(EvalText, SaysWhatTheRunDidNotWrite) {
     EXPECT_THAT(text, HasSubstr("\nRGB refined  0.1100"));
     EXPECT_THAT(text, HasSubstr("Note: The run's frames hold no kd, kd refined, ks, alpha and RGB.\n"));
     EXPECT_THAT(text, HasSubstr("Note: Lights were not compared"));
+}
+
+TEST(EvalText, SaysWhichPixelsAreScored) {
+    Evaluation evaluation = full_evaluation();
+    evaluation.seen_frames = 1;
+    EXPECT_THAT(eval_text(evaluation), HasSubstr("\nScores over every pixel that has truth.\nS1 floor"));
+    evaluation = full_evaluation(30);
+    EXPECT_THAT(eval_text(evaluation), HasSubstr("95.3% of those that have truth.\n\n      "));
+}
+
+TEST(EvalText, NothingSeenOftenEnoughIsSaid) {
+    Evaluation evaluation = full_evaluation();
+    evaluation.seen_share = 0;
+    for (const Quantity quantity : kQuantities) evaluation.object_means[quantity].reset();
+    const std::string text = eval_text(evaluation);
+    EXPECT_THAT(text, HasSubstr("Note: No surface was seen in at least 5 frames by the evaluated ones; --seen 1 scores "
+                                "every pixel that has truth.\n"));
+    EXPECT_THAT(text, Not(HasSubstr("hold no")));
 }
 
 TEST(EvalText, NothingSeenIsSaid) {

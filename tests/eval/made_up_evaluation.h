@@ -44,6 +44,8 @@ inline eval::Evaluation full_evaluation(size_t objects = 4, uint32_t frames = 40
     for (uint32_t i = 0; i < frames; ++i) evaluation.frames.push_back(10 * i);
     evaluation.truth_frames = frames;
     evaluation.run_frames = frames + 5;
+    evaluation.seen_frames = 5;
+    evaluation.seen_share = 0.953125;
     const std::vector<std::string> names = {"floor", "yellow <script> figure", "Küche & \"more\"", "orange figure"};
     for (size_t k = 0; k < objects; ++k) {
         eval::ObjectResult object;

@@ -4,10 +4,12 @@
 
 #include <cstring>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation_rig.h"
+#include "tests/reference/light_samples.h"
 
 namespace patina {
 namespace {
@@ -114,43 +116,89 @@ TEST_F(SampleSurface, DoesNotDependOnTheOrderOfRecords) {
     EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof first[0]), 0);
 }
 
-TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheBoxIsBetween) {
+/// Whether a lamp gives the floor cosine over squared distance where the box is not between, and nothing where it is.
+void expect_shadow_of_box(const std::vector<gpu::LightSample>& drawn, const float* received, glm::vec3 lamp_m) {
+    uint32_t lit = 0, shaded = 0, wrong = 0;
+    for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+        const gpu::LightSample& s = drawn[i];
+        const bool is_floor = s.normal.y <= -0.99f && std::abs(s.point_m.y) <= 0.01f;
+        if (s.point_m.w == 0 || !is_floor) continue;
+        const glm::vec3 offset_m = lamp_m - glm::vec3(s.point_m);
+        const float distance_m = glm::length(offset_m);
+        const float open = glm::dot(offset_m, glm::vec3(s.normal)) /
+                           (std::numbers::pi_v<float> * distance_m * distance_m * distance_m);
+        const glm::dvec3 from(s.point_m), to(lamp_m);
+        if (!box_between(from, to, 0.03)) {
+            ++lit;
+            wrong += std::abs(received[i] - open) > 0.01f * open;
+        } else if (box_between(from, to, -0.03)) {
+            ++shaded;
+            wrong += received[i] != 0;
+        }
+    }
+    EXPECT_GT(lit, 100u);
+    EXPECT_GT(shaded, 5u);
+    EXPECT_LE(wrong, (lit + shaded) / 100);
+}
+
+/// How often the reference decided.
+struct Decided {
+    uint32_t lit = 0, shaded = 0, low = 0;
+};
+
+void expect_reference(const std::vector<gpu::LightSample>& drawn, const float* received, glm::vec3 lamp_m,
+                      const reference::Volume& volume, Decided& decided) {
+    for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+        const gpu::LightSample& s = drawn[i];
+        if (s.point_m.w == 0) {
+            EXPECT_EQ(received[i], 0);
+            continue;
+        }
+        const reference::TrialLight expected =
+            reference::try_light(volume, glm::dvec3(s.point_m), glm::dvec3(s.normal), glm::dvec3(lamp_m));
+        // The march looks at nearest voxels, and takes half a voxel for noise.
+        const double least_vox = expected.least_distance_m / volume.voxel_m;
+        if (expected.received == 0) {
+            ++decided.low;
+            EXPECT_EQ(received[i], 0);
+        } else if (least_vox > 0.5) {
+            ++decided.lit;
+            EXPECT_NEAR(received[i], expected.received, 1e-4 * expected.received) << "sample " << i;
+        } else if (least_vox < -1.5) {
+            ++decided.shaded;
+            EXPECT_EQ(received[i], 0) << "sample " << i;
+        }
+    }
+}
+
+TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween) {
     const auto rig = make_model();
     const auto drawn = draw(*rig);
-    const std::vector<glm::vec3> places_m{{0.8f, -0.5f, 0.1f}, {-0.5f, -0.6f, -0.6f}};
+    std::vector<glm::vec3> places_m{{0.8f, -0.5f, 0.1f}, {-0.5f, -0.6f, -0.6f}};
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> side_m(-1, 1), height_m(-0.9f, -0.05f);
+    // Every other one is near the box, or within.
+    for (int i = 0; i < 8; ++i) {
+        const float near = i % 2 == 0 ? 1.0f : 0.35f;
+        places_m.emplace_back(near * side_m(random), near * height_m(random), near * side_m(random));
+    }
     graph::Frame frame = runner().begin();
     const VoxelMap& map = rig->fusion().map();
     const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
     const graph::Readback read = frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m));
     run(std::move(frame));
     const auto received = read.as<float>();
-    uint32_t lit = 0, shaded = 0, wrong = 0;
+    const reference::Volume volume = rig->fusion().volume();
+    Decided decided;
     for (size_t lamp = 0; lamp < places_m.size(); ++lamp) {
-        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
-            const float got = received[lamp * gpu::kLightSamples + i];
-            const gpu::LightSample& s = drawn[i];
-            if (s.point_m.w == 0) {
-                EXPECT_EQ(got, 0);
-                continue;
-            }
-            if (s.normal.y > -0.99f || std::abs(s.point_m.y) > 0.01f) continue;  // the floor
-            const glm::vec3 offset_m = places_m[lamp] - glm::vec3(s.point_m);
-            const float distance_m = glm::length(offset_m);
-            const float open = glm::dot(offset_m, glm::vec3(s.normal)) /
-                               (std::numbers::pi_v<float> * distance_m * distance_m * distance_m);
-            const glm::dvec3 from(s.point_m), to(places_m[lamp]);
-            if (!box_between(from, to, 0.03)) {
-                ++lit;
-                wrong += std::abs(got - open) > 0.01f * open;
-            } else if (box_between(from, to, -0.03)) {
-                ++shaded;
-                wrong += got != 0;
-            }
-        }
+        SCOPED_TRACE(text("lamp ", lamp));
+        const float* const of_lamp = &received[lamp * gpu::kLightSamples];
+        if (lamp < 2) expect_shadow_of_box(drawn, of_lamp, places_m[lamp]);
+        expect_reference(drawn, of_lamp, places_m[lamp], volume, decided);
     }
-    EXPECT_GT(lit, 200u);
-    EXPECT_GT(shaded, 20u);
-    EXPECT_LE(wrong, (lit + shaded) / 100);
+    EXPECT_GT(decided.lit, 1000u);
+    EXPECT_GT(decided.shaded, 100u);
+    EXPECT_GT(decided.low, 30u);
 }
 
 }  // namespace

@@ -132,6 +132,14 @@ bool line_of_sight_is_free(glm::dvec3 point_m, const ObservedFrame& frame, const
     return true;
 }
 
+/// How far the point moved over the picture while the shutter was open stays within the limit.
+bool is_sharp(glm::dvec3 point_m, const ObservedFrame& frame, const ObservationRules& rules) {
+    if (frame.shutter_share == 0) return true;
+    const auto now = pixel_of(frame.color_camera, frame.world_from_color, point_m);
+    const auto before = pixel_of(frame.color_camera, frame.world_from_color_before, point_m);
+    return now && before && glm::distance(*now, *before) * frame.shutter_share <= rules.max_blur_px;
+}
+
 std::optional<SeenColor> seen_color(glm::dvec3 point_m, const ObservedFrame& frame) {
     const auto pixel = pixel_of(frame.color_camera, frame.world_from_color, point_m);
     if (!pixel) return {};
@@ -213,6 +221,7 @@ void observe(ObservedVoxel& voxel, glm::ivec3 coordinates, const ObservedFrame& 
     if (!pixel || !faces(voxel.normal, toward, rules)) return;
     vote(voxel, load(frame.labels, *pixel));
     if (!is_even_around(*pixel, frame, rules) || !line_of_sight_is_free(point(), frame, rules)) return;
+    if (!is_sharp(point(), frame, rules)) return;
     if (const auto seen = seen_color(point(), frame)) add(voxel.seen, *seen, rules.merge_angle_degrees);
 }
 

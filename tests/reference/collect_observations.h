@@ -41,7 +41,9 @@ struct ObservedFrame {
     Intrinsics color_camera;
     RigidTransform world_from_color;
     Image<glm::vec4> color;
-    Image<uint32_t> labels;  ///< empty: none
+    Image<uint32_t> labels;                       ///< empty: none
+    RigidTransform world_from_color_before{1.0};  ///< at the frame before
+    double shutter_share = 0;                     ///< of the time since then, that the shutter was open
 };
 
 struct ObservationRules {
@@ -55,6 +57,7 @@ struct ObservationRules {
     uint32_t stride_px = 1;
     glm::uvec2 phase{0};
     SlopeJump jump;
+    double max_blur_px = 0;
 };
 
 /// The voxels that add_allocate_records lists.

@@ -61,6 +61,12 @@ void add_eval(CLI::App& app) {
                      "A light of the run farther than this from a true one, in metres, does not stand for it")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command
+        ->add_option("--seen", arguments->settings.seen_frames,
+                     "Score materials and colours where the surface was seen in at least so many frames of the "
+                     "sequence; 1 takes every pixel that has truth")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
     command->callback([arguments] { run_eval(*arguments); });
 }

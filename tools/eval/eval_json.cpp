@@ -189,6 +189,8 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"frames", evaluation.frames},
                        {"truth_frames", evaluation.truth_frames},
                        {"run_frames", evaluation.run_frames},
+                       {"seen_frames", evaluation.seen_frames},
+                       {"seen_share", evaluation.seen_share},
                        {"objects", Convert::list_of(evaluation.objects)},
                        {"object_means", Convert::to_json(evaluation.object_means)},
                        {"depth_mm", Convert::or_null(evaluation.depth_mm)},

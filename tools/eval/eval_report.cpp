@@ -78,7 +78,8 @@ std::string metric_tables(const Evaluation& evaluation, Pixels pixels) {
 std::string scores(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
     const std::string key = column_key(evaluation);
-    return (key.empty() ? key : paragraph(key)) + metric_tables(evaluation, Pixels::kFilled) +
+    return paragraph(scored_pixels(evaluation)) + (key.empty() ? key : paragraph(key)) +
+           metric_tables(evaluation, Pixels::kFilled) +
            (has_unfilled(evaluation)
                 ? std::string()
                 : paragraph("Every pixel is filled: counting unfilled ones as zero changes nothing."));

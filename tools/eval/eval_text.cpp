@@ -119,8 +119,8 @@ class MetricPrinter {
 
 std::string score_text(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
-    std::string text = printable(column_key(evaluation));
-    if (!text.empty()) text += "\n\n";
+    const std::string key = printable(column_key(evaluation));
+    std::string text = scored_pixels(evaluation) + '\n' + key + (key.empty() ? "\n" : "\n\n");
     text += MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
     if (has_unfilled(evaluation)) {
         text += "With unfilled pixels counted as zero:\n\n" +

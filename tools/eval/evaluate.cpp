@@ -13,6 +13,7 @@
 #include "tools/eval/measure_frame.h"
 #include "tools/eval/metrics.h"
 #include "tools/eval/pixel_errors.h"
+#include "tools/eval/seen_pixels.h"
 #include "tools/eval/segmentation.h"
 #include "tools/eval/trajectory.h"
 
@@ -62,6 +63,12 @@ std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& r
     return pairs;
 }
 
+std::map<uint32_t, fs::path> truth_files(std::span<const FramePair> pairs) {
+    std::map<uint32_t, fs::path> files;
+    for (const FramePair& pair : pairs) files.emplace(pair.index, pair.truth);
+    return files;
+}
+
 /// The trajectories of sequence and run; empty where one of them has none.
 std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "trajectory.txt", run_file = run / "trajectory.txt";
@@ -92,11 +99,12 @@ struct Reference {
     std::set<std::string> groups;
     std::string file;                               ///< the run's first frame, which the above come from
     std::map<uint32_t, glm::dmat3> truth_from_run;  ///< rotations of the frames that have poses
+    std::optional<SeenPixels> seen;                 ///< empty where every pixel is scored
 };
 
 Reference reference_of(const FramePair& first, std::span<const PosePair> poses) {
     const ExrPlanes frame = ExrPlanes::read(first.run);
-    Reference reference{frame.extent(), groups_of(frame), frame.file(), {}};
+    Reference reference{frame.extent(), groups_of(frame), frame.file(), {}, {}};
     if (!reference.groups.contains("valid")) throw Error(frame.file(), " has no channel valid");
     // truth/trajectory.txt has one line per frame of the sequence, so that a pose's index is its frame's.
     for (const PosePair& pair : poses) {
@@ -115,6 +123,7 @@ FrameMeasurement measure(const FramePair& pair, const Reference& reference) {
     expect_groups(run, reference.groups, reference.file);
     const auto rotation = reference.truth_from_run.find(pair.index);
     return measure_frame(pair.index, truth, run,
+                         reference.seen ? reference.seen->mask(pair.index, truth) : Image<uint8_t>(),
                          rotation == reference.truth_from_run.end() ? glm::dmat3(1) : rotation->second);
 }
 
@@ -133,6 +142,7 @@ class Totals {
         }
         overlap_.add(frame.overlap);
         truth_pixels_ += frame.truth_pixels;
+        object_pixels_ += frame.object_pixels;
         for (const float error : frame.depth_errors_mm) depth_mm_.add(error);
         for (const float error : frame.normal_errors_deg) normal_deg_.add(error);
     }
@@ -143,7 +153,9 @@ class Totals {
         result.normal_deg = normal_deg_.spread(truth_pixels_);
         std::vector<ObjectSegmentation> segmentations;
         PerQuantity<std::vector<Comparison>> means;
+        uint64_t scored = 0;
         for (auto& [id, object] : objects_) {
+            scored += object.pixels;
             object.id = id;
             object.name = text("object ", id);
             if (has_labels) segmentations.push_back(*(object.segmentation = overlap_.segmentation_of(id)));
@@ -152,6 +164,7 @@ class Totals {
             }
             result.objects.push_back(std::move(object));
         }
+        if (object_pixels_ > 0) result.seen_share = static_cast<double>(scored) / static_cast<double>(object_pixels_);
         if (!segmentations.empty()) result.segmentation = mean_of(segmentations);
         for (const Quantity quantity : kQuantities) {
             if (!means[quantity].empty()) result.object_means[quantity] = mean_of(means[quantity]);
@@ -169,6 +182,7 @@ class Totals {
     std::map<uint32_t, ObjectResult> objects_;
     LabelOverlap overlap_;
     uint64_t truth_pixels_ = 0;
+    uint64_t object_pixels_ = 0;
     PixelErrorSum depth_mm_;
     PixelErrorSum normal_deg_;
 };
@@ -209,8 +223,10 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     const std::vector<PosePair> poses = read_poses(sequence, run, result);
     measure_lights(sequence, run, poses.empty() ? RigidTransform(1.0) : align_worlds(poses), settings.light_radius_m,
                    result);
-    const Reference reference = reference_of(pairs.front(), poses);
+    Reference reference = reference_of(pairs.front(), poses);
     result.extent = reference.extent;
+    result.seen_frames = settings.seen_frames;
+    if (settings.seen_frames > 1) reference.seen.emplace(sequence, truth_files(pairs), settings.seen_frames);
     Totals totals;
     measure_frames(pairs, reference, settings, totals);
     totals.finish(reference.groups.contains("label"), result);

@@ -26,7 +26,7 @@ std::optional<uint32_t> frame_index(const fs::path& file) {
 
 }  // namespace
 
-ExrPlanes ExrPlanes::read(const fs::path& path) {
+ExrPlanes ExrPlanes::read(const fs::path& path, const std::set<std::string>& only) {
     if (!fs::exists(path)) throw Error(path.string(), " is missing");
     ExrPlanes picture;
     picture.file_ = path.string();
@@ -38,6 +38,7 @@ ExrPlanes ExrPlanes::read(const fs::path& path) {
         Imf::FrameBuffer target;
         const Imf::ChannelList& channels = file.header().channels();
         for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+            if (!only.empty() && !only.contains(channel.name())) continue;
             std::vector<float>& plane = picture.planes_[channel.name()];
             plane.resize(picture.extent_.area());
             target.insert(channel.name(), Imf::Slice::Make(Imf::FLOAT, plane.data(), window));

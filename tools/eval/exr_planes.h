@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace patina::eval {
 /// All channels of an OpenEXR picture as planes, rows from the top, under their names in the file: "kd.R", "depth".
 class ExrPlanes {
   public:
-    /// Reads half, float and integer channels as float. Throws Error, naming the file, when it is missing or damaged.
-    static ExrPlanes read(const std::filesystem::path& file);
+    /// Reads half, float and integer channels as float: all, or those of `only` that the file has. Throws Error, naming
+    /// the file, when it is missing or damaged.
+    static ExrPlanes read(const std::filesystem::path& file, const std::set<std::string>& only = {});
 
     const std::string& file() const { return file_; }
     Extent2D extent() const { return extent_; }

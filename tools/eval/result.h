@@ -50,7 +50,7 @@ struct Scores {
 
 /// An object's scores for one quantity: in one frame, averaged over frames, or averaged over objects.
 struct Comparison {
-    double coverage = 0;           ///< filled pixels / region
+    double coverage = 0;           ///< filled pixels / region, which is what is scored of the object
     std::optional<Scores> filled;  ///< over the filled pixels; empty where there is none
     Scores unfilled_as_zero;       ///< over the region, unfilled pixels being 0
 };
@@ -153,7 +153,9 @@ struct Evaluation {
     std::vector<uint32_t> frames;  ///< evaluated: those that truth/frames and the run's frames have in common
     size_t truth_frames = 0;
     size_t run_frames = 0;
-    std::vector<ObjectResult> objects;                    ///< by id; those with a region in some frame
+    uint32_t seen_frames = 1;  ///< regions hold the pixels whose surface had been seen in so many frames by then
+    double seen_share = 1;     ///< of the objects' pixels, those
+    std::vector<ObjectResult> objects;                    ///< by id; those that truth shows in some frame
     PerQuantity<std::optional<Comparison>> object_means;  ///< over the objects that have the quantity
     std::optional<PixelErrors> depth_mm;
     std::optional<PixelErrors> normal_deg;

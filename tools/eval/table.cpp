@@ -111,6 +111,12 @@ std::string column_key(const Evaluation& evaluation) {
     return text;
 }
 
+std::string scored_pixels(const Evaluation& evaluation) {
+    if (evaluation.seen_frames <= 1) return "Scores over every pixel that has truth.";
+    return fmt::format("Scores over pixels whose surface was seen in at least {} frames, {} of those that have truth.",
+                       evaluation.seen_frames, percent(evaluation.seen_share));
+}
+
 const char* title_of(Quantity quantity) {
     switch (quantity) {
         case Quantity::kKdBefore: return "kd";
@@ -158,7 +164,14 @@ std::vector<std::string> absences(const Evaluation& evaluation) {
     for (const Quantity quantity : kQuantities) {
         if (!evaluation.object_means[quantity]) missing.push_back(title_of(quantity));
     }
-    if (!missing.empty()) list.push_back("The run's frames hold no " + listed(missing) + ".");
+    if (evaluation.seen_share == 0) {
+        list.push_back(
+            fmt::format("No surface was seen in at least {} frames by the evaluated ones; --seen 1 scores "
+                        "every pixel that has truth.",
+                        evaluation.seen_frames));
+    } else if (!missing.empty()) {
+        list.push_back("The run's frames hold no " + listed(missing) + ".");
+    }
     const auto note = [&](bool present, const char* sentence) {
         if (!present) list.push_back(sentence);
     };

@@ -38,6 +38,9 @@ std::string short_name(size_t object);
 /// "S1 floor, S2 box": what the columns of Table 1 stand for; empty where it is turned.
 std::string column_key(const Evaluation& evaluation);
 
+/// Which of the objects' pixels the scores are over; a sentence.
+std::string scored_pixels(const Evaluation& evaluation);
+
 /// What a person calls a quantity: "kd", "kd refined", "RGB".
 const char* title_of(Quantity quantity);
 

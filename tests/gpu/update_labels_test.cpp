@@ -1,0 +1,163 @@
+#include "passes/segmentation/update_labels.h"
+
+#include <numeric>
+
+#include "engine/core/shader_camera.h"
+#include "passes/fusion/visible_blocks.h"
+#include "tests/gpu/gpu_test.h"
+#include "tests/gpu/label_rig.h"
+
+namespace patina {
+namespace {
+
+constexpr uint32_t kSegments = 40;
+
+class UpdateLabels : public GpuTest {
+  protected:
+    struct Update {
+        reference::LabelledView view;
+        gpu::SegmentCounters counters{};
+    };
+
+    /// Updates all blocks in use from a view whose pixels are in these segments.
+    Update update(LabelRig& rig, const RigidTransform& world_from_camera, const Image<uint32_t>& segment,
+                  const std::vector<uint32_t>& segment_labels, const std::vector<uint32_t>& roots) {
+        const Intrinsics& camera = LabelRig::camera();
+        const std::vector<uint32_t> list = blocks_in_use(rig);
+        graph::Frame frame = runner().begin();
+        const VoxelMapIds voxels = rig.map().import(frame);
+        const VisibleBlocks visible =
+            add_visible_blocks(frame, rig.map(), voxels, make_camera(camera, world_from_camera), 0.1f, 2.1f);
+        const RaycastImages model = add_raycast(frame, rig.map(), voxels, visible, MapAccess::kStorage);
+        const SurfaceView surface{model.position_m, model.normal, visible.view, visible.grid};
+        const std::vector<uint32_t> groups{gpu::kGroupsPerRow, (list[0] + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow,
+                                           1, 0};
+        const SurfaceBlocks blocks{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
+        const FrameSegments segments{
+            frame.upload("segment", {camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(segment.pixels()))),
+            {},
+            {}};
+        SegmentTableIds table = table_.import(frame);
+        table.parents = frame.upload<uint32_t>("parents", roots);
+        table.counters = frame.fill(table.counters, 0);
+        LabelMapIds labels = rig.labels().import(frame);
+        add_update_labels(frame, rig.map(), voxels, labels, table, surface, blocks, segments,
+                          frame.upload<uint32_t>("segment_labels", segment_labels));
+        LabelMap::keep(frame, labels);
+        const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
+                              counters = frame.read_back(table.counters);
+        run(std::move(frame));
+        return {{camera, world_from_camera, position.image<glm::vec4>(), widen(normal.image<uint64_t>()), segment,
+                 segment_labels, rig.map().settings().voxel_m},
+                counters.as<gpu::SegmentCounters>().front()};
+    }
+
+    SegmentTable table_{device(), LabelRig::kLabels};
+
+  private:
+    /// Count, then ids.
+    static std::vector<uint32_t> blocks_in_use(LabelRig& rig) {
+        std::vector<uint32_t> list{0};
+        const std::vector<uint32_t> keys = rig.fusion().table().block_keys;
+        for (uint32_t block = 0; block < keys.size(); ++block) {
+            if (keys[block] != gpu::kEmptyKey) list.push_back(block);
+        }
+        list[0] = static_cast<uint32_t>(list.size() - 1);
+        return list;
+    }
+};
+
+bool is_near_surface(const reference::Voxel& voxel, double voxel_m) {
+    return voxel.weight > 0 && std::abs(voxel.sdf_m) < voxel_m;
+}
+
+TEST_F(UpdateLabels, AgreesWithTheReference) {
+    std::mt19937 random(23);
+    const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
+    LabelRig rig(device(), runner());
+    rig.set_random(random, 2);
+    const std::vector<uint32_t> roots = random_roots(LabelRig::kLabels, random);
+    std::vector<uint32_t> labels(kSegments);
+    for (uint32_t s = 1; s < kSegments; ++s) labels[s] = roots[below(LabelRig::kLabels)];
+    Image<uint32_t> segment(LabelRig::camera().extent);
+    for (size_t i = 0; i < segment.pixels().size(); ++i) {
+        segment.pixels()[i] = static_cast<uint32_t>(i / 7 * 31 % kSegments);  // runs of seven pixels
+    }
+    const reference::Volume volume = rig.fusion().volume();
+    const reference::LabelVolume before = rig.volume();
+    const Update got = update(rig, reference::look_at({0.2, -0.1, 0.1}, {0, 0, 1}), segment, labels, roots);
+    const reference::LabelVolume after = rig.volume();
+    uint32_t voted = 0, flipped = 0, differ = 0;
+    for (const auto& [block, voxels] : volume.blocks) {
+        for (size_t i = 0; i < voxels.size(); ++i) {
+            const glm::dvec3 center_m = volume.center_m(block, static_cast<int>(i));
+            const reference::VoxelLabel known = before.blocks.at(block)[i];
+            const uint32_t label =
+                is_near_surface(voxels[i], volume.voxel_m) ? reference::seen_label(got.view, center_m) : 0;
+            const reference::VoxelLabel root = reference::relabelled(known, roots);
+            const reference::VoxelLabel expected = label == 0 ? known : reference::voted(root, label);
+            voted += label != 0 ? 1 : 0;
+            flipped += label != 0 && root.label != 0 && expected.label != root.label ? 1 : 0;
+            differ += after.blocks.at(block)[i] != expected ? 1 : 0;
+        }
+    }
+    EXPECT_GT(voted, 5000u);
+    EXPECT_GT(flipped, 10u);
+    // Single precision decides otherwise where a centre is between two pixels, or just within a voxel.
+    EXPECT_LE(differ, voted / 500);
+    EXPECT_NEAR(got.counters.frame_voxels, voted, voted / 500.0);
+    EXPECT_NEAR(got.counters.frame_flips, flipped, 3);
+}
+
+/// How near the way from a point to a camera passes the ball's centre.
+double distance_from_ball_m(glm::dvec3 from_m, const RigidTransform& world_from_camera) {
+    const glm::dvec3 center_m(0.05, 0, 0.8), direction = glm::normalize(glm::dvec3(world_from_camera[3]) - from_m);
+    return glm::distance(center_m, from_m + direction * glm::dot(center_m - from_m, direction));
+}
+
+/// Whether a camera's picture shows a point, not at its rim.
+bool shows(const RigidTransform& world_from_camera, glm::dvec3 point_m) {
+    const glm::dvec2 pixel =
+        project(LabelRig::camera(), glm::dvec3(rigid_inverse(world_from_camera) * glm::dvec4(point_m, 1)));
+    return pixel.x > 4 && pixel.y > 4 && pixel.x < 91 && pixel.y < 59;
+}
+
+TEST_F(UpdateLabels, TheWallGetsItsLabelButNotBehindTheBall) {
+    LabelRig rig(device(), runner());
+    rig.set(std::vector<uint32_t>(size_t{LabelRig::kCapacity} * gpu::kBlockVoxels),
+            std::vector<uint32_t>(LabelRig::kCapacity));
+    std::vector<uint32_t> roots(LabelRig::kLabels);
+    std::iota(roots.begin(), roots.end(), 0u);
+    const Image<uint32_t> segment(LabelRig::camera().extent, 1);
+    // From aside the ball hides a part of the wall that was fused before.
+    const RigidTransform aside = reference::look_at({0.5, 0, 0.2}, {0, 0, 1});
+    for (int i = 0; i < 4; ++i) rig.fusion().fuse(LabelRig::camera(), aside, LabelRig::depth_m(aside));
+    const auto label_all = [&](uint32_t label) { return update(rig, aside, segment, {0, label}, roots); };
+    EXPECT_EQ(label_all(5).counters.frame_flips, 0u) << "none had a label";
+    const uint32_t flips = label_all(6).counters.frame_flips;
+    EXPECT_EQ(label_all(6).counters.frame_voxels, flips);
+    uint32_t free = 0, hidden = 0;
+    const reference::LabelVolume volume = rig.volume();
+    const reference::Volume distances = rig.fusion().volume();
+    for (const auto& [block, voxels] : distances.blocks) {
+        for (size_t i = 0; i < voxels.size(); ++i) {
+            const glm::dvec3 center_m = distances.center_m(block, static_cast<int>(i));
+            if (!is_near_surface(voxels[i], distances.voxel_m) || center_m.z < 0.95) continue;
+            if (!shows(aside, center_m)) continue;
+            const double way_m = distance_from_ball_m(center_m, aside);
+            const reference::VoxelLabel label = volume.blocks.at(block)[i];
+            if (way_m > 0.18) {
+                ++free;
+                EXPECT_EQ(label, (reference::VoxelLabel{6, 2}));
+            } else if (way_m < 0.12) {
+                ++hidden;
+                EXPECT_EQ(label, reference::VoxelLabel{});
+            }
+        }
+    }
+    EXPECT_GT(free, 1000u);
+    EXPECT_GT(hidden, 50u);
+}
+
+}  // namespace
+}  // namespace patina
