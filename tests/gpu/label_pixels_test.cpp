@@ -1,5 +1,6 @@
 #include "passes/segmentation/label_pixels.h"
 
+#include "shared/segments.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 #include "tests/gpu/label_rig.h"
