@@ -4,7 +4,7 @@
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
 #include "passes/segmentation/label_pixels.h"
-#include "passes/segmentation/list_surface.h"
+#include "passes/segmentation/list_due_blocks.h"
 #include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sample_records.h"
@@ -55,9 +55,9 @@ void SegmentationModel::clear_new_blocks(graph::Frame& frame, const VoxelMapIds&
 FrameSegments SegmentationModel::segments(graph::Frame& frame, const SegmentationInputs& inputs,
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
-    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
-    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera, settings,
-                             ColorGuide{inputs.color_linear, color_camera});
+    if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, settings.capacity);
+    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera,
+                             {inputs.color_linear, color_camera}, settings);
 }
 
 graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
@@ -69,12 +69,13 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.params", std::span(&values, 1));
     LabelMapIds labels = labels_.import(frame);
     SegmentTableIds table = table_.import(frame);
-    const graph::ImageId known = add_sample_labels(frame, map_, labels, table.parents, surface, access_);
+    const graph::ImageId known =
+        add_sample_labels(frame, map_, labels, table.parents, surface, access_, gpu::kSampleStride);
     const SegmentOverlaps overlaps =
         add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, surface, values.stamp);
-    add_update_labels(frame, map_, voxels, labels, table, surface, blocks, seen, assigned);
+    const DueBlocks due = add_list_due_blocks(frame, map_, voxels, labels, surface.blocks, values.stamp);
+    add_update_labels(frame, map_, voxels, labels, table, surface, due, seen, assigned);
     add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);

@@ -18,9 +18,10 @@ struct SegmentTableIds {
 };
 
 /// The segments of the map by label, 1 to capacity() - 1. Labels that are one object's are joined by a union-find whose
-/// smaller label wins; parents point to the root, as they are compressed in every frame. What reads a label takes its
-/// root. A label is handed out again only after a whole sweep of the map has found nothing that holds it, and the one
-/// that was free for the longest time comes first. Lives as long as the voxel map; passes/segmentation fills it.
+/// label that covers more wins; parents point to the root, as they are compressed in every frame. What reads a label
+/// takes its root. A label is handed out again only after a whole sweep of the map has found nothing that holds it, and
+/// the one that was free for the longest time comes first. Lives as long as the voxel map; passes/segmentation fills
+/// it.
 class SegmentTable {
   public:
     static constexpr uint32_t kMaxCapacity = 65535;  ///< label 0 and 65534 others

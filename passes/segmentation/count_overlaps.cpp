@@ -15,7 +15,8 @@ uint32_t overlap_slots(Extent2D extent) {
 SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
                                    graph::ImageId map_label, graph::ImageId position_m, graph::ImageId color_linear,
                                    graph::BufferId params) {
-    const Extent2D extent = frame.common_extent({segments.segment, map_label, position_m});
+    const Extent2D extent = frame.common_extent({segments.segment, position_m});
+    const Extent2D sampled = frame.shape(map_label).extent;
     const uint32_t slots = overlap_slots(extent);
     SegmentOverlaps out;
     out.table = frame.fill(frame.create_buffer("segmentation.overlaps", slots * sizeof(gpu::SegmentOverlap)), 0);
@@ -26,8 +27,8 @@ SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, 
     out.table = pass.modify("Overlaps", out.table);
     out.list = pass.modify("OverlapList", out.list);
     table.labels = pass.modify("Labels", table.labels);
-    const uint32_t strips = (extent.width + gpu::kStripPixels - 1) / gpu::kStripPixels;
-    pass.dispatch_covering(Extent2D{strips, extent.height});
+    const uint32_t strips = (sampled.width + gpu::kStripPixels - 1) / gpu::kStripPixels;
+    pass.dispatch_covering(Extent2D{strips, sampled.height});
     return out;
 }
 

@@ -6,7 +6,7 @@ namespace patina {
 
 graph::ImageId add_label_pixels(graph::Frame& frame, const FrameSegments& segments, graph::ImageId map_label,
                                 graph::BufferId parents, graph::BufferId segment_labels) {
-    const Extent2D extent = frame.common_extent({segments.segment, map_label});
+    const Extent2D extent = frame.shape(segments.segment).extent;
     auto pass = frame.compute("segmentation.label_pixels", spirv::label_pixels);
     pass.read("segment", segments.segment).read("map_label", map_label);
     pass.read("Parents", parents).read("SegmentLabels", segment_labels);

@@ -18,8 +18,7 @@ graph::BufferId add_empty_keys(graph::Frame& frame, const std::string& name, uin
 }
 
 FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, graph::ImageId key,
-                                  graph::ImageId depth_m, const gpu::Camera& camera, uint32_t min_pixels,
-                                  uint32_t capacity) {
+                                  graph::ImageId depth_m, uint32_t min_pixels, uint32_t capacity) {
     if (min_pixels == 0) throw Error("the least size of a segment is 0 px, it must be 1 at least");
     if (capacity == 0 || capacity > gpu::kMaxFrameSegments) {
         throw Error("a frame's table of segments for ", capacity, " is asked for, it must be 1 to ",
@@ -48,7 +47,8 @@ FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, g
     out.segments = measure.modify("Segments", out.segments);
     out.segment = measure.create("segment", {extent, vulkan::Format::kR32u});
     const auto keys = static_cast<uint32_t>(frame.bytes(pixels) / sizeof(uint32_t));
-    measure.push(gpu::MeasureSegmentsParams{camera, row_words_of(extent), keys, min_pixels, 0});
+    measure.push(
+        gpu::MeasureSegmentsParams{{extent.width, extent.height}, row_words_of(extent), keys, min_pixels, 0, 0, 0});
     measure.dispatch_covering(words_of(extent));
     return out;
 }

@@ -5,13 +5,16 @@
 namespace patina {
 
 graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
-                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access) {
-    const Extent2D extent = frame.common_extent({surface.position_m, surface.normal});
+                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access,
+                                 uint32_t stride) {
+    const Extent2D full = frame.common_extent({surface.position_m, surface.normal});
+    const Extent2D extent{(full.width + stride - 1) / stride, (full.height + stride - 1) / stride};
     const bool texel = access == MapAccess::kTexel;
     auto pass = frame.compute("segmentation.sample_labels", texel ? spirv::sample_labels_texel : spirv::sample_labels);
     pass.read("position_m", surface.position_m).read("normal", surface.normal);
     pass.read("View", surface.view).read("ViewGrid", surface.view_grid);
     pass.read("Words", labels.words).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
+    pass.specialise("kStride", stride);
     const graph::ImageId label = pass.create("map_label", {extent, vulkan::Format::kR32u});
     pass.dispatch_covering(extent);
     return label;

@@ -8,9 +8,11 @@
 namespace patina {
 
 /// Looks up the labels of the surface that a camera sees, and takes their roots in `parents` (SegmentTable). Where the
-/// voxel that holds the surface point has none, those behind and before it are asked. Returns W x H r32ui, 0 where
-/// there is none. Throws Error when the images of `surface` differ in extent.
+/// voxel that holds the surface point has none, those behind and before it are asked. Looks at every `stride`-th pixel
+/// in x and y. Returns W / stride x H / stride, rounded up, r32ui, 0 where there is none. Throws Error when the images
+/// of `surface` differ in extent.
 graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
-                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access);
+                                 graph::BufferId parents, const SurfaceView& surface, MapAccess access,
+                                 uint32_t stride = 1);
 
 }  // namespace patina

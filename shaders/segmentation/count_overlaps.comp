@@ -17,6 +17,8 @@ layout(std430, binding = 5) coherent buffer Overlaps { SegmentOverlap overlaps[]
 layout(std430, binding = 6) coherent buffer OverlapList { uint overlap_list[]; };  // entries asked for, then slots
 layout(std430, binding = 7) buffer Labels { SegmentLabel labels[]; };
 
+const int kStride = int(kSampleStride);
+
 // Adds to the entry of a key. A table that is three quarters full takes no more keys: the frame is then left out as a
 // whole, so that it does not matter which came first.
 void count(uint key, uint pixels) {
@@ -33,13 +35,13 @@ void count(uint key, uint pixels) {
         }
         slot = (slot + 1u) & (frame.overlap_slots - 1u);
     }
-    atomicAdd(overlaps[slot].pixels, pixels);
+    atomicAdd(overlaps[slot].pixels, pixels * kSampleStride * kSampleStride);
 }
 
 // One pixel of each strip, another in every frame. Clipped colours say nothing of the surface.
 void collect_chroma(ivec2 pixel, uint label) {
     if (label == kNoLabel) return;
-    const vec3 at = to_camera(frame.color_camera, imageLoad(position_m, pixel).xyz);
+    const vec3 at = to_camera(frame.color_camera, imageLoad(position_m, pixel * kStride).xyz);
     if (at.z <= 0.0) return;
     const vec4 seen = imageLoad(color_linear, ivec2(floor(project(frame.color_camera, at) + 0.5)));
     const float sum = seen.r + seen.g + seen.b;
@@ -51,12 +53,12 @@ void collect_chroma(ivec2 pixel, uint label) {
 
 void main() {
     const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(kStripPixels, 1);
-    if (any(greaterThanEqual(first, ivec2(frame.extent)))) return;
+    if (any(greaterThanEqual(first, imageSize(map_label)))) return;
     uint key = 0u, run = 0u;
     // Beyond the image's border loads are zero: no segment.
     [[unroll]] for (int i = 0; i < int(kStripPixels); ++i) {
         const ivec2 pixel = first + ivec2(i, 0);
-        const uint here = imageLoad(map_label, pixel).x | imageLoad(segment, pixel).x << 16;
+        const uint here = imageLoad(map_label, pixel).x | imageLoad(segment, pixel * kStride).x << 16;
         if (here != key) {
             count(key, run);
             key = here;

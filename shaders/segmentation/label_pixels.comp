@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The label of each pixel: what the map says, else what its segment got.
+// The label of each pixel: what the map says where it was asked nearby, on the same segment; else what that got.
 #include "shared/segments.h"
 
 layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;
@@ -14,7 +14,10 @@ void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(segment)))) return;
     // Labels may have merged since the map was sampled.
-    const uint known = imageLoad(Parents, int(imageLoad(map_label, pixel).x)).x;
-    const uint assigned = imageLoad(SegmentLabels, int(imageLoad(segment, pixel).x)).x;
-    imageStore(label, pixel, uvec4(known != kNoLabel ? known : assigned));
+    const ivec2 sampled = pixel / int(kSampleStride);
+    const uint known = imageLoad(Parents, int(imageLoad(map_label, sampled).x)).x;
+    const uint here = imageLoad(segment, pixel).x;
+    const bool same = imageLoad(segment, sampled * int(kSampleStride)).x == here;
+    const uint assigned = imageLoad(SegmentLabels, int(here)).x;
+    imageStore(label, pixel, uvec4(known != kNoLabel && same ? known : assigned));
 }

@@ -6,6 +6,7 @@
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_labels.glsl"
 
+layout(constant_id = 1) const int kStride = 1;  // of the pixels in x and y
 layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform readonly image2D normal;
@@ -29,7 +30,8 @@ uint label_at(vec3 point_m) {
 }
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    const ivec2 sampled = ivec2(gl_GlobalInvocationID.xy);
+    const ivec2 pixel = sampled * kStride;
     if (any(greaterThanEqual(pixel, imageSize(position_m)))) return;
     const vec4 point = imageLoad(position_m, pixel);
     uint label = kNoLabel;
@@ -41,5 +43,5 @@ void main() {
             if (label == kNoLabel) label = label_at(point.xyz + across);
         }
     }
-    imageStore(map_label, pixel, uvec4(label));
+    imageStore(map_label, sampled, uvec4(label));
 }

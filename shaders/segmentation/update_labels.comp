@@ -10,7 +10,7 @@
 #include "shared/visible_blocks.h"
 
 layout(local_size_x = kUpdateLabelsGroup) in;
-layout(std430, binding = 0) readonly buffer Surface { uint surface[]; };
+layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(binding = 3, rgba32f) uniform readonly image2D position_m;
@@ -25,7 +25,7 @@ words[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
-const float kGrazingCosine = 0.2;  // of steeper views the pixels say little
+const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
 
 shared uint voted;
 shared uint flipped;
@@ -37,11 +37,12 @@ uint seen_label(vec3 center_m, vec3 camera_m) {
     const ivec2 pixel = ivec2(floor(project(view.camera, at) + 0.5));
     const uint here = imageLoad(segment, pixel).x;
     if (here == 0u) return kNoLabel;
-    const vec3 point = imageLoad(position_m, pixel).xyz;
+    const float depth_m = imageLoad(position_m, pixel).w;  // one channel is gathered faster than three
     const vec3 facing = imageLoad(normal, pixel).xyz;
     const vec3 toward = camera_m - center_m;
     const bool grazing = dot(facing, toward) < kGrazingCosine * length(toward);
-    const bool apart = abs(dot(facing, center_m - point)) > kNearVox * view.grid.voxel_m;
+    const vec3 offset_m = to_world_direction(view.camera, at - unproject(view.camera, vec2(pixel)) * depth_m);
+    const bool apart = abs(dot(facing, offset_m)) > kNearVox * view.grid.voxel_m;
     return grazing || apart ? kNoLabel : imageLoad(SegmentLabels, int(here)).x;
 }
 
@@ -57,8 +58,8 @@ uint updated(uint word, uint label, inout uint votes, inout uint flips) {
 
 void main() {
     const uint item = group_item(gl_WorkGroupID);
-    if (item >= surface[0]) return;
-    const uint block = surface[1u + item];
+    if (item >= due[0]) return;
+    const uint block = due[1u + item];
     const uint lane = gl_LocalInvocationIndex;
     if (lane == 0u) {
         voted = 0u;
@@ -83,7 +84,7 @@ void main() {
 #define STORE_WORDS(C) words[C].quads[first_quad + quad] = known
         WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORDS)
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        for (int j = 0; j < 4; ++j) {
+        [[unroll]] for (int j = 0; j < 4; ++j) {
             const vec3 center_m = (vec3(corner + within + ivec3(j, 0, 0)) + 0.5) * view.grid.voxel_m;
             const uint label = near[j] ? seen_label(center_m, camera_m) : kNoLabel;
             known[j] = updated(known[j], label, votes, flips);

@@ -1,14 +1,14 @@
 // From components, known by sparse keys, to segments numbered 1, 2, ... in the order of the keys.
 #ifndef PATINA_SHARED_NUMBER_SEGMENTS_H
 #define PATINA_SHARED_NUMBER_SEGMENTS_H
-#include "shared/camera.h"
 #include "shared/frame_segments.h"
 INTEROP_BEGIN
 
 INTEROP_CONST uint kNumberGroup = 128u;
 INTEROP_CONST uint kNumberQuads = 8u;  // of four keys, one invocation after another
 INTEROP_CONST uint kKeysPerGroup = kNumberGroup * kNumberQuads * 4u;
-INTEROP_CONST uint kMeasureGroup = 64u;  // of 32 pixels of a row
+INTEROP_CONST uint kForwardedKey = 0x80000000u;  // | another key, in place of a number of pixels: that key is meant
+INTEROP_CONST uint kMeasureGroup = 64u;          // of 32 pixels of a row
 
 // How many components there are.
 struct KeyTotals {
@@ -30,11 +30,13 @@ struct CountGivenParams {
 };
 
 struct MeasureSegmentsParams {
-    Camera camera;
+    uvec2 extent;  // pixels
     uint row_words;
     uint keys;
     uint min_pixels;
     uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 INTEROP_END

@@ -22,6 +22,7 @@ class CountOverlaps : public GpuTest {
         std::vector<gpu::SegmentLabel> labels;
     };
 
+    /// `label`: of every kStride-th pixel in x and y.
     Result count(const Image<uint32_t>& segment, const Image<uint32_t>& label, glm::vec4 color = {0, 0, 0, 0}) {
         const Extent2D extent = segment.extent();
         SegmentTable table(device(), 65535);
@@ -33,6 +34,8 @@ class CountOverlaps : public GpuTest {
         const auto upload = [&](const char* name, vulkan::Format format, const auto& pixels) {
             return frame.upload(name, {extent, format}, std::as_bytes(std::span(pixels)));
         };
+        const auto sampled =
+            frame.upload("label", {label.extent(), vulkan::Format::kR32u}, std::as_bytes(std::span(label.pixels())));
         gpu::SegmentationParams values{};
         values.color_camera = make_camera(pinhole_camera(extent), RigidTransform(1.0));
         values.extent = {extent.width, extent.height};
@@ -43,8 +46,7 @@ class CountOverlaps : public GpuTest {
         const std::vector<uint64_t> colors(extent.area(), glm::packHalf4x16(color));
         const FrameSegments segments{upload("segment", vulkan::Format::kR32u, segment.pixels()), {}, {}};
         const SegmentOverlaps overlaps =
-            add_count_overlaps(frame, ids, segments, upload("label", vulkan::Format::kR32u, label.pixels()),
-                               upload("points", vulkan::Format::kRgba32f, points),
+            add_count_overlaps(frame, ids, segments, sampled, upload("points", vulkan::Format::kRgba32f, points),
                                upload("color", vulkan::Format::kRgba16f, colors), params);
         const graph::Readback read_table = frame.read_back(overlaps.table), read_list = frame.read_back(overlaps.list),
                               read_labels = frame.read_back(ids.labels);
@@ -60,16 +62,25 @@ class CountOverlaps : public GpuTest {
     }
 };
 
-TEST_F(CountOverlaps, CountsEveryPixelOnceOnWholeStripsAndTails) {
+constexpr uint32_t kStride = gpu::kSampleStride;
+
+Extent2D sampled(Extent2D extent) {
+    return {(extent.width + kStride - 1) / kStride, (extent.height + kStride - 1) / kStride};
+}
+
+TEST_F(CountOverlaps, CountsEverySampleOnceOnWholeStripsAndTails) {
     std::mt19937 random(2);
     for (const Extent2D extent : {Extent2D{1, 1}, {8, 4}, {13, 7}, {259, 33}}) {
-        Image<uint32_t> segment(extent), label(extent);
+        Image<uint32_t> segment(extent), label(sampled(extent));
         Counts expected;
         for (uint32_t y = 0; y < extent.height; ++y) {
-            for (uint32_t x = 0; x < extent.width; ++x) {
-                segment.at(x, y) = (x / 5 + y / 3) % 4;  // runs, and no segment
+            for (uint32_t x = 0; x < extent.width; ++x) segment.at(x, y) = (x / 5 + y / 3) % 4;  // runs, and no segment
+        }
+        for (uint32_t y = 0; y < label.extent().height; ++y) {
+            for (uint32_t x = 0; x < label.extent().width; ++x) {
                 label.at(x, y) = random() % 8 == 0 ? 65534 : x / 11 % 3;
-                if (segment.at(x, y) != 0 && label.at(x, y) != 0) ++expected[{segment.at(x, y), label.at(x, y)}];
+                const uint32_t here = segment.at(kStride * x, kStride * y);
+                if (here != 0 && label.at(x, y) != 0) expected[{here, label.at(x, y)}] += kStride * kStride;
             }
         }
         EXPECT_EQ(count(segment, label).counts, expected) << extent;
@@ -77,19 +88,19 @@ TEST_F(CountOverlaps, CountsEveryPixelOnceOnWholeStripsAndTails) {
 }
 
 TEST_F(CountOverlaps, ATableThatIsTooSmallSaysSo) {
-    const Extent2D extent{64, 32};
-    Image<uint32_t> segment(extent, 1), label(extent);
+    const Extent2D extent{128, 64};
+    Image<uint32_t> segment(extent, 1), label(sampled(extent));
     for (uint32_t i = 0; i < 767; ++i) label.pixels()[i] = i + 1;
     EXPECT_FALSE(count(segment, label).overflow);
-    for (uint32_t i = 0; i < extent.area(); ++i) label.pixels()[i] = i + 1;
+    for (uint32_t i = 0; i < label.pixels().size(); ++i) label.pixels()[i] = i + 1;
     EXPECT_TRUE(count(segment, label).overflow);
 }
 
 TEST_F(CountOverlaps, CollectsTheChromaticityOfLabels) {
-    const Extent2D extent{64, 32};
-    const Image<uint32_t> segment(extent, 1), label(extent, 5);
+    const Extent2D extent{128, 64};
+    const Image<uint32_t> segment(extent, 1), label(sampled(extent), 5);
     const gpu::SegmentLabel seen = count(segment, label, {0.6f, 0.3f, 0.1f, 1.0f}).labels[5];
-    EXPECT_EQ(seen.chroma_samples, extent.area() / gpu::kStripPixels / 4);
+    EXPECT_EQ(seen.chroma_samples, label.pixels().size() / gpu::kStripPixels / 4);
     EXPECT_NEAR(double(seen.chroma_r) / seen.chroma_samples, 0.6 * gpu::kChromaSteps, 1);
     EXPECT_NEAR(double(seen.chroma_g) / seen.chroma_samples, 0.3 * gpu::kChromaSteps, 1);
     EXPECT_EQ(count(segment, label, {0.6f, 0.3f, 0.1f, 0.5f}).labels[5].chroma_samples, 0u) << "clipped";

@@ -32,14 +32,21 @@ class FindEdges : public GpuTest {
     };
 
     Result find(const Image<float>& depth_m, const EdgeSettings& settings = {}) {
+        return find(depth_m, Image<uint32_t>(depth_m.extent()), settings);
+    }
+
+    /// `chroma` as shaders/lib/chroma.glsl packs it.
+    Result find(const Image<float>& depth_m, const Image<uint32_t>& chroma, const EdgeSettings& settings = {}) {
         const Intrinsics camera = pinhole_camera(depth_m.extent());
         graph::Frame frame = runner().begin();
         const auto depth = frame.upload("depth_m", {depth_m.extent(), vulkan::Format::kR32f},
                                         std::as_bytes(std::span(depth_m.pixels())));
+        const auto colors =
+            frame.upload("chroma", {chroma.extent(), vulkan::Format::kR32u}, std::as_bytes(std::span(chroma.pixels())));
         const auto params = make_surface_params(make_camera(camera, kHere), settings, 60);
         const graph::ImageId normal = add_fit_normals(frame, depth, params);
         const graph::Readback normals = frame.read_back(normal);
-        const graph::Readback inner = frame.read_back(add_find_edges(frame, depth, normal, params));
+        const graph::Readback inner = frame.read_back(add_find_edges(frame, {depth, colors}, normal, params));
         run(std::move(frame));
         Image<glm::dvec3> unpacked_normals(depth_m.extent());
         const auto bits = normals.as<uint32_t>();
@@ -96,6 +103,38 @@ TEST_F(FindEdges, NoiseWidensTheAngle) {
     noisy.noise = {0.1f, 0};
     EXPECT_LT(find(crease(60, {320, 20})).inner_depth_m.at(156, 10), 0);
     EXPECT_GT(find(crease(60, {320, 20}), noisy).inner_depth_m.at(156, 10), 0);
+}
+
+TEST_F(FindEdges, AStepBetweenParallelSurfacesIsAnEdge) {
+    for (const auto& [height_m, expected] : {std::pair(0.012f, true), {0.002f, false}}) {
+        Image<float> depth_m({320, 20}, 1.2f);
+        for (uint32_t y = 0; y < 20; ++y) {
+            for (uint32_t x = 160; x < 320; ++x) depth_m.at(x, y) = 1.2f - height_m;
+        }
+        const Result got = find(depth_m);
+        for (uint32_t y = 0; y < 20; ++y) {
+            EXPECT_EQ(got.inner_depth_m.at(159, y) < 0 || got.inner_depth_m.at(160, y) < 0, expected) << height_m;
+            for (const uint32_t x : {0u, 148u, 171u, 319u}) EXPECT_GT(got.inner_depth_m.at(x, y), 0) << height_m;
+        }
+    }
+}
+
+uint32_t packed_chroma(double r, double g, uint32_t light) {
+    return static_cast<uint32_t>(r * 4095) | static_cast<uint32_t>(g * 4095) << 12 | light << 24;
+}
+
+TEST_F(FindEdges, AChangeOfColourIsAnEdgeWhereThereIsLightEnoughToTell) {
+    const Image<float> depth_m({320, 20}, 1.2f);
+    for (const auto& [change, light, expected] :
+         {std::tuple(0.15, 128u, true), {0.03, 128u, false}, {0.15, 30u, false}, {0.15, 0u, false}}) {
+        Image<uint32_t> chroma(depth_m.extent(), packed_chroma(0.5, 0.3, light));
+        for (uint32_t y = 0; y < 20; ++y) {
+            for (uint32_t x = 160; x < 320; ++x) chroma.at(x, y) = packed_chroma(0.5 - change, 0.3, light);
+        }
+        const Result got = find(depth_m, chroma);
+        for (uint32_t x = 0; x < 320; ++x)
+            EXPECT_EQ(got.inner_depth_m.at(x, 9) < 0, expected && x >= 158 && x < 162) << change << ' ' << light;
+    }
 }
 
 TEST_F(FindEdges, NormalsDoNotReachAcrossAJump) {

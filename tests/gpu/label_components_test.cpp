@@ -79,8 +79,8 @@ class LabelComponents : public GpuTest {
         graph::Frame frame = runner().begin();
         const auto id =
             frame.upload("mask", {mask.extent(), vulkan::Format::kR32f}, std::as_bytes(std::span(mask.pixels())));
-        const auto [component, pixels] = add_label_components(frame, id, 0.01f, 0.015f);
-        const graph::Readback read = frame.read_back(component), counts = frame.read_back(pixels);
+        const Components found = add_label_components(frame, id, 0.01f, 0.015f);
+        const graph::Readback read = frame.read_back(found.component), counts = frame.read_back(found.pixels);
         run(std::move(frame));
         return {read.image<uint32_t>(), counts.as<uint32_t>()};
     }

@@ -1,5 +1,6 @@
 #include "passes/segmentation/label_pixels.h"
 
+#include "shared/segments.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input_pictures.h"
 #include "tests/gpu/label_rig.h"
@@ -9,21 +10,27 @@ namespace {
 
 class LabelPixels : public GpuTest {};
 
+/// The map is asked at every kStride-th pixel in x and y; what it says there holds for those of the same segment.
+constexpr uint32_t kStride = gpu::kSampleStride;
+
 TEST_F(LabelPixels, AreTheMapsElseTheirSegments) {
     constexpr uint32_t kLabels = 500, kSegments = 90;
     for (const Extent2D extent : kPictureExtents) {
         std::mt19937 random(extent.width);
         const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
-        Image<uint32_t> map_label(extent), segment(extent);
+        Image<uint32_t> map_label({(extent.width + kStride - 1) / kStride, (extent.height + kStride - 1) / kStride});
+        Image<uint32_t> segment(extent);
         for (uint32_t& label : map_label.pixels()) label = below(2) == 0 ? 0 : below(kLabels);
-        for (uint32_t& number : segment.pixels()) number = below(kSegments);
+        for (uint32_t i = 0; i < extent.area(); ++i)
+            segment.pixels()[i] = i > 0 && below(3) != 0 ? segment.pixels()[i - 1] : below(kSegments);
         const std::vector<uint32_t> roots = random_roots(kLabels, random);
         std::vector<uint32_t> segment_labels(kSegments);
         for (uint32_t s = 1; s < kSegments; ++s) segment_labels[s] = below(4) == 0 ? 0 : below(kLabels);
 
         graph::Frame frame = runner().begin();
         const auto upload = [&](const char* name, const Image<uint32_t>& image) {
-            return frame.upload(name, {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(image.pixels())));
+            return frame.upload(name, {image.extent(), vulkan::Format::kR32u},
+                                std::as_bytes(std::span(image.pixels())));
         };
         const FrameSegments segments{upload("segment", segment), {}, {}};
         const graph::Readback read = frame.read_back(
@@ -31,10 +38,14 @@ TEST_F(LabelPixels, AreTheMapsElseTheirSegments) {
                              frame.upload<uint32_t>("segment_labels", segment_labels)));
         run(std::move(frame));
         const Image<uint32_t> got = read.image<uint32_t>();
-        for (size_t i = 0; i < extent.area(); ++i) {
-            ASSERT_EQ(got.pixels()[i],
-                      reference::pixel_label(map_label.pixels()[i], segment.pixels()[i], roots, segment_labels))
-                << extent << ", pixel " << i;
+        for (uint32_t y = 0; y < extent.height; ++y) {
+            for (uint32_t x = 0; x < extent.width; ++x) {
+                const uint32_t own = segment.at(x, y);
+                const bool same = segment.at(x / kStride * kStride, y / kStride * kStride) == own;
+                const uint32_t known = same ? map_label.at(x / kStride, y / kStride) : 0;
+                ASSERT_EQ(got.at(x, y), reference::pixel_label(known, own, roots, segment_labels))
+                    << extent << ", pixel " << x << ' ' << y;
+            }
         }
     }
 }

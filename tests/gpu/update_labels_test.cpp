@@ -29,10 +29,10 @@ class UpdateLabels : public GpuTest {
         const VisibleBlocks visible =
             add_visible_blocks(frame, rig.map(), voxels, make_camera(camera, world_from_camera), 0.1f, 2.1f);
         const RaycastImages model = add_raycast(frame, rig.map(), voxels, visible, MapAccess::kStorage);
-        const SurfaceView surface{model.position_m, model.normal, visible.view, visible.grid};
+        const SurfaceView surface{model.position_m, model.normal, visible.view, visible.grid, visible.list};
         const std::vector<uint32_t> groups{gpu::kGroupsPerRow, (list[0] + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow,
                                            1, 0};
-        const SurfaceBlocks blocks{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
+        const DueBlocks due{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
         const FrameSegments segments{
             frame.upload("segment", {camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(segment.pixels()))),
             {},
@@ -41,7 +41,7 @@ class UpdateLabels : public GpuTest {
         table.parents = frame.upload<uint32_t>("parents", roots);
         table.counters = frame.fill(table.counters, 0);
         LabelMapIds labels = rig.labels().import(frame);
-        add_update_labels(frame, rig.map(), voxels, labels, table, surface, blocks, segments,
+        add_update_labels(frame, rig.map(), voxels, labels, table, surface, due, segments,
                           frame.upload<uint32_t>("segment_labels", segment_labels));
         LabelMap::keep(frame, labels);
         const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),

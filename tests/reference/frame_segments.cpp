@@ -60,8 +60,8 @@ Image<uint32_t> components(const Image<float>& inner_depth_m, float floor_m, flo
     return key;
 }
 
-Segments number_segments(const Image<uint32_t>& key, const Image<float>& depth_m, const Intrinsics& camera,
-                         const RigidTransform& world_from_camera, uint32_t min_pixels, uint32_t capacity) {
+Segments number_segments(const Image<uint32_t>& key, const Image<float>& depth_m, uint32_t min_pixels,
+                         uint32_t capacity) {
     const Extent2D extent = key.extent();
     std::map<uint32_t, uint32_t> pixels, numbers;
     for (size_t i = 0; i < extent.area(); ++i) {
@@ -83,18 +83,13 @@ Segments number_segments(const Image<uint32_t>& key, const Image<float>& depth_m
     for (uint32_t y = 0; y < extent.height; ++y) {
         for (uint32_t x = 0; x < extent.width; ++x) {
             const auto found = numbers.find(key.at(x, y));
-            const double z = depth_m.at(x, y);
-            if (found == numbers.end() || z <= 0) continue;
+            if (found == numbers.end() || depth_m.at(x, y) <= 0) continue;
             out.number.at(x, y) = found->second;
             Segment& segment = out.segments[found->second];
             ++segment.pixels;
             segment.touches_border |= x == 0 || y == 0 || x == extent.width - 1 || y == extent.height - 1;
-            segment.min_px = glm::min(segment.min_px, glm::uvec2(x, y));
-            segment.max_px = glm::max(segment.max_px, glm::uvec2(x, y));
-            segment.mean_m += glm::dvec3(world_from_camera * glm::dvec4(ray_of(camera, {x, y}) * z, 1));
         }
     }
-    for (Segment& segment : out.segments) segment.mean_m /= std::max(segment.pixels, 1u);
     return out;
 }
 
@@ -162,7 +157,13 @@ Image<uint8_t> find_edges(const Image<float>& depth_m, const Image<glm::dvec3>& 
                 }
                 const bool concave = glm::dot(points[1] - points[0], normals[1] - normals[0]) < 0;
                 const double angle = std::acos(std::clamp(glm::dot(normals[0], normals[1]), -1.0, 1.0));
-                if (concave && angle > limit) edge.at(x, y) = 1;
+                // How far each side's tangent plane passes by the other side's point, of which a bend does to both the
+                // same.
+                const double step_m =
+                    glm::dot(points[1] - points[0], normals[0]) / 2 + glm::dot(points[1] - points[0], normals[1]) / 2;
+                const bool stepped =
+                    std::abs(step_m) > rules.step_m + rules.step_sigmas * sigma_m && angle < std::acos(0.95);
+                if ((concave && angle > limit) || stepped) edge.at(x, y) = 1;
             }
         }
     }

@@ -18,9 +18,6 @@ struct Segment {
     uint32_t key = 0;
     uint32_t pixels = 0;
     bool touches_border = false;
-    glm::uvec2 min_px{~0u};
-    glm::uvec2 max_px{0};
-    glm::dvec3 mean_m{0};  ///< world
 
     bool operator==(const Segment&) const = default;
 };
@@ -33,8 +30,8 @@ struct Segments {
 };
 
 /// Numbers the keys of a picture in their order and measures them; 0 is none, and so are pixels without depth.
-Segments number_segments(const Image<uint32_t>& key, const Image<float>& depth_m, const Intrinsics& camera,
-                         const RigidTransform& world_from_camera, uint32_t min_pixels, uint32_t capacity);
+Segments number_segments(const Image<uint32_t>& key, const Image<float>& depth_m, uint32_t min_pixels,
+                         uint32_t capacity);
 
 /// What the passes on a frame's surface are told (EdgeSettings).
 struct SurfaceRules {
@@ -43,6 +40,7 @@ struct SurfaceRules {
     double reach_m = 0.015;
     int min_reach_px = 2, max_reach_px = 4;
     double crease_degrees = 20, crease_sigmas = 0.5;
+    double step_m = 0.004, step_sigmas = 0.5;
 };
 
 /// Unit normals towards the camera, in its coordinates; 0 where unknown.

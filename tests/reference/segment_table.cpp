@@ -34,17 +34,34 @@ uint32_t SegmentBook::root(uint32_t label) const {
     return live(label) ? label : 0;
 }
 
+namespace {
+
+/// Whether the map knows more than half of a segment.
+bool mostly_known(const SeenSegment& segment) {
+    uint32_t known = 0;
+    for (const auto& [label, pixels] : segment.shared) known += pixels;
+    return 2 * known > segment.pixels;
+}
+
+}  // namespace
+
+bool SegmentBook::inherits(const SeenSegment& segment) const {
+    const uint32_t best = two_best(segment).first.pixels;
+    return best >= rules_.inherit_pixels && (best > rules_.inherit_share * segment.pixels || mostly_known(segment));
+}
+
 std::vector<uint32_t> SegmentBook::assign(const std::vector<SeenSegment>& segments) {
     counted_.clear();
     std::vector<uint32_t> labels;
     for (const SeenSegment& segment : segments) {
         const Ranked best = two_best(segment).first;
-        const bool known = best.pixels >= rules_.inherit_pixels && best.pixels > rules_.inherit_share * segment.pixels;
+        const bool known = inherits(segment);
         labels.push_back(known ? best.label : 0);
         if (known) live_[best.label].seen = now_;
     }
     for (size_t i = 0; i < segments.size(); ++i) {
-        if (labels[i] != 0 || segments[i].pixels < rules_.new_pixels || free_.empty()) continue;
+        if (labels[i] != 0 || mostly_known(segments[i])) continue;
+        if (segments[i].pixels < rules_.new_pixels || free_.empty()) continue;
         labels[i] = free_.front();
         free_.pop_front();
         live_[labels[i]] = {now_, now_};
@@ -56,19 +73,18 @@ std::vector<std::pair<uint32_t, uint32_t>> SegmentBook::joined(const std::vector
     std::vector<std::pair<uint32_t, uint32_t>> pairs;
     for (const SeenSegment& segment : segments) {
         const auto [best, second] = two_best(segment);
-        if (best.pixels < rules_.inherit_pixels || second.pixels < rules_.inherit_pixels) continue;
-        if (best.pixels <= rules_.inherit_share * segment.pixels) continue;
+        if (!inherits(segment) || second.pixels < rules_.inherit_pixels) continue;
         if (second.pixels <= rules_.merge_share * segment.pixels) continue;
-        pairs.emplace_back(std::min(best.label, second.label), std::max(best.label, second.label));
+        pairs.emplace_back(best.label, second.label);
     }
     return pairs;
 }
 
-void SegmentBook::merge(uint32_t low, uint32_t high) {
-    live_[low].since = std::min(live_[low].since, live_[high].since);
-    live_.erase(high);
-    retired_[high] = now_;
-    merged_into_[high] = low;
+void SegmentBook::merge(uint32_t into, uint32_t label) {
+    live_[into].since = std::min(live_[into].since, live_[label].since);
+    live_.erase(label);
+    retired_[label] = now_;
+    merged_into_[label] = into;
 }
 
 void SegmentBook::discount() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -34,10 +35,11 @@ class SegmentBook {
                                 const std::map<uint32_t, uint32_t>& voxels = {}) {
         ++now_;
         std::vector<uint32_t> labels = assign(segments);
-        for (const auto& [low, high] : joined(segments)) {
-            if (!live(low) || !live(high) || counted_.contains({low, high})) continue;
-            counted_.insert({low, high});
-            if (++pairs_[{low, high}] >= rules_.merge_count && alike(low, high)) merge(low, high);
+        for (const auto& [best, second] : joined(segments)) {
+            const std::pair pair = std::minmax(best, second);
+            if (!live(best) || !live(second) || counted_.contains(pair)) continue;
+            counted_.insert(pair);
+            if (++pairs_[pair] >= rules_.merge_count && alike(best, second)) merge(best, second);
         }
         discount();
         for (uint32_t& label : labels) label = root(label);
@@ -55,7 +57,8 @@ class SegmentBook {
     };
     std::vector<uint32_t> assign(const std::vector<SeenSegment>& segments);
     std::vector<std::pair<uint32_t, uint32_t>> joined(const std::vector<SeenSegment>& segments) const;
-    void merge(uint32_t low, uint32_t high);
+    void merge(uint32_t into, uint32_t label);
+    bool inherits(const SeenSegment& segment) const;
     void discount();
     void end_sweep(const std::map<uint32_t, uint32_t>& voxels);
 

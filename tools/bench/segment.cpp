@@ -1,5 +1,5 @@
-// patina_segment_bench: how long it takes to divide a frame into segments, and pictures of them. See
-// docs/benchmarks.md.
+// patina_segment_bench: how long it takes to divide a frame into segments and to label the map, and pictures of
+// segments. See docs/benchmarks.md.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
-#include "passes/segmentation/segment_frame.h"
+#include "passes/segmentation_model.h"
 #include "sensor/picture_file.h"
 #include "tools/bench/distribution.h"
 #include "tools/bench/processor_time.h"
@@ -43,40 +43,56 @@ Image<sensor::SrgbPixel> in_colors(const Image<uint32_t>& segment) {
     return picture;
 }
 
-/// A model that grows frame by frame, and the segments of the last frame.
+/// How much of the segmentation is measured.
+enum class Part { kNone, kFrame, kAll };
+
+/// A model that grows frame by frame, with labels, and the segments of the last frame.
 class Bench {
   public:
-    explicit Bench(vulkan::Device& device) : device_(device), reconstruction_(device, {}) {}
+    explicit Bench(vulkan::Device& device)
+        : reconstruction_(device, {}),
+          access_(preferred_map_access(device.caps(), reconstruction_.map())),
+          segmentation_(device, reconstruction_.map(), {}, access_) {}
 
     void add(const RgbdFrame& rgbd) {
         last_ = rgbd;
         reconstruction_.add(last_);
+        graph::Frame frame = runner().begin();
+        if (frames_ == 0) segmentation_.reset(frame);
+        segmentation_.clear_new_blocks(frame, reconstruction_.map().import(frame));
+        runner().submit(std::move(frame));
+        measure(1, Part::kAll);
     }
 
     /// The last frame's segments.
     Image<uint32_t> segments() {
         graph::Frame frame = runner().begin();
-        const auto [model, depth_m] = cast(frame);
-        const graph::Readback read = frame.read_back(add_segment_frame(frame, model, depth_m, camera()).segment);
+        const SegmentationInputs inputs = cast(frame);
+        const graph::Readback read = frame.read_back(divided(frame, inputs).segment);
         runner().submit(std::move(frame));
         runner().wait();
         return read.image<uint32_t>();
     }
 
-    /// Processor time of each of `frames` times that the last frame's surface is cast, with or without its segments.
-    std::vector<float> measure(uint32_t frames, bool segment) {
+    /// Processor time of each of `frames` times that the last frame's surface is cast, and segmented.
+    std::vector<float> measure(uint32_t frames, Part part) {
         std::vector<float> samples;
         for (uint32_t i = 0; i < frames; ++i) {
             runner().wait();
             const double start = processor_ms();
             graph::Frame frame = runner().begin();
-            const auto [model, depth_m] = cast(frame);
-            for (const auto id : {model, depth_m}) frame.keep(id);
-            if (segment) {
-                const FrameSegments out = add_segment_frame(frame, model, depth_m, camera());
+            const SegmentationInputs inputs = cast(frame);
+            for (const auto id :
+                 {inputs.surface.position_m, inputs.surface.normal, inputs.depth_m, inputs.color_linear})
+                frame.keep(id);
+            if (part == Part::kFrame) {
+                const FrameSegments out = divided(frame, inputs);
                 frame.keep(out.segment);
                 frame.keep(out.segments);
                 frame.keep(out.count);
+            } else if (part == Part::kAll) {
+                const VoxelMapIds voxels = reconstruction_.map().import(frame);
+                frame.keep(segmentation_.add(frame, voxels, inputs, camera(), color_camera(), frames_++));
             }
             runner().submit(std::move(frame));
             runner().wait();
@@ -89,21 +105,34 @@ class Bench {
 
   private:
     gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
+    gpu::Camera color_camera() const {
+        return make_camera(last_.color.camera, last_.world_from_depth * rigid_inverse(last_.color_from_depth));
+    }
 
-    /// The model as the depth camera sees it, and its smoothed readings.
-    std::pair<graph::ImageId, graph::ImageId> cast(graph::Frame& frame) {
+    FrameSegments divided(graph::Frame& frame, const SegmentationInputs& inputs) const {
+        return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, camera(),
+                                 {inputs.color_linear, color_camera()});
+    }
+
+    /// The model as the depth camera sees it, and the last frame's pictures.
+    SegmentationInputs cast(graph::Frame& frame) {
         const VoxelMap& map = reconstruction_.map();
         const VoxelMapIds voxels = map.import(frame);
         const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
         const VisibleBlocks visible = add_visible_blocks(frame, map, voxels, camera(), 0.1f, far_m);
-        const RaycastImages model = add_raycast(frame, map, voxels, visible, preferred_map_access(device_.caps(), map));
+        const RaycastImages model = add_raycast(frame, map, voxels, visible, access_);
         const InputImages input = add_input(frame, last_.depth, last_.color, camera());
-        return {model.position_m, input.filtered_depth_m};
+        return {{model.position_m, model.normal, visible.view, visible.grid, visible.list},
+                input.filtered_depth_m,
+                input.color,
+                {}};
     }
 
-    vulkan::Device& device_;
     Reconstruction reconstruction_;
+    MapAccess access_;
+    SegmentationModel segmentation_;
     RgbdFrame last_;
+    uint32_t frames_ = 0;
 };
 
 void print(const std::string& name, const Distribution& d) {
@@ -131,22 +160,27 @@ void run(const Options& options) {
         const auto file = std::filesystem::path(options.pictures) / (sensor::picture_stem(frame.index) + ".png");
         sensor::write_png(file, in_colors(bench.segments()));
     }
-    bench.measure(options.warmup, true);
-    bench.measure(1, false);
+    for (const Part part : {Part::kAll, Part::kFrame, Part::kNone}) bench.measure(options.warmup, part);
     bench.runner().clear_timings();
-    const Distribution with = distribution(bench.measure(options.frames, true));
+    const Distribution all = distribution(bench.measure(options.frames, Part::kAll));
     const auto timings = bench.runner().pass_timings();
-    const Distribution without = distribution(bench.measure(options.frames, false));
+    const Distribution divided = distribution(bench.measure(options.frames, Part::kFrame));
+    const Distribution without = distribution(bench.measure(options.frames, Part::kNone));
     fmt::print("{}, {}\n{} at {}, {} frames\n\n", device.caps().name, device.caps().driver, options.sequence,
                options.extent, options.frames);
     fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
     for (const graph::Timing& timing : timings) {
         if (timing.name.find("segmentation.") != std::string::npos) print(timing.name, distribution(timing.samples_ms));
     }
-    print("processor time of a frame", with);
+    print("processor time of a frame", all);
+    print("the same without labels", divided);
     print("the same without segments", without);
-    fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", "segmentation",
-               (with.median - without.median) / 2);
+    const auto report = [](const char* name, const Distribution& with, const Distribution& less) {
+        fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", name,
+                   (with.median - less.median) / 2);
+    };
+    report("segments of a frame", divided, without);
+    report("labels of the map", all, divided);
 }
 
 }  // namespace
@@ -155,7 +189,8 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace patina;
-    CLI::App app("Measures how long it takes to divide a frame into segments", "patina_segment_bench");
+    CLI::App app("Measures how long it takes to divide a frame into segments and to label the map",
+                 "patina_segment_bench");
     bench::Options options;
     app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
     app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
