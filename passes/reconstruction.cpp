@@ -36,7 +36,7 @@ void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera
 }
 
 SurfaceView surface_of(const VisibleBlocks& visible, const RaycastImages& model) {
-    return {model.position_m, model.normal, visible.view, visible.grid};
+    return {model.position_m, model.normal, visible.view, visible.grid, visible.list};
 }
 
 RigidTransform world_from_color_of(const RgbdFrame& frame) {

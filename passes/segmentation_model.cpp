@@ -4,7 +4,7 @@
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
 #include "passes/segmentation/label_pixels.h"
-#include "passes/segmentation/list_surface.h"
+#include "passes/segmentation/list_due_blocks.h"
 #include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sample_records.h"
@@ -56,8 +56,8 @@ FrameSegments SegmentationModel::segments(graph::Frame& frame, const Segmentatio
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
     const SegmentSettings& settings = settings_.frame;
     if (inputs.given) return add_given_segments(frame, *inputs.given, inputs.depth_m, depth_camera, settings.capacity);
-    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera, settings,
-                             ColorGuide{inputs.color_linear, color_camera});
+    return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, depth_camera,
+                             {inputs.color_linear, color_camera}, settings);
 }
 
 graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
@@ -73,8 +73,8 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     const SegmentOverlaps overlaps =
         add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
     const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
-    const SurfaceBlocks blocks = add_list_surface(frame, map_, labels, surface, values.stamp);
-    add_update_labels(frame, map_, voxels, labels, table, surface, blocks, seen, assigned);
+    const DueBlocks due = add_list_due_blocks(frame, map_, voxels, labels, surface.blocks, values.stamp);
+    add_update_labels(frame, map_, voxels, labels, table, surface, due, seen, assigned);
     add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "shared/choose_depth.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -35,6 +36,10 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
     params.max_reach_px = static_cast<float>(settings.max_reach_px);
     params.crease_rad = glm::radians(settings.crease_degrees);
     params.crease_sigmas = settings.crease_sigmas;
+    params.step_m = settings.step_m;
+    params.step_sigmas = settings.step_sigmas;
+    params.cut_chroma = settings.cut_chroma;
+    params.cut_light = settings.cut_light;
     params.claim_m = settings.claim_m;
     params.claim_sigmas = settings.claim_sigmas;
     params.claim_reach_px = static_cast<int>(settings.claim_reach_px);
@@ -42,15 +47,22 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
     return params;
 }
 
-graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::FrameSurfaceParams& params) {
-    constexpr const char* kPass = "segmentation.choose_depth";
-    const Extent2D extent = checked_extent(kPass, frame.common_extent({model_position_m, reading_m}), params);
-    auto pass = frame.compute(kPass, spirv::choose_depth);
+FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                              const gpu::Camera& camera, const ColorPicture& color) {
+    const Extent2D extent = frame.common_extent({model_position_m, reading_m});
+    const gpu::ChooseDepthParams params{color.camera.camera_from_world * glm::inverse(camera.camera_from_world),
+                                        camera.focal_center_px,
+                                        color.camera.focal_center_px,
+                                        {extent.width, extent.height},
+                                        0,
+                                        0};
+    auto pass = frame.compute("segmentation.choose_depth", spirv::choose_depth);
     pass.read("model_position_m", model_position_m).read("reading_m", reading_m);
-    const graph::ImageId depth_m = pass.create("depth_m", {extent, vulkan::Format::kR32f});
-    pass.push(params).dispatch_covering(extent);
-    return depth_m;
+    pass.read("color_linear", color.color_linear).push(params);
+    const FrameSurface surface{pass.create("depth_m", {extent, vulkan::Format::kR32f}),
+                               pass.create("chroma", {extent, vulkan::Format::kR32u})};
+    pass.dispatch_covering(extent);
+    return surface;
 }
 
 graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params) {
@@ -63,26 +75,16 @@ graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, cons
     return normal;
 }
 
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+graph::ImageId add_find_edges(graph::Frame& frame, const FrameSurface& surface, graph::ImageId normal,
                               const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.find_edges";
-    const Extent2D extent = checked_extent(kPass, frame.common_extent({depth_m, normal}), params);
+    const Extent2D extent =
+        checked_extent(kPass, frame.common_extent({surface.depth_m, surface.chroma, normal}), params);
     auto pass = frame.compute(kPass, spirv::find_edges);
-    pass.read("depth_m", depth_m).read("normal", normal);
+    pass.read("depth_m", surface.depth_m).read("normal", normal).read("chroma", surface.chroma);
     const graph::ImageId inner_depth_m = pass.create("inner_depth_m", {extent, vulkan::Format::kR32f});
     pass.push(params).dispatch_covering(extent);
     return inner_depth_m;
-}
-
-graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
-                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params) {
-    constexpr const char* kPass = "segmentation.claim_edges";
-    const Extent2D extent = checked_extent(kPass, frame.common_extent({component, depth_m, normal}), params);
-    auto pass = frame.compute(kPass, spirv::claim_edges);
-    pass.read("depth_m", depth_m).read("normal", normal).read("component", component).read("Pixels", pixels);
-    const graph::ImageId claimed = pass.create("claimed", {extent, vulkan::Format::kR32u});
-    pass.push(params).dispatch_covering(extent);
-    return claimed;
 }
 
 }  // namespace patina

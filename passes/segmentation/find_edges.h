@@ -26,6 +26,10 @@ struct EdgeSettings {
     uint32_t max_reach_px = 4;
     float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
     float crease_sigmas = 0.5f;   ///< and so many times what noise does to the angle
+    float step_m = 0.004f;        ///< and a step separates parallel surfaces where it is higher than this
+    float step_sigmas = 0.5f;     ///< and so many sigmas of the depth
+    float cut_chroma = 0.08f;     ///< and so does a change of r / (r + g + b), or g's, by more than this
+    float cut_light = 0.012f;     ///< and this over r + g + b, as noise does more to dark colours
     float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
     float claim_sigmas = 3;       ///< and so many sigmas of its depth,
     uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y
@@ -36,13 +40,25 @@ struct EdgeSettings {
 gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const EdgeSettings& settings,
                                             uint32_t min_pixels);
 
-/// The model's depth where there is one, else the reading. `model_position_m`: W x H rgba32f, w is depth, 0 where
-/// nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none (add_filter_depth). Returns
-/// W x H r32f in metres, 0 where neither is. Throws Error when extents differ.
-graph::ImageId add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::FrameSurfaceParams& params);
+/// What a depth camera sees of a frame.
+struct FrameSurface {
+    graph::ImageId depth_m;  ///< W x H r32f; 0: nothing
+    graph::ImageId chroma;   ///< W x H r32ui: chromaticity, packed as shaders/lib/chroma.glsl says; 0: not known
+};
 
-/// Normals from eight depths around each pixel. `depth_m` as add_choose_depth returns it. Returns W x H r32ui:
+/// A picture, and the camera that took it.
+struct ColorPicture {
+    graph::ImageId color_linear;  ///< rgba16f (add_convert_color)
+    gpu::Camera camera;
+};
+
+/// The model's depth where there is one, else the reading, and its colours. `model_position_m`: W x H rgba32f, w is
+/// depth, 0 where nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none
+/// (add_filter_depth); both seen by `camera`. Throws Error when extents differ.
+FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+                              const gpu::Camera& camera, const ColorPicture& color);
+
+/// Normals from eight depths around each pixel of FrameSurface::depth_m. Returns W x H r32ui:
 /// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none
 /// is known. Throws Error when extents differ.
 graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
@@ -50,14 +66,10 @@ graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, cons
 /// Finds edges between the smooth, convex parts of a surface, with normals from add_fit_normals (phi_c of Tateno,
 /// Tombari and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and
 /// small steps are creases at their foot). A pixel is at an edge where the normals on both sides of it differ and face
-/// each other, or where its own is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is
-/// no surface. Throws Error when extents differ.
-graph::ImageId add_find_edges(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId normal,
+/// each other, where both sides are parallel but one lies behind the other, where their colours differ, or where its
+/// own normal is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is no surface. Throws
+/// Error when extents differ.
+graph::ImageId add_find_edges(graph::Frame& frame, const FrameSurface& surface, graph::ImageId normal,
                               const gpu::FrameSurfaceParams& params);
-
-/// Gives pixels that have depth but no component, or a small one, to one nearby: the one on whose tangent plane they
-/// lie. `component` and `pixels` as in Components. Returns W x H r32ui, 0: none. Throws Error when extents differ.
-graph::ImageId add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
-                               graph::ImageId depth_m, graph::ImageId normal, const gpu::FrameSurfaceParams& params);
 
 }  // namespace patina

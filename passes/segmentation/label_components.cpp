@@ -25,7 +25,8 @@ Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_
 
     Components components;
     auto count = frame.compute("segmentation.count_components", spirv::count_components);
-    count.read("Words", runs).push(params).modify("Parents", parents);
+    count.read("Words", runs).push(params);
+    components.parents = count.modify("Parents", parents);
     components.pixels = count.modify("Pixels", add_empty_keys(frame, "segmentation.pixels", pixels + 1));
     components.component = count.create("component", {extent, vulkan::Format::kR32u});
     count.dispatch_covering(words);

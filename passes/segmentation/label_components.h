@@ -8,6 +8,7 @@ namespace patina {
 struct Components {
     graph::ImageId component;  ///< W x H r32ui: the key, 0: none
     graph::BufferId pixels;    ///< u32 per key: how many pixels have it
+    graph::BufferId parents;   ///< u32 by key - 1: disjoint sets (shaders/lib/disjoint_sets.glsl)
 };
 
 /// Labels connected components, with four neighbours, of the pixels whose `inner_depth_m` (W x H r32f) is above 0

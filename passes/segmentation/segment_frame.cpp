@@ -14,16 +14,17 @@ constexpr uint32_t kGivenIds = 65536;
 }  // namespace
 
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::Camera& camera, const SegmentSettings& settings,
-                                const std::optional<ColorGuide>& colors) {
+                                const gpu::Camera& camera, const ColorPicture& color, const SegmentSettings& settings) {
     const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
-    const graph::ImageId depth_m = add_choose_depth(frame, model_position_m, reading_m, params);
-    const graph::ImageId normal = add_fit_normals(frame, depth_m, params);
-    graph::ImageId inner_depth_m = add_find_edges(frame, depth_m, normal, params);
-    if (colors) inner_depth_m = add_cut_colors(frame, inner_depth_m, camera, *colors);
-    const auto [component, pixels] = add_label_components(frame, inner_depth_m, params.jump_m, params.jump_slope);
-    const graph::ImageId claimed = add_claim_edges(frame, component, pixels, depth_m, normal, params);
-    return add_number_segments(frame, pixels, claimed, depth_m, camera, settings.min_pixels, settings.capacity);
+    const FrameSurface surface = add_choose_depth(frame, model_position_m, reading_m, camera, color);
+    const graph::ImageId normal = add_fit_normals(frame, surface.depth_m, params);
+    const graph::ImageId inner_depth_m = add_find_edges(frame, surface, normal, params);
+    const auto [component, pixels, parents] =
+        add_label_components(frame, inner_depth_m, params.jump_m, params.jump_slope);
+    const ClaimedEdges claimed = add_claim_edges(frame, component, pixels, surface, normal, params);
+    const graph::BufferId joined = add_join_folds(frame, claimed.contacts, parents, pixels, settings.folds);
+    return add_number_segments(frame, joined, claimed.component, surface.depth_m, camera, settings.min_pixels,
+                               settings.capacity);
 }
 
 FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m,

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
-
-#include "passes/segmentation/cut_colors.h"
+#include "passes/segmentation/claim_edges.h"
 #include "passes/segmentation/find_edges.h"
 #include "passes/segmentation/frame_segments.h"
 
@@ -10,18 +8,19 @@ namespace patina {
 
 struct SegmentSettings {
     EdgeSettings edges{};
+    FoldSettings folds{};
     uint32_t min_pixels = 60;     ///< smaller components are dropped
     uint32_t claim_reach_px = 6;  ///< how far from a segment pixels without one may join it
     uint32_t capacity = gpu::kMaxFrameSegments;
 };
 
-/// Divides a frame into the smooth, convex parts of its surface: edges, connected components of what lies between them,
-/// and edge pixels given back to the neighbour whose tangent plane they lie on. `model_position_m` and `reading_m` as
-/// for add_choose_depth, `camera` the one that sees them. With `colors` a change of colour closes gaps in edges. Throws
-/// Error for settings out of range, or when extents differ.
+/// Divides a frame into the smooth, convex parts of its surface that have one colour: edges, connected components of
+/// what lies between them, edge pixels given back to the neighbour whose tangent plane they lie on, and parts joined
+/// across creases within a strong colour. `model_position_m`, `reading_m` and `color` as for add_choose_depth, `camera`
+/// the one that sees the first two. Throws Error for settings out of range, or when extents differ.
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                                const gpu::Camera& camera, const SegmentSettings& settings = {},
-                                const std::optional<ColorGuide>& colors = {});
+                                const gpu::Camera& camera, const ColorPicture& color,
+                                const SegmentSettings& settings = {});
 
 /// Makes a segment of all pixels with the same given id, connected or not: `given` is W x H r32ui, 0: unknown, at most
 /// 65535; larger ids count as unknown, as do pixels where `depth_m`, W x H r32f, is 0. gpu::FrameSegment::key holds the

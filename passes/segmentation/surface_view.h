@@ -10,12 +10,7 @@ struct SurfaceView {
     graph::ImageId normal;      ///< W x H rgba16f: world, unit length; 0 where it is not known
     graph::BufferId view;       ///< gpu::ViewParams of the camera
     graph::BufferId view_grid;  ///< u32 per block of the box around the view: block id, or gpu::kNoBlock
-};
-
-/// Blocks that a frame's surface points lie in.
-struct SurfaceBlocks {
-    graph::BufferId list;       ///< u32: count, then block ids in no order
-    graph::BufferId arguments;  ///< dispatch of one group per listed block, in rows of gpu::kGroupsPerRow
+    graph::BufferId blocks;     ///< u32: count of the visible blocks, then their ids in no order
 };
 
 }  // namespace patina

@@ -5,17 +5,17 @@
 namespace patina {
 
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
-                       SegmentTableIds& table, const SurfaceView& surface, const SurfaceBlocks& blocks,
+                       SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
                        const FrameSegments& segments, graph::BufferId segment_labels) {
     frame.common_extent({surface.position_m, surface.normal, segments.segment});
     auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
-    pass.read("Surface", blocks.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
+    pass.read("Due", due.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
     pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
     pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
     pass.specialise("kVoxelChunks", map.chunks());
     labels.words = pass.modify("Words", labels.words);
     table.counters = pass.modify("Counters", table.counters);
-    pass.dispatch_indirect(blocks.arguments);
+    pass.dispatch_indirect(due.arguments);
 }
 
 }  // namespace patina

@@ -4,17 +4,18 @@
 #include "passes/model/label_map.h"
 #include "passes/model/segment_table.h"
 #include "passes/model/voxel_map.h"
+#include "passes/segmentation/due_blocks.h"
 #include "passes/segmentation/frame_segments.h"
 #include "passes/segmentation/surface_view.h"
 
 namespace patina {
 
-/// Carries the labels of a frame's segments (`segment_labels`, u32 per segment) over to the voxels of `blocks` within a
+/// Carries the labels of a frame's segments (`segment_labels`, u32 per segment) over to the voxels of `due` within a
 /// voxel of the surface that the frame sees: agreement raises a voxel's confidence, contradiction lowers it and at last
 /// replaces its label. Counts voxels and flips in
 /// gpu::SegmentCounters. Throws Error when images differ in extent.
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
-                       SegmentTableIds& table, const SurfaceView& surface, const SurfaceBlocks& blocks,
+                       SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
                        const FrameSegments& segments, graph::BufferId segment_labels);
 
 }  // namespace patina

@@ -58,6 +58,7 @@ void find_best(uint entries) {
     for (uint i = lane; i < entries; i += kGroup) {
         const SegmentOverlap entry = overlaps[overlap_list[1u + i]];
         atomicMax(votes[entry.key >> 16].best_pixels, entry.pixels);
+        atomicAdd(votes[entry.key >> 16].known_pixels, entry.pixels);
     }
     join();
     for (uint i = lane; i < entries; i += kGroup) {
@@ -81,8 +82,16 @@ void find_best(uint entries) {
     join();
 }
 
+// Where the map knows most of a segment a new label would be one more among the pieces.
+bool is_mostly_known(SegmentVote vote, uint pixels) { return 2u * vote.known_pixels > pixels; }
+
 bool inherits(SegmentVote vote, uint pixels) {
-    return vote.best_pixels >= frame.inherit_pixels && float(vote.best_pixels) > frame.inherit_share * float(pixels);
+    const bool enough = float(vote.best_pixels) > frame.inherit_share * float(pixels) || is_mostly_known(vote, pixels);
+    return vote.best_pixels >= frame.inherit_pixels && enough;
+}
+
+bool starts(SegmentVote vote, uint pixels) {
+    return pixels >= frame.new_pixels && !inherits(vote, pixels) && !is_mostly_known(vote, pixels);
 }
 
 bool joins(SegmentVote vote, uint pixels) {
@@ -106,13 +115,13 @@ void assign_propagated(uint count) {
         const bool known = inherits(vote, pixels);
         segment_labels[s] = known ? vote.best_label : kNoLabel;
         if (known) labels[vote.best_label].seen = frame.stamp;
-        wanted += !known && pixels >= frame.new_pixels ? 1u : 0u;
+        wanted += starts(vote, pixels) ? 1u : 0u;
     }
     uint total;
     uint next = sum_before(wanted, total);
     const uint available = counters.free_labels;
     for (uint s = own.x; s < own.y; ++s) {
-        if (segment_labels[s] != kNoLabel || segments[s].pixels < frame.new_pixels) continue;
+        if (!starts(votes[s], segments[s].pixels)) continue;
         if (next < available) {
             const uint label = free_labels[(counters.free_head + next) % frame.capacity];
             start_label(label);
@@ -291,7 +300,7 @@ void main() {
     const uint lane = gl_LocalInvocationIndex;
     const uint count = segment_count.segments;
     const bool overflow = overlap_list[0] >= frame.overlap_slots / 4u * 3u;
-    for (uint s = lane; s <= count; s += kGroup) votes[s] = SegmentVote(kNone, 0u, kNone, 0u);
+    for (uint s = lane; s <= count; s += kGroup) votes[s] = SegmentVote(kNone, 0u, kNone, 0u, 0u, 0u, 0u, 0u);
     if (lane == 0u) {
         merged = 0u;
         counters.frame_merged = 0u;

@@ -1,12 +1,14 @@
-// Marks pixels at concave creases.
+// Marks pixels at concave creases, at steps, and between colours.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "lib/chroma.glsl"
 #include "lib/frame_surface.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
 layout(binding = 1, r32ui) uniform readonly uimage2D normal;
-layout(binding = 2, r32f) uniform writeonly image2D inner_depth_m;  // negative at edges
+layout(binding = 2, r32ui) uniform readonly uimage2D chroma;
+layout(binding = 3, r32f) uniform writeonly image2D inner_depth_m;  // negative at edges
 layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
 struct Side {
@@ -24,11 +26,27 @@ Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
                 joined ? surface_point_m(params, place, z) : here.point_m);
 }
 
-bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine) {
+const float kParallelCosine = 0.9;  // of the normals on both sides of a step, which it tilts
+
+bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine, float step_m) {
     const Side a = side_at(pixel, here, -offset, limit_m);
     const Side b = side_at(pixel, here, offset, limit_m);
-    const bool concave = dot(b.point_m - a.point_m, b.normal - a.normal) < 0.0;
-    return concave && dot(a.normal, b.normal) < cosine;
+    const vec3 across_m = b.point_m - a.point_m;
+    const bool concave = dot(across_m, b.normal - a.normal) < 0.0;
+    const float between = dot(a.normal, b.normal);
+    // A curved surface does not leave the plane that stands on the mean normal.
+    const bool is_step = abs(dot(across_m, a.normal + b.normal)) > 2.0 * step_m && between > kParallelCosine;
+    return (concave && between < cosine) || is_step;
+}
+
+// Two pixels on each side.
+bool differ(ivec2 pixel, ivec2 step) {
+    const uint a0 = imageLoad(chroma, pixel - step).x, a1 = imageLoad(chroma, pixel - 2 * step).x;
+    const uint b0 = imageLoad(chroma, pixel + step).x, b1 = imageLoad(chroma, pixel + 2 * step).x;
+    const vec2 apart = 0.5 * abs(unpack_chroma(a0) + unpack_chroma(a1) - unpack_chroma(b0) - unpack_chroma(b1));
+    // Outside the image loads are zero: not known.
+    const float light = chroma_light(min(min(a0, a1), min(b0, b1)));
+    return light > 0.0 && max(apart.x, apart.y) > params.cut_chroma + params.cut_light / max(light, 1e-3);
 }
 
 void main() {
@@ -46,7 +64,10 @@ void main() {
     const float sigma_rad = 1.4142 * depth_sigma_m(params, z) * params.focal_center_px.x / (z * spread_px);
     const float cosine = cos(min(params.crease_rad + params.crease_sigmas * sigma_rad, 3.1415));
 
-    const bool edge = packed == 0u || is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine) ||
-                      is_crease(pixel, here, ivec2(0, reach), limit_m, cosine);
+    const float step_m = params.step_m + params.step_sigmas * depth_sigma_m(params, z);
+
+    const bool crease = is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m) ||
+                        is_crease(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
+    const bool edge = packed == 0u || crease || differ(pixel, ivec2(1, 0)) || differ(pixel, ivec2(0, 1));
     imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

@@ -42,8 +42,13 @@ void add(Sum sum, uint y) {
 }
 
 uint number_of(uint key) {
-    const bool kept = key < params.keys && pixels[min(key, params.keys - 1u)] >= params.min_pixels;
-    return kept ? numbers[key] : 0u;
+    if (key >= params.keys) return 0u;
+    uint count = pixels[key];
+    if (count >= kForwardedKey) {
+        key = count & ~kForwardedKey;
+        count = pixels[key];
+    }
+    return count >= params.min_pixels ? numbers[key] : 0u;
 }
 
 void main() {

@@ -17,6 +17,9 @@ shared uint kept_before;
 shared uint kept;
 shared uint too_small;
 
+// A key that was joined to another has none of its own.
+uvec4 key_pixels(uvec4 counts) { return mix(counts, uvec4(0u), greaterThanEqual(counts, uvec4(kForwardedKey))); }
+
 // The sum of the values of all invocations before this one. Called by all invocations of a group.
 uint exclusive_sum(uint value) {
     const uint i = gl_LocalInvocationIndex;
@@ -64,14 +67,14 @@ void main() {
     const uint first = gl_GlobalInvocationID.x * kNumberQuads;
     uvec4 enough = uvec4(0u);
     for (uint i = 0u; i < kNumberQuads; ++i) {
-        enough += uvec4(greaterThanEqual(pixels[first + i], uvec4(params.min_pixels)));
+        enough += uvec4(greaterThanEqual(key_pixels(pixels[first + i]), uvec4(params.min_pixels)));
     }
     const uint here = enough.x + enough.y + enough.z + enough.w;
     uint number = kept_before + exclusive_sum(here);
     // The loop ends for whole groups of invocations that have nothing to number.
     const uint last = number + here;
     for (uint i = 0u; number < last; ++i) {
-        const uvec4 counts = pixels[first + i];
+        const uvec4 counts = key_pixels(pixels[first + i]);
         [[unroll]] for (uint k = 0u; k < 4u; ++k) {
             if (counts[k] < params.min_pixels) continue;
             begin_segment((first + i) * 4u + k, ++number);

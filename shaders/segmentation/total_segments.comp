@@ -8,6 +8,9 @@ layout(std430, binding = 0) readonly buffer Pixels { uvec4 pixels[]; };  // by k
 layout(std430, binding = 1) writeonly buffer Totals { KeyTotals totals[]; };
 layout(push_constant) uniform Push { NumberSegmentsParams params; };
 
+// A key that was joined to another has none of its own.
+uvec4 key_pixels(uvec4 counts) { return mix(counts, uvec4(0u), greaterThanEqual(counts, uvec4(kForwardedKey))); }
+
 shared uint kept;
 shared uint too_small;
 
@@ -17,7 +20,7 @@ void main() {
     const uint first = gl_GlobalInvocationID.x * kNumberQuads;
     uvec4 any_pixels = uvec4(0u), enough = uvec4(0u);
     for (uint i = 0u; i < kNumberQuads; ++i) {
-        const uvec4 counts = pixels[first + i];
+        const uvec4 counts = key_pixels(pixels[first + i]);
         any_pixels += uvec4(greaterThan(counts, uvec4(0u)));
         enough += uvec4(greaterThanEqual(counts, uvec4(params.min_pixels)));
     }

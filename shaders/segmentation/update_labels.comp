@@ -10,7 +10,7 @@
 #include "shared/visible_blocks.h"
 
 layout(local_size_x = kUpdateLabelsGroup) in;
-layout(std430, binding = 0) readonly buffer Surface { uint surface[]; };
+layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(binding = 3, rgba32f) uniform readonly image2D position_m;
@@ -25,7 +25,7 @@ words[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
-const float kGrazingCosine = 0.2;  // of steeper views the pixels say little
+const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
 
 shared uint voted;
 shared uint flipped;
@@ -57,8 +57,8 @@ uint updated(uint word, uint label, inout uint votes, inout uint flips) {
 
 void main() {
     const uint item = group_item(gl_WorkGroupID);
-    if (item >= surface[0]) return;
-    const uint block = surface[1u + item];
+    if (item >= due[0]) return;
+    const uint block = due[1u + item];
     const uint lane = gl_LocalInvocationIndex;
     if (lane == 0u) {
         voted = 0u;

@@ -17,6 +17,10 @@ struct FrameSurfaceParams {
     float max_reach_px;    // and at most that
     float crease_rad;      // a concave crease is an edge where it turns the normal by more than this and
     float crease_sigmas;   // so many sigmas of the angle between two normals
+    float step_m;          // and so is a step between parallel surfaces of more than
+    float step_sigmas;     // step_m + step_sigmas * sigma(z)
+    float cut_chroma;      // and a change of chromaticity by more than
+    float cut_light;       // cut_chroma + cut_light / sum of the channels
     float claim_m;         // a pixel joins a segment where it lies off the tangent plane there by at most
     float claim_sigmas;    // claim_m + claim_sigmas * sigma(z)
     int claim_reach_px;    // and so near in x or y

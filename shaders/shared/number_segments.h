@@ -8,7 +8,8 @@ INTEROP_BEGIN
 INTEROP_CONST uint kNumberGroup = 128u;
 INTEROP_CONST uint kNumberQuads = 8u;  // of four keys, one invocation after another
 INTEROP_CONST uint kKeysPerGroup = kNumberGroup * kNumberQuads * 4u;
-INTEROP_CONST uint kMeasureGroup = 64u;  // of 32 pixels of a row
+INTEROP_CONST uint kForwardedKey = 0x80000000u;  // | another key, in place of a number of pixels: that key is meant
+INTEROP_CONST uint kMeasureGroup = 64u;          // of 32 pixels of a row
 
 // How many components there are.
 struct KeyTotals {

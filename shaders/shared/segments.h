@@ -18,7 +18,6 @@ INTEROP_CONST uint kLabelGroupX = 32u;  // of passes over pixels
 INTEROP_CONST uint kLabelGroupY = 4u;
 INTEROP_CONST uint kStripPixels = 8u;          // of one row, that one invocation counts
 INTEROP_CONST uint kUpdateFrames = 8u;         // in which every block that stays in sight is updated once
-INTEROP_CONST uint kListStride = 2u;           // of the pixels that list blocks
 INTEROP_CONST uint kUpdateLabelsGroup = 32u;   // invocations per block
 INTEROP_CONST uint kLabelQuads = 4u;           // of four voxels along x, per invocation
 INTEROP_CONST uint kAssignLabelsGroup = 128u;  // of the one workgroup that assigns labels
@@ -55,6 +54,10 @@ struct SegmentVote {
     uint best_pixels;
     uint second_label;
     uint second_pixels;
+    uint known_pixels;  // that have a label
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 // One entry of the overlap table.
@@ -105,7 +108,7 @@ struct RelabelParams {
     uint pad2;
 };
 
-struct ListSurfaceParams {
+struct ListDueBlocksParams {
     uint stamp;  // the frame's index + 1
     uint pad0;
     uint pad1;

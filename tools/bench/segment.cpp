@@ -63,8 +63,8 @@ class Bench {
     /// The last frame's segments.
     Image<uint32_t> segments() {
         graph::Frame frame = runner().begin();
-        const auto [model, depth_m] = cast(frame);
-        const graph::Readback read = frame.read_back(add_segment_frame(frame, model, depth_m, camera()).segment);
+        const auto [model, depth_m, color] = cast(frame);
+        const graph::Readback read = frame.read_back(add_segment_frame(frame, model, depth_m, camera(), color).segment);
         runner().submit(std::move(frame));
         runner().wait();
         return read.image<uint32_t>();
@@ -77,10 +77,10 @@ class Bench {
             runner().wait();
             const double start = processor_ms();
             graph::Frame frame = runner().begin();
-            const auto [model, depth_m] = cast(frame);
-            for (const auto id : {model, depth_m}) frame.keep(id);
+            const auto [model, depth_m, color] = cast(frame);
+            for (const auto id : {model, depth_m, color.color_linear}) frame.keep(id);
             if (segment) {
-                const FrameSegments out = add_segment_frame(frame, model, depth_m, camera());
+                const FrameSegments out = add_segment_frame(frame, model, depth_m, camera(), color);
                 frame.keep(out.segment);
                 frame.keep(out.segments);
                 frame.keep(out.count);
@@ -97,15 +97,22 @@ class Bench {
   private:
     gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
 
-    /// The model as the depth camera sees it, and its smoothed readings.
-    std::pair<graph::ImageId, graph::ImageId> cast(graph::Frame& frame) {
+    struct Cast {
+        graph::ImageId model, depth_m;
+        ColorPicture color;
+    };
+
+    /// The model as the depth camera sees it, its smoothed readings, and the colours.
+    Cast cast(graph::Frame& frame) {
         const VoxelMap& map = reconstruction_.map();
         const VoxelMapIds voxels = map.import(frame);
         const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
         const VisibleBlocks visible = add_visible_blocks(frame, map, voxels, camera(), 0.1f, far_m);
         const RaycastImages model = add_raycast(frame, map, voxels, visible, preferred_map_access(device_.caps(), map));
         const InputImages input = add_input(frame, last_.depth, last_.color, camera());
-        return {model.position_m, input.filtered_depth_m};
+        const RigidTransform world_from_color = last_.world_from_depth * rigid_inverse(last_.color_from_depth);
+        return {
+            model.position_m, input.filtered_depth_m, {input.color, make_camera(last_.color.camera, world_from_color)}};
     }
 
     vulkan::Device& device_;

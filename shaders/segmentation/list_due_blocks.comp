@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Lists those of the visible blocks that have their turn, or never had it.
+#include "lib/voxel_map.glsl"
+#include "shared/segments.h"
+
+layout(local_size_x = kSweepGroup) in;
+layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };  // count, then block ids
+layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
+layout(std430, binding = 2) buffer Stamps { uint stamps[]; };  // per block: of the frame that listed it last; 0: never
+layout(std430, binding = 3) buffer Due { uint due[]; };
+layout(std430, binding = 4) buffer Arguments { uint arguments[]; };
+layout(push_constant) uniform Push { ListDueBlocksParams params; };
+
+void main() {
+    if (gl_GlobalInvocationID.x >= visible[0]) return;
+    const uint block = visible[1u + gl_GlobalInvocationID.x];
+    const uint turn = hash_of_key(block_keys[block]) % kUpdateFrames;
+    if (turn != params.stamp % kUpdateFrames && stamps[block] != 0u) return;
+    stamps[block] = params.stamp;
+    const uint item = atomicAdd(due[0], 1u);
+    due[1u + item] = block;
+    atomicMax(arguments[0], min(item + 1u, kGroupsPerRow));
+    if (item % kGroupsPerRow == 0u) atomicMax(arguments[1], item / kGroupsPerRow + 1u);
+}
