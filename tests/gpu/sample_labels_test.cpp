@@ -29,7 +29,7 @@ class SampleLabels : public GpuTest {
             frame.upload("position_m", {extent, vulkan::Format::kRgba32f},
                          std::as_bytes(std::span(points.position_m.pixels()))),
             frame.upload("normal", {extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves))), visible.view,
-            visible.grid};
+            visible.grid, visible.list};
         const graph::Readback label = frame.read_back(add_sample_labels(
             frame, rig.map(), rig.labels().import(frame), frame.upload<uint32_t>("parents", roots), surface, access));
         run(std::move(frame));

@@ -29,10 +29,10 @@ class UpdateLabels : public GpuTest {
         const VisibleBlocks visible =
             add_visible_blocks(frame, rig.map(), voxels, make_camera(camera, world_from_camera), 0.1f, 2.1f);
         const RaycastImages model = add_raycast(frame, rig.map(), voxels, visible, MapAccess::kStorage);
-        const SurfaceView surface{model.position_m, model.normal, visible.view, visible.grid};
+        const SurfaceView surface{model.position_m, model.normal, visible.view, visible.grid, visible.list};
         const std::vector<uint32_t> groups{gpu::kGroupsPerRow, (list[0] + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow,
                                            1, 0};
-        const SurfaceBlocks blocks{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
+        const DueBlocks blocks{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
         const FrameSegments segments{
             frame.upload("segment", {camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(segment.pixels()))),
             {},

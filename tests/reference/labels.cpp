@@ -38,7 +38,7 @@ uint32_t pixel_label(uint32_t map_label, uint32_t segment, const std::vector<uin
 }
 
 uint32_t seen_label(const LabelledView& view, glm::dvec3 center_m) {
-    constexpr double kLeastCosine = 0.2;
+    constexpr double kLeastCosine = 0.1;
     const glm::dvec3 camera_m(view.world_from_camera[3]);
     const glm::dvec3 at(rigid_inverse(view.world_from_camera) * glm::dvec4(center_m, 1));
     if (at.z <= 0) return 0;
