@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // One workgroup per block on the visible surface: each voxel near the surface looks up its segment's label in the
-// frame. An invocation takes four voxels along x at a time.
+// frame. Those near it, about a quarter of a block, are listed first: where a lane idles, software devices wait.
 #include "lib/camera.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_labels.glsl"
@@ -20,8 +20,8 @@ layout(binding = 6, r32ui) uniform readonly uimageBuffer SegmentLabels;
 layout(binding = 7, r32ui) uniform readonly uimageBuffer Parents;
 layout(std430, binding = 8) readonly buffer Tsdf { uvec4 quads[]; }
 tsdf[kMaxVoxelChunks];
-layout(std430, binding = 13) buffer Words { uvec4 quads[]; }
-words[kMaxVoxelChunks];
+layout(std430, binding = 13) buffer Words { uint words[]; }
+labels[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
@@ -29,6 +29,8 @@ const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
 
 shared uint voted;
 shared uint flipped;
+shared uint listed;
+shared uint list[kBlockVoxels];  // voxels near the surface, in any order: each is updated by itself
 
 // The label that a voxel's pixel gives it; 0 where it is hidden, or its pixel has none.
 uint seen_label(vec3 center_m, vec3 camera_m) {
@@ -56,40 +58,45 @@ uint updated(uint word, uint label, inout uint votes, inout uint flips) {
     return next;
 }
 
+// Lists the voxels of the block that are near the surface. An invocation looks at four along x at a time.
+void list_near(uint block) {
+    const uint first_quad = index_in_chunk(view.grid.chunk_shift, block) * (kBlockVoxels / 4u);
+    for (uint i = 0u; i < kLabelQuads; ++i) {
+        const uint quad = i * kUpdateLabelsGroup + gl_LocalInvocationIndex;
+        uvec4 voxels;
+#define LOAD_TSDF(C) voxels = tsdf[C].quads[first_quad + quad]
+        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_TSDF)
+        [[unroll]] for (uint j = 0u; j < 4u; ++j) {
+            const bool near = voxel_weight(voxels[j]) > 0u && abs(voxel_sdf(voxels[j])) * kSdfRangeVox < kNearVox;
+            if (near) list[atomicAdd(listed, 1u)] = 4u * quad + j;
+        }
+    }
+}
+
 void main() {
     const uint item = group_item(gl_WorkGroupID);
     if (item >= due[0]) return;
     const uint block = due[1u + item];
     const uint lane = gl_LocalInvocationIndex;
-    if (lane == 0u) {
-        voted = 0u;
-        flipped = 0u;
-    }
+    if (lane == 0u) voted = flipped = listed = 0u;
+    barrier();
+    list_near(block);
     barrier();
     const ivec3 corner = block_of_key(view.grid, block_keys[block]) * int(kBlockEdge);
-    const uint first_quad = index_in_chunk(view.grid.chunk_shift, block) * (kBlockVoxels / 4u);
+    const uint first = index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels;
     const vec3 camera_m = camera_center_m(view.camera);
     uint votes = 0u, flips = 0u;
-    for (uint i = 0u; i < kLabelQuads; ++i) {
-        const uint quad = i * kUpdateLabelsGroup + lane;
-        uvec4 voxels;
-#define LOAD_TSDF(C) voxels = tsdf[C].quads[first_quad + quad]
-        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_TSDF)
-        bvec4 near;
-        [[unroll]] for (int j = 0; j < 4; ++j) near[j] =
-            voxel_weight(voxels[j]) > 0u && abs(voxel_sdf(voxels[j])) * kSdfRangeVox < kNearVox;
-        if (!any(near)) continue;
-        uvec4 known;
-#define LOAD_WORDS(C) known = words[C].quads[first_quad + quad]
-#define STORE_WORDS(C) words[C].quads[first_quad + quad] = known
-        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORDS)
-        const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        [[unroll]] for (int j = 0; j < 4; ++j) {
-            const vec3 center_m = (vec3(corner + within + ivec3(j, 0, 0)) + 0.5) * view.grid.voxel_m;
-            const uint label = near[j] ? seen_label(center_m, camera_m) : kNoLabel;
-            known[j] = updated(known[j], label, votes, flips);
-        }
-        WITH_CHUNK(view.grid.chunk_shift, block, STORE_WORDS)
+    for (uint i = lane; i < listed; i += kUpdateLabelsGroup) {
+        const uint voxel = list[i];
+        const ivec3 within = ivec3(voxel & 7u, voxel >> 3 & 7u, voxel >> 6);
+        const vec3 center_m = (vec3(corner + within) + 0.5) * view.grid.voxel_m;
+        const uint label = seen_label(center_m, camera_m);
+        uint known;
+#define LOAD_WORD(C) known = labels[C].words[first + voxel]
+#define STORE_WORD(C) labels[C].words[first + voxel] = known
+        WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORD)
+        known = updated(known, label, votes, flips);
+        WITH_CHUNK(view.grid.chunk_shift, block, STORE_WORD)
     }
     if (votes > 0u) atomicAdd(voted, votes);
     if (flips > 0u) atomicAdd(flipped, flips);
