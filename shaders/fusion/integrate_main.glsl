@@ -42,6 +42,8 @@ vec2 pixel_of(Row row, int i) {
     return at.z > kNearestDepth ? at.xy * (1.0 / at.z) : vec2(-1e6);
 }
 
+const float kFreeShare = 0.25;  // of the weight of free space beside an edge
+
 struct Sample {
     bool valid;
     float signed_m;  // distance from the reading's tangent plane, positive in front of the surface
@@ -62,13 +64,15 @@ Sample sample_depth(vec2 pixel, float z) {
     const float truncation = fusion.truncation_m + fusion.truncation_slope * reading;
     const float trust = clamp(1.0 + along_m / truncation, 0.0, 1.0);
     // Beside an edge free space says less than how far the reading is: the nearer surface ends within about a pixel.
-    // Without this bound, one pixel's free space outvotes many views of the rim, and wears it away.
+    // Without this bound, and with its full weight, one pixel's free space outvotes many views of the rim, and wears it
+    // away.
     const float pixel_m = z / fusion.depth_camera.focal_center_px.x;
     const float most_m = slope_beside_edge(inclination) ? min(pixel_m, truncation) : truncation;
     Sample result;
     result.signed_m = min(along_m * plane_factor, most_m);
     // Whole numbers add up without loss, and so in any order.
-    result.weight = max(floor(float(kWeightOne) * plane_factor * trust * sqrt(trust) + 0.5), 1.0);
+    const float share = slope_beside_edge(inclination) && along_m > pixel_m ? kFreeShare : 1.0;
+    result.weight = max(floor(float(kWeightOne) * share * plane_factor * trust * sqrt(trust) + 0.5), 1.0);
     result.valid = inclination != 0u && reading > 0.0 && reading <= fusion.max_depth_m && along_m >= -truncation;
     return result;
 }

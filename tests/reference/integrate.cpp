@@ -52,7 +52,9 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     const double most_m = slope.beside_edge ? std::min(pixel_m, truncation) : truncation;
     const double distance_m = std::min(in_front_m * slope.plane_factor, most_m);
     const double trust = std::clamp(1 + in_front_m / truncation, 0.0, 1.0);
-    const double weight = std::max(std::round(fusion.frontal_weight * slope.plane_factor * std::pow(trust, 1.5)), 1.0);
+    const double free_share = slope.beside_edge && in_front_m > pixel_m ? 0.25 : 1;
+    const double weight =
+        std::max(std::round(fusion.frontal_weight * free_share * slope.plane_factor * std::pow(trust, 1.5)), 1.0);
     Voxel updated = voxel;
     updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
     updated.weight = std::min(voxel.weight + weight, fusion.max_weight);
