@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "passes/segmentation/sample_labels.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -17,6 +18,7 @@ SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, 
                                    graph::BufferId params) {
     const Extent2D extent = frame.common_extent({segments.segment, position_m});
     const Extent2D sampled = frame.shape(map_label).extent;
+    check_sampled("segmentation.count_overlaps", extent, sampled);
     const uint32_t slots = overlap_slots(extent);
     SegmentOverlaps out;
     out.table = frame.fill(frame.create_buffer("segmentation.overlaps", slots * sizeof(gpu::SegmentOverlap)), 0);

@@ -1,5 +1,6 @@
 #include "passes/segmentation/label_pixels.h"
 
+#include "passes/segmentation/sample_labels.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -7,6 +8,7 @@ namespace patina {
 graph::ImageId add_label_pixels(graph::Frame& frame, const FrameSegments& segments, graph::ImageId map_label,
                                 graph::BufferId parents, graph::BufferId segment_labels) {
     const Extent2D extent = frame.shape(segments.segment).extent;
+    check_sampled("segmentation.label_pixels", extent, frame.shape(map_label).extent);
     auto pass = frame.compute("segmentation.label_pixels", spirv::label_pixels);
     pass.read("segment", segments.segment).read("map_label", map_label);
     pass.read("Parents", parents).read("SegmentLabels", segment_labels);

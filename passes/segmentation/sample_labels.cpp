@@ -1,14 +1,24 @@
 #include "passes/segmentation/sample_labels.h"
 
+#include "engine/core/error.h"
+#include "shared/segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
+
+void check_sampled(const char* pass, Extent2D segments, Extent2D sampled) {
+    const Extent2D expected = sampled_extent(segments, gpu::kSampleStride);
+    if (sampled != expected) {
+        throw Error("the pass '", pass, "' got labels of the map of ", sampled, " pixels, it must be ", expected,
+                    " for segments of ", segments);
+    }
+}
 
 graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
                                  graph::BufferId parents, const SurfaceView& surface, MapAccess access,
                                  uint32_t stride) {
     const Extent2D full = frame.common_extent({surface.position_m, surface.normal});
-    const Extent2D extent{(full.width + stride - 1) / stride, (full.height + stride - 1) / stride};
+    const Extent2D extent = sampled_extent(full, stride);
     const bool texel = access == MapAccess::kTexel;
     auto pass = frame.compute("segmentation.sample_labels", texel ? spirv::sample_labels_texel : spirv::sample_labels);
     pass.read("position_m", surface.position_m).read("normal", surface.normal);

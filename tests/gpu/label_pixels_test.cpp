@@ -50,5 +50,21 @@ TEST_F(LabelPixels, AreTheMapsElseTheirSegments) {
     }
 }
 
+TEST_F(LabelPixels, LabelsOfAnotherExtentAreRefused) {
+    graph::Frame frame = runner().begin();
+    const Image<uint32_t> image({8, 6});
+    const auto upload = [&](const char* name) {
+        return frame.upload(name, {image.extent(), vulkan::Format::kR32u}, std::as_bytes(std::span(image.pixels())));
+    };
+    const std::vector<uint32_t> one(1);
+    const FrameSegments segments{upload("segment"), {}, {}};
+    EXPECT_THAT(
+        [&] {
+            add_label_pixels(frame, segments, upload("map_label"), frame.upload<uint32_t>("parents", one),
+                             frame.upload<uint32_t>("segment_labels", one));
+        },
+        testing::ThrowsMessage<Error>(testing::HasSubstr("it must be 4 x 3")));
+}
+
 }  // namespace
 }  // namespace patina

@@ -11,6 +11,7 @@
 #include "tools/bench/measure.h"
 #include "tools/bench/recording.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 #include "tools/run_settings.h"
 
 namespace patina::bench {
@@ -31,16 +32,6 @@ struct Options {
     std::vector<std::string> assignments;
     std::filesystem::path json, dump;
 };
-
-Extent2D parse_extent(const std::string& text) {
-    Extent2D extent;
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%n", &extent.width, &extent.height, &used) != 2 ||
-        static_cast<size_t>(used) != text.size()) {
-        throw Error("--extent takes WIDTHxHEIGHT, such as 512x424, not '", text, "'");
-    }
-    return extent;
-}
 
 ordered_json to_json(const Distribution& d) {
     return {{"count", d.count}, {"min", d.min}, {"median", d.median}, {"p90", d.p90}};
@@ -145,7 +136,7 @@ void run(Options& options) {
     settings.view_every_frame = true;
     settings.fusion.color = !options.no_color;
     for (const std::string& assignment : options.assignments) tools::apply_setting(settings, assignment);
-    if (!options.extent.empty()) options.recording.extent = parse_extent(options.extent);
+    if (!options.extent.empty()) options.recording.extent = tools::parse_extent(options.extent);
     options.recording.frames = options.warmup + options.frames;
     const vulkan::DeviceOptions device = options.device.options();
     const Recording recording = load(options.recording, device);

@@ -15,6 +15,7 @@
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 #include "tools/rgbd_frame.h"
 
 namespace patina::bench {
@@ -139,18 +140,10 @@ void print(const std::string& name, const Distribution& d) {
     fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
 }
 
-Extent2D parse_extent(const std::string& text) {
-    Extent2D extent;
-    if (std::sscanf(text.c_str(), "%ux%u", &extent.width, &extent.height) != 2) {
-        throw Error("--extent takes WIDTHxHEIGHT, such as 512x424, not '", text, "'");
-    }
-    return extent;
-}
-
 void run(const Options& options) {
     const vulkan::DeviceOptions device_options = options.device.options();
     const Recording recording =
-        load({options.sequence, {}, parse_extent(options.extent), options.model_frames}, device_options);
+        load({options.sequence, {}, tools::parse_extent(options.extent), options.model_frames}, device_options);
     vulkan::Device device(device_options);
     Bench bench(device);
     if (!options.pictures.empty()) std::filesystem::create_directories(options.pictures);
