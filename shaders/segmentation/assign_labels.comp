@@ -212,7 +212,9 @@ void count_pairs(uint count) {
         pairs[pair].stamp = frame.stamp;
         pairs[pair].count += 1u;
         if (pairs[pair].count < frame.merge_count || !same_chroma(low, high)) continue;
-        merge_labels(vote.best_label, vote.second_label);
+        // The one that more was seen of keeps its name; of equal ones the smaller.
+        const bool keeps_low = labels[low].chroma_samples >= labels[high].chroma_samples;
+        merge_labels(keeps_low ? low : high, keeps_low ? high : low);
         merged = 1u;
     }
 }
