@@ -21,4 +21,11 @@ float chroma_light(uint chroma) {
     return root * root * kMostLight;
 }
 
+// How far two chromaticities lie apart across the direction from grey, along which highlights move them.
+float hue_change(vec2 a, vec2 b) {
+    const vec2 one = a - 1.0 / 3.0, two = b - 1.0 / 3.0;
+    const float across = abs(one.x * two.y - one.y * two.x) / max(max(length(one), length(two)), 1e-6);
+    return dot(one, two) < 0.0 ? distance(a, b) : across;
+}
+
 #endif

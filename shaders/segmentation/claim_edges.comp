@@ -21,6 +21,7 @@ layout(push_constant) uniform Push { FrameSurfaceParams params; };
 
 const ivec2 kDirections[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 const float kChromaWeightM = 0.05;  // a difference of colour counts as so much distance from a plane
+const float kFoldCostM = 1.0;       // any plane on which a pixel lies is preferred to one that it folds away from
 
 ivec2 clamped(ivec2 pixel) { return clamp(pixel, ivec2(0), ivec2(params.extent) - 1); }
 
@@ -80,14 +81,20 @@ void main() {
             const ivec2 place = clamped(pixel + apart[i] * kDirections[i]);
             const vec3 there_m = surface_point_m(params, place, imageLoad(depth_m, place).x);
             const uint there = imageLoad(chroma, place).x;
-            const float distance_m = abs(dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x)));
+            // Above 0 where the pixel lies behind the plane, as over a convex fold.
+            const float behind_m = dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x));
+            const float distance_m = abs(behind_m);
             const vec2 differing = abs(unpack_chroma(there) - unpack_chroma(color));
             const bool colored = there != 0u && color != 0u;
             const float cost = distance_m + (colored ? kChromaWeightM * max(differing.x, differing.y) : 0.0);
             const bool on_plane = found[i] != 0u && distance_m < limit_m;
             colors[i] = on_plane ? there : 0u;
-            own = on_plane && cost < least ? found[i] : own;
-            least = on_plane ? min(least, cost) : least;
+            const bool same_hue = colored && hue_change(unpack_chroma(there), unpack_chroma(color)) < params.cut_chroma;
+            const bool folded = found[i] != 0u && behind_m > 0.0 && same_hue &&
+                                abs(there_m.z - z) <= jump_limit_m(params, z, apart[i]);
+            const float paid = on_plane ? cost : folded ? kFoldCostM + cost : 1e9;
+            own = paid < least ? found[i] : own;
+            least = min(least, paid);
         }
         [[unroll]] for (int i = 0; i < 4; i += 2) {
             if (found[i] != found[i + 1] && colors[i] != 0u && colors[i + 1] != 0u)

@@ -29,7 +29,13 @@ Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
 const int kColorReach = 2;           // how far on both sides colours are compared (pixels)
 const float kParallelCosine = 0.95;  // of the normals on both sides of a step, which it tilts
 
-bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine, float step_m) {
+// What the surface does from one side of a pixel to the other.
+struct Bend {
+    bool crease;  // a concave crease, or a step
+    bool fold;    // a convex one, which does not separate
+};
+
+Bend bend_at(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine, float step_m) {
     const Side a = side_at(pixel, here, -offset, limit_m);
     const Side b = side_at(pixel, here, offset, limit_m);
     const vec3 across_m = b.point_m - a.point_m;
@@ -37,15 +43,17 @@ bool is_crease(ivec2 pixel, Side here, ivec2 offset, float limit_m, float cosine
     const float between = dot(a.normal, b.normal);
     // A curved surface does not leave the plane that stands on the mean normal.
     const bool is_step = abs(dot(across_m, a.normal + b.normal)) > 2.0 * step_m && between > kParallelCosine;
-    return (concave && between < cosine) || is_step;
+    return Bend((concave && between < cosine) || is_step, !concave && between < kParallelCosine);
 }
 
-bool differ(ivec2 pixel, ivec2 offset) {
+// Over a fold the light changes, and with it how much of a colour is highlight: only another hue counts there.
+bool differ(ivec2 pixel, ivec2 offset, bool fold) {
     // Outside the image loads are zero: not known.
     const uint a = imageLoad(chroma, pixel - offset).x, b = imageLoad(chroma, pixel + offset).x;
-    const vec2 apart = abs(unpack_chroma(a) - unpack_chroma(b));
+    const vec2 one = unpack_chroma(a), two = unpack_chroma(b), apart = abs(one - two);
     const float light = chroma_light(min(a, b));
-    return light > 0.0 && max(apart.x, apart.y) > params.cut_chroma + params.cut_light / max(light, 1e-3);
+    const float change = fold ? hue_change(one, two) : max(apart.x, apart.y);
+    return light > 0.0 && change > params.cut_chroma + params.cut_light / max(light, 1e-3);
 }
 
 void main() {
@@ -65,9 +73,9 @@ void main() {
 
     const float step_m = params.step_m + params.step_sigmas * depth_sigma_m(params, z);
 
-    const bool crease = is_crease(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m) ||
-                        is_crease(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
-    const bool edge =
-        packed == 0u || crease || differ(pixel, ivec2(kColorReach, 0)) || differ(pixel, ivec2(0, kColorReach));
+    const Bend x = bend_at(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m);
+    const Bend y = bend_at(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
+    const bool edge = packed == 0u || x.crease || y.crease || differ(pixel, ivec2(kColorReach, 0), x.fold) ||
+                      differ(pixel, ivec2(0, kColorReach), y.fold);
     imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

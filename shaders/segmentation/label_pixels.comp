@@ -19,5 +19,5 @@ void main() {
     const uint here = imageLoad(segment, pixel).x;
     const bool same = imageLoad(segment, sampled * int(kSampleStride)).x == here;
     const uint assigned = imageLoad(SegmentLabels, int(here)).x;
-    imageStore(label, pixel, uvec4(known != kNoLabel && same ? known : assigned));
+    imageStore(label, pixel, uvec4(known != kNoLabel && (same || here == 0u) ? known : assigned));
 }
