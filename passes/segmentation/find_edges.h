@@ -27,7 +27,7 @@ struct EdgeSettings {
     float crease_degrees = 20;    ///< a concave crease separates where it turns the normal by more than this
     float crease_sigmas = 0.5f;   ///< and so many times what noise does to the angle
     float step_m = 0.004f;        ///< and a step separates parallel surfaces where it is higher than this
-    float step_sigmas = 1;     ///< and so many sigmas of the depth
+    float step_sigmas = 1;        ///< and so many sigmas of the depth
     float cut_chroma = 0.08f;     ///< and so does a change of r / (r + g + b), or g's, by more than this
     float cut_light = 0.012f;     ///< and this over r + g + b, as noise does more to dark colours
     float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near

@@ -90,8 +90,8 @@ void main() {
             const bool on_plane = found[i] != 0u && distance_m < limit_m;
             colors[i] = on_plane ? there : 0u;
             const bool same_hue = colored && hue_change(unpack_chroma(there), unpack_chroma(color)) < params.cut_chroma;
-            const bool folded = found[i] != 0u && behind_m > 0.0 && same_hue &&
-                                abs(there_m.z - z) <= jump_limit_m(params, z, apart[i]);
+            const bool folded =
+                found[i] != 0u && behind_m > 0.0 && same_hue && abs(there_m.z - z) <= jump_limit_m(params, z, apart[i]);
             const float paid = on_plane ? cost : folded ? kFoldCostM + cost : 1e9;
             own = paid < least ? found[i] : own;
             least = min(least, paid);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The label of each pixel: what the map says where it was asked nearby, on the same segment; else what that got.
+// The label of each pixel: what the map says where it was asked nearby, on the same segment, or where
+// the frame says nothing; else what its segment got.
 #include "shared/segments.h"
 
 layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;

@@ -135,9 +135,20 @@ TEST_F(AssignLabels, LabelsThatAreOneForThreeFramesAreMergedIfTheirColoursAgree)
         const std::vector<SeenSegment> both{{1000, {{1, 400}, {2, 500}}}};
         EXPECT_THAT(assign(both), ElementsAre(2));
         EXPECT_THAT(assign(both), ElementsAre(2));
-        EXPECT_THAT(assign(both), ElementsAre(2)) << "the one that covers more remains";
+        EXPECT_THAT(assign(both), ElementsAre(alike ? 1 : 2)) << "of as much seen the smaller remains";
         EXPECT_EQ(counters_.merged, alike ? 1u : 0u);
         EXPECT_EQ(counters_.live, alike ? 1u : 2u);
+    }
+}
+
+TEST_F(AssignLabels, OfMergedLabelsTheOneThatMoreWasSeenOfRemains) {
+    for (const uint32_t more : {1u, 2u}) {
+        start(64);
+        assign({{500, {}}, {500, {}}});
+        change([&](uint32_t label, gpu::SegmentLabel& known) { known.chroma_samples = label == more ? 40 : 30; });
+        uint32_t label = 0;
+        for (int i = 0; i < 3; ++i) label = assign({{1000, {{3 - more, 600}, {more, 300}}}})[0];
+        EXPECT_EQ(label, more);
     }
 }
 
@@ -180,7 +191,7 @@ TEST_F(AssignLabels, ChainsOfMergersEndInOneLabel) {
         }
         labels = assign(seen);
     }
-    EXPECT_THAT(labels, Each(1u));
+    EXPECT_THAT(labels, Each(labels.front()));
     EXPECT_EQ(counters_.live, 1u);
 }
 
@@ -250,12 +261,14 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
         }
         std::map<uint32_t, uint32_t> voxels;
         for (uint32_t label = 1; label < kCapacity; ++label) voxels[label] = below(12);
+        std::map<uint32_t, uint32_t> samples;
+        for (uint32_t label = 1; label < kCapacity; ++label) samples[label] = 1 + below(4);
         change([&](uint32_t label, gpu::SegmentLabel& known) {
             known.tally = voxels[label];
-            known.chroma_samples = 1;
-            known.chroma_r = label % 2 * 500;
+            known.chroma_samples = samples[label];
+            known.chroma_r = label % 2 * 500 * samples[label];
         });
-        const std::vector<uint32_t> expected = book.frame(seen, alike, voxels);
+        const std::vector<uint32_t> expected = book.frame(seen, alike, samples, voxels);
         ASSERT_EQ(assign(seen), expected) << "frame " << i;
         ASSERT_EQ(counters_.live, book.live_labels()) << "frame " << i;
     }

@@ -142,6 +142,26 @@ TEST_F(ClaimEdges, APixelBetweenTwoPlanesGoesToTheOneOfItsColour) {
     EXPECT_EQ(got.contacts, expected);
 }
 
+TEST_F(ClaimEdges, APixelThatFoldsAwayFromAComponentJoinsItIfItHasItsHue) {
+    const Extent2D extent{41, 12};
+    for (const bool pale : {true, false}) {
+        for (const double tilt : {0.7, -0.7}) {
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(tilt, 0, -1));  // of the component on the left
+            reference::ComponentPicture picture{pinhole_camera(extent), Image<uint32_t>(extent),
+                                                Image<float>(extent, 1), Image<glm::dvec3>(extent, normal),
+                                                Image<std::optional<glm::ivec2>>(extent, glm::ivec2(2400, 900))};
+            for (uint32_t y = 0; y < extent.height; ++y) {
+                for (uint32_t x = 0; x < extent.width; ++x) {
+                    if (x < 19) picture.component.at(x, y) = 1;
+                    if (x >= 19) picture.chroma.at(x, y) = pale ? glm::ivec2(1900, 1120) : glm::ivec2(1900, 1700);
+                }
+            }
+            const Result got = claim(picture);
+            EXPECT_EQ(got.component.at(24, 6), pale && tilt < 0 ? 1u : 0u) << pale << ' ' << tilt;
+        }
+    }
+}
+
 class JoinFolds : public GpuTest {
   protected:
     /// Pixels by key, with gpu::kForwardedKey | root where a component was joined to another.

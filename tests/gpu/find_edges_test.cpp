@@ -105,13 +105,19 @@ TEST_F(FindEdges, NoiseWidensTheAngle) {
     EXPECT_GT(find(crease(60, {320, 20}), noisy).inner_depth_m.at(156, 10), 0);
 }
 
+/// A picture of two halves.
+template <class Pixel>
+Image<Pixel> halves(Extent2D extent, Pixel left, Pixel right) {
+    Image<Pixel> image(extent, left);
+    for (uint32_t y = 0; y < extent.height; ++y) {
+        for (uint32_t x = extent.width / 2; x < extent.width; ++x) image.at(x, y) = right;
+    }
+    return image;
+}
+
 TEST_F(FindEdges, AStepBetweenParallelSurfacesIsAnEdge) {
     for (const auto& [height_m, expected] : {std::pair(0.012f, true), {0.002f, false}}) {
-        Image<float> depth_m({320, 20}, 1.2f);
-        for (uint32_t y = 0; y < 20; ++y) {
-            for (uint32_t x = 160; x < 320; ++x) depth_m.at(x, y) = 1.2f - height_m;
-        }
-        const Result got = find(depth_m);
+        const Result got = find(halves({320, 20}, 1.2f, 1.2f - height_m));
         for (uint32_t y = 0; y < 20; ++y) {
             EXPECT_EQ(got.inner_depth_m.at(159, y) < 0 || got.inner_depth_m.at(160, y) < 0, expected) << height_m;
             for (const uint32_t x : {0u, 148u, 171u, 319u}) EXPECT_GT(got.inner_depth_m.at(x, y), 0) << height_m;
@@ -127,21 +133,26 @@ TEST_F(FindEdges, AChangeOfColourIsAnEdgeWhereThereIsLightEnoughToTell) {
     const Image<float> depth_m({320, 20}, 1.2f);
     for (const auto& [change, light, expected] :
          {std::tuple(0.15, 128u, true), {0.03, 128u, false}, {0.15, 30u, false}, {0.15, 0u, false}}) {
-        Image<uint32_t> chroma(depth_m.extent(), packed_chroma(0.5, 0.3, light));
-        for (uint32_t y = 0; y < 20; ++y) {
-            for (uint32_t x = 160; x < 320; ++x) chroma.at(x, y) = packed_chroma(0.5 - change, 0.3, light);
-        }
-        const Result got = find(depth_m, chroma);
+        const uint32_t left = packed_chroma(0.5, 0.3, light), right = packed_chroma(0.5 - change, 0.3, light);
+        const Result got = find(depth_m, halves(depth_m.extent(), left, right));
         for (uint32_t x = 0; x < 320; ++x)
             EXPECT_EQ(got.inner_depth_m.at(x, 9) < 0, expected && x >= 158 && x < 162) << change << ' ' << light;
     }
 }
 
-TEST_F(FindEdges, NormalsDoNotReachAcrossAJump) {
-    Image<float> depth_m({40, 20}, 1.0f);
-    for (uint32_t y = 0; y < 20; ++y) {
-        for (uint32_t x = 20; x < 40; ++x) depth_m.at(x, y) = 3.0f;
+TEST_F(FindEdges, OverAConvexFoldOnlyAnotherHueIsAnEdge) {
+    const Extent2D extent{320, 20};
+    const uint32_t strong = packed_chroma(0.6, 0.2, 128), pale = packed_chroma(0.48, 0.26, 128),
+                   other = packed_chroma(0.45, 0.4, 128);
+    for (const auto& [turn, right, expected] :
+         {std::tuple(0.0, pale, true), {-60.0, pale, false}, {-60.0, other, true}}) {
+        const Result got = find(crease(turn, extent), halves(extent, strong, right));
+        EXPECT_EQ(got.inner_depth_m.at(159, 9) < 0, expected) << turn;
     }
+}
+
+TEST_F(FindEdges, NormalsDoNotReachAcrossAJump) {
+    Image<float> depth_m = halves({40, 20}, 1.0f, 3.0f);
     depth_m.at(5, 5) = 0;
     const Result got = find(depth_m);
     for (size_t i = 0; i < depth_m.pixels().size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace patina::reference {
 namespace {
@@ -13,6 +14,7 @@ constexpr std::array<glm::ivec2, 4> kDirections{{{-1, 0}, {1, 0}, {0, -1}, {0, 1
 struct Neighbour {
     uint32_t key = 0;
     double distance_m = 0;  ///< of the pixel from its tangent plane
+    bool on_plane = false;  ///< else it lies behind that, as over a convex fold
     std::optional<glm::ivec2> chroma;
 };
 
@@ -27,7 +29,7 @@ class Claim {
         return key != 0 && pixels_.at(key) >= rules_.min_pixels ? key : 0;
     }
 
-    /// The nearest component in a direction, if the pixel lies on its plane.
+    /// The nearest component in a direction, if the pixel lies on its plane or folds away from it in one hue.
     std::optional<Neighbour> beside(glm::ivec2 pixel, glm::ivec2 direction) const {
         const double z = picture_.depth_m.at(pixel.x, pixel.y);
         const double sigma_m = rules_.noise_floor_m + rules_.noise_per_m * z * z;
@@ -36,21 +38,36 @@ class Claim {
             if (!picture_.component.extent().contains(at.x, at.y)) return {};
             const uint32_t key = large_at(at);
             if (key == 0) continue;
-            const double distance_m = std::abs(glm::dot(point_m(at) - point_m(pixel), picture_.normal.at(at.x, at.y)));
-            if (distance_m >= rules_.claim_m + rules_.claim_sigmas * sigma_m) return {};
-            return Neighbour{key, distance_m, picture_.chroma.at(at.x, at.y)};
+            const glm::dvec3 apart_m = point_m(at) - point_m(pixel);
+            const double behind_m = glm::dot(apart_m, picture_.normal.at(at.x, at.y));
+            const bool on_plane = std::abs(behind_m) < rules_.claim_m + rules_.claim_sigmas * sigma_m;
+            const double steepest = std::tan(rules_.steepest_degrees * std::numbers::pi / 180) / picture_.camera.fx;
+            const bool jumps = std::abs(apart_m.z) > rules_.jump_m + step * steepest * z;
+            if (!on_plane && (behind_m <= 0 || jumps || !same_hue(pixel, at))) return {};
+            return Neighbour{key, std::abs(behind_m), on_plane, picture_.chroma.at(at.x, at.y)};
         }
         return {};
     }
 
     double cost_m(glm::ivec2 pixel, const Neighbour& neighbour) const {
         const auto& own = picture_.chroma.at(pixel.x, pixel.y);
-        if (!own || !neighbour.chroma) return neighbour.distance_m;
+        const double folded_m = neighbour.on_plane ? 0 : 1;  // any plane is preferred to a fold
+        if (!own || !neighbour.chroma) return folded_m + neighbour.distance_m;
         const glm::ivec2 apart = glm::abs(*own - *neighbour.chroma);
-        return neighbour.distance_m + rules_.chroma_weight_m * std::max(apart.x, apart.y) / 4095.0;
+        return folded_m + neighbour.distance_m + rules_.chroma_weight_m * std::max(apart.x, apart.y) / 4095.0;
     }
 
   private:
+    /// Whether two colours differ by little across the direction from grey.
+    bool same_hue(glm::ivec2 a, glm::ivec2 b) const {
+        if (!picture_.chroma.at(a.x, a.y) || !picture_.chroma.at(b.x, b.y)) return false;
+        const glm::dvec2 one = glm::dvec2(*picture_.chroma.at(a.x, a.y)) / 4095.0 - 1.0 / 3;
+        const glm::dvec2 two = glm::dvec2(*picture_.chroma.at(b.x, b.y)) / 4095.0 - 1.0 / 3;
+        if (glm::dot(one, two) < 0) return glm::distance(one, two) < rules_.same_hue;
+        const double sine = std::sin(std::atan2(one.x * two.y - one.y * two.x, glm::dot(one, two)));
+        return std::abs(sine) * std::min(glm::length(one), glm::length(two)) < rules_.same_hue;
+    }
+
     glm::dvec3 point_m(glm::ivec2 at) const {
         const Intrinsics& camera = picture_.camera;
         return glm::dvec3((at.x - camera.cx) / camera.fx, (at.y - camera.cy) / camera.fy, 1) *
@@ -63,7 +80,7 @@ class Claim {
 };
 
 void add_contact(Claims& claims, const Neighbour& a, const Neighbour& b) {
-    if (a.key == b.key || !a.chroma || !b.chroma) return;
+    if (a.key == b.key || !a.on_plane || !b.on_plane || !a.chroma || !b.chroma) return;
     const Neighbour &low = a.key < b.key ? a : b, &high = a.key < b.key ? b : a;
     ContactSum& contact = claims.contacts[{low.key, high.key}];
     ++contact.pixels;

@@ -27,6 +27,8 @@ struct ClaimRules {
     double claim_m = 0.006, claim_sigmas = 3;
     double noise_floor_m = 0.001, noise_per_m = 0.00025;
     double chroma_weight_m = 0.05;  ///< a difference of chromaticity counts as so much distance from a plane
+    double jump_m = 0.01, steepest_degrees = 80;  ///< of a surface's depth, a pixel apart
+    double same_hue = 0.08;                       ///< chromaticities across the direction from grey, over a fold
     int reach_px = 6;
     uint32_t min_pixels = 60;
 };
@@ -45,7 +47,8 @@ struct Claims {
 };
 
 /// Gives each pixel without a component of min_pixels the one, of those nearest to the left, right, top and bottom, on
-/// whose tangent plane it lies, and of several the one whose plane and colour are nearest.
+/// whose tangent plane it lies, and of several the one whose plane and colour are nearest; else one of its hue that it
+/// folds away from.
 Claims claim_edges(const ComponentPicture& picture, const ClaimRules& rules = {});
 
 /// What remains of components, by their smallest key, after those that touch in a strong hue of their own were joined.

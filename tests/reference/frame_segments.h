@@ -40,7 +40,7 @@ struct SurfaceRules {
     double reach_m = 0.015;
     int min_reach_px = 2, max_reach_px = 4;
     double crease_degrees = 20, crease_sigmas = 0.5;
-    double step_m = 0.004, step_sigmas = 0.5;
+    double step_m = 0.004, step_sigmas = 1;
 };
 
 /// Unit normals towards the camera, in its coordinates; 0 where unknown.

@@ -28,18 +28,22 @@ class SegmentBook {
     };
     explicit SegmentBook(const Rules& rules);
 
-    /// One frame: the label of each segment, 0 for none. `alike` says which labels may be merged; `voxels` how many
-    /// voxels each label was found to have when a sweep ends.
+    /// One frame: the label of each segment, 0 for none. `alike` says which labels may be merged, `seen` how much was
+    /// seen of each; `voxels` how many voxels each label was found to have when a sweep ends.
     template <class Alike>
     std::vector<uint32_t> frame(const std::vector<SeenSegment>& segments, Alike&& alike,
-                                const std::map<uint32_t, uint32_t>& voxels = {}) {
+                                std::map<uint32_t, uint32_t> seen, const std::map<uint32_t, uint32_t>& voxels) {
         ++now_;
         std::vector<uint32_t> labels = assign(segments);
         for (const auto& [best, second] : joined(segments)) {
             const std::pair pair = std::minmax(best, second);
             if (!live(best) || !live(second) || counted_.contains(pair)) continue;
             counted_.insert(pair);
-            if (++pairs_[pair] >= rules_.merge_count && alike(best, second)) merge(best, second);
+            if (++pairs_[pair] < rules_.merge_count || !alike(best, second)) continue;
+            const auto [low, high] = pair;
+            const bool low_remains = seen[low] >= seen[high];
+            merge(low_remains ? low : high, low_remains ? high : low);
+            seen[low] = seen[high] = seen[low] + seen[high];
         }
         discount();
         for (uint32_t& label : labels) label = root(label);
