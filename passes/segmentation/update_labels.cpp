@@ -14,6 +14,7 @@ void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapI
     pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
     pass.specialise("kVoxelChunks", map.chunks());
     labels.words = pass.modify("Words", labels.words);
+    labels.stamps = pass.modify("Stamps", labels.stamps);
     table.counters = pass.modify("Counters", table.counters);
     pass.dispatch_indirect(due.arguments);
 }

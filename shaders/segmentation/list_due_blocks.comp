@@ -7,7 +7,7 @@
 layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };  // count, then block ids
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
-layout(std430, binding = 2) buffer Stamps { uint stamps[]; };  // per block: of the frame that listed it last; 0: never
+layout(std430, binding = 2) buffer Stamps { uint stamps[]; };  // as LabelMapIds::stamps
 layout(std430, binding = 3) buffer Due { uint due[]; };
 layout(std430, binding = 4) buffer Arguments { uint arguments[]; };
 layout(push_constant) uniform Push { ListDueBlocksParams params; };
@@ -15,8 +15,9 @@ layout(push_constant) uniform Push { ListDueBlocksParams params; };
 void main() {
     if (gl_GlobalInvocationID.x >= visible[0]) return;
     const uint block = visible[1u + gl_GlobalInvocationID.x];
-    const uint turn = hash_of_key(block_keys[block]) % kUpdateFrames;
-    if (turn != params.stamp % kUpdateFrames && stamps[block] != 0u) return;
+    const uint known = stamps[block];
+    const uint frames = known >= kSettledBlock ? kSettledFrames : kUpdateFrames;
+    if (known != 0u && hash_of_key(block_keys[block]) % frames != params.stamp % frames) return;
     stamps[block] = params.stamp;
     const uint item = atomicAdd(due[0], 1u);
     due[1u + item] = block;

@@ -23,12 +23,14 @@ tsdf[kMaxVoxelChunks];
 layout(std430, binding = 13) buffer Words { uint words[]; }
 labels[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
+layout(std430, binding = 19) buffer Stamps { uint stamps[]; };  // as LabelMapIds::stamps
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
 const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
 
 shared uint voted;
 shared uint flipped;
+shared uint unsettled;  // voxels near the surface whose label is not known, not sure or was contradicted
 shared uint listed;
 shared uint list[kBlockVoxels];  // voxels near the surface, in any order: each is updated by itself
 
@@ -78,14 +80,14 @@ void main() {
     if (item >= due[0]) return;
     const uint block = due[1u + item];
     const uint lane = gl_LocalInvocationIndex;
-    if (lane == 0u) voted = flipped = listed = 0u;
+    if (lane == 0u) voted = flipped = listed = unsettled = 0u;
     barrier();
     list_near(block);
     barrier();
     const ivec3 corner = block_of_key(view.grid, block_keys[block]) * int(kBlockEdge);
     const uint first = index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels;
     const vec3 camera_m = camera_center_m(view.camera);
-    uint votes = 0u, flips = 0u;
+    uint votes = 0u, flips = 0u, open = 0u;
     for (uint i = lane; i < listed; i += kUpdateLabelsGroup) {
         const uint voxel = list[i];
         const ivec3 within = ivec3(voxel & 7u, voxel >> 3 & 7u, voxel >> 6);
@@ -95,12 +97,16 @@ void main() {
 #define LOAD_WORD(C) known = labels[C].words[first + voxel]
 #define STORE_WORD(C) labels[C].words[first + voxel] = known
         WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORD)
+        const uint before = known;
         known = updated(known, label, votes, flips);
+        open += known >> 16 < max(kSettledConfidence, before >> 16) ? 1u : 0u;
         WITH_CHUNK(view.grid.chunk_shift, block, STORE_WORD)
     }
     if (votes > 0u) atomicAdd(voted, votes);
     if (flips > 0u) atomicAdd(flipped, flips);
+    if (open > 0u) atomicAdd(unsettled, open);
     barrier();
+    if (lane == 0u && listed > 0u && unsettled == 0u) stamps[block] |= kSettledBlock;
     if (lane == 0u && voted > 0u) atomicAdd(counters.frame_voxels, voted);
     if (lane == 0u && flipped > 0u) atomicAdd(counters.frame_flips, flipped);
 }

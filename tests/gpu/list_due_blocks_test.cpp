@@ -98,6 +98,18 @@ TEST_F(ListDueBlocks, BlocksThatNeverWereListedAreDueAtOnce) {
     EXPECT_EQ(got.groups, glm::uvec3(gpu::kGroupsPerRow, 2, 1)) << "a group per block, in rows";
 }
 
+TEST_F(ListDueBlocks, BlocksThatHaveSettledHaveALongerTurn) {
+    const std::vector<uint32_t> visible = visible_blocks();
+    std::vector<uint32_t> stamps(kBlocks, 3 | gpu::kSettledBlock);
+    std::set<uint32_t> had_turn;
+    for (uint32_t stamp = 20; stamp < 20 + gpu::kSettledFrames; ++stamp) {
+        for (const uint32_t block : list(visible, stamps, stamp).blocks) {
+            EXPECT_TRUE(had_turn.insert(block).second) << block << " had two turns";
+        }
+    }
+    EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));
+}
+
 TEST_F(ListDueBlocks, NothingInViewIsAnEmptyList) {
     const Listed got = list({}, std::vector<uint32_t>(kBlocks), 20);
     EXPECT_TRUE(got.blocks.empty());

@@ -159,5 +159,30 @@ TEST_F(UpdateLabels, TheWallGetsItsLabelButNotBehindTheBall) {
     EXPECT_GT(hidden, 50u);
 }
 
+TEST_F(UpdateLabels, ABlockSettlesWhenAllItsVoxelsNearTheSurfaceAreSure) {
+    LabelRig rig(device(), runner());
+    std::vector<uint32_t> roots(LabelRig::kLabels);
+    std::iota(roots.begin(), roots.end(), 0u);
+    const Image<uint32_t> segment(LabelRig::camera().extent, 1);
+    const RigidTransform front(1.0);
+    const auto settled = [&] {
+        size_t count = 0;
+        for (const uint32_t stamp : rig.stamps()) count += stamp >= gpu::kSettledBlock ? 1 : 0;
+        return count;
+    };
+    const std::vector<uint32_t> no_stamps(LabelRig::kCapacity);
+    const size_t voxels = size_t{LabelRig::kCapacity} * gpu::kBlockVoxels;
+    for (const auto& [confidence, expected] :
+         {std::pair(gpu::kSettledConfidence - 2, false), {gpu::kSettledConfidence - 1, true}}) {
+        rig.set(std::vector<uint32_t>(voxels, label_word({5, confidence})), no_stamps);
+        update(rig, front, segment, {0, 5}, roots);
+        EXPECT_EQ(settled() > 10, expected) << confidence;
+    }
+    const size_t before = settled();
+    rig.set(std::vector<uint32_t>(voxels, label_word({5, 100})), no_stamps);
+    update(rig, front, segment, {0, 6}, roots);
+    EXPECT_LT(settled(), before / 2) << "contradicted, but for blocks out of sight";
+}
+
 }  // namespace
 }  // namespace patina
