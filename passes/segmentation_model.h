@@ -39,6 +39,7 @@ struct LabelStability {
 
     uint64_t voxels = 0;  ///< that segments voted on
     uint64_t flips = 0;   ///< of these
+    double seen = 0;      ///< voxels in sight that would be voted on if no block waited for its turn, about
     uint32_t frames = 0;  ///< all of them, the first ones too
 
     /// Counts a frame in.
@@ -46,6 +47,8 @@ struct LabelStability {
         if (++frames <= kFirstFrames || counters.frame_merged > 0) return;
         voxels += counters.frame_voxels;
         flips += counters.frame_flips;
+        if (counters.frame_due > 0)
+            seen += static_cast<double>(counters.frame_voxels) * counters.frame_seen / counters.frame_due;
     }
 };
 

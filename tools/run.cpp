@@ -195,6 +195,7 @@ class Run {
         record.totals.emplace_back("labels pruned", segments.pruned);
         record.totals.emplace_back("votes for labels of voxels after the first frames", stability.voxels);
         record.totals.emplace_back("of these, changes from one label to another", stability.flips);
+        record.totals.emplace_back("voxels in sight in these frames, about", static_cast<uint64_t>(stability.seen));
     }
 
     std::vector<std::string> warnings(const gpu::MapCounters& counters) {

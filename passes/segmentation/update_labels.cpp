@@ -12,7 +12,7 @@ void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapI
     pass.read("Due", due.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
     pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
     pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
-    pass.specialise("kVoxelChunks", map.chunks());
+    pass.read("Visible", surface.blocks).specialise("kVoxelChunks", map.chunks());
     labels.words = pass.modify("Words", labels.words);
     labels.stamps = pass.modify("Stamps", labels.stamps);
     table.counters = pass.modify("Counters", table.counters);

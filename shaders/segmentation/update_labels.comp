@@ -23,7 +23,8 @@ tsdf[kMaxVoxelChunks];
 layout(std430, binding = 13) buffer Words { uint words[]; }
 labels[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
-layout(std430, binding = 19) buffer Stamps { uint stamps[]; };  // as LabelMapIds::stamps
+layout(std430, binding = 19) readonly buffer Visible { uint visible[]; };  // count, then block ids
+layout(std430, binding = 20) buffer Stamps { uint stamps[]; };             // as LabelMapIds::stamps
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
 const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
@@ -77,6 +78,10 @@ void list_near(uint block) {
 
 void main() {
     const uint item = group_item(gl_WorkGroupID);
+    if (item == 0u && gl_LocalInvocationIndex == 0u) {
+        counters.frame_due = due[0];
+        counters.frame_seen = visible[0];
+    }
     if (item >= due[0]) return;
     const uint block = due[1u + item];
     const uint lane = gl_LocalInvocationIndex;

@@ -84,6 +84,8 @@ struct SegmentCounters {
     uint frame_merged;  // in this frame
     uint frame_voxels;  // voxels that this frame's segments voted on
     uint frame_flips;   // of these, how many went from one label to another
+    uint frame_due;     // blocks that had their turn in this frame
+    uint frame_seen;    // and those in sight
 };
 
 struct SegmentationParams {

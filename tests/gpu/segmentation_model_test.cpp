@@ -91,6 +91,7 @@ TEST_F(SegmentationModelTest, ACameraThatStandsStillSeesTheSameLabelsForGood) {
     const LabelStability& stability = reconstruction.label_stability();
     EXPECT_GT(stability.voxels, 0u);
     EXPECT_LT(stability.flips, stability.voxels / 500 + 1);
+    EXPECT_GE(stability.seen, static_cast<double>(stability.voxels)) << "not every block has its turn";
 }
 
 TEST_F(SegmentationModelTest, ASecondPassOverTheSamePathMakesNoLabels) {

@@ -83,6 +83,7 @@ std::vector<std::pair<uint32_t, uint32_t>> SegmentBook::joined(const std::vector
 void SegmentBook::merge(uint32_t into, uint32_t label) {
     live_[into].since = std::min(live_[into].since, live_[label].since);
     live_.erase(label);
+    ++merged_;
     retired_[label] = now_;
     merged_into_[label] = into;
 }
@@ -113,6 +114,7 @@ void SegmentBook::end_sweep(const std::map<uint32_t, uint32_t>& voxels) {
         const bool lost = now_ - age.since > rules_.sweep_frames && now_ - age.seen > rules_.prune_frames &&
                           (found == voxels.end() ? 0 : found->second) < rules_.prune_voxels;
         if (lost) retired_[label] = now_;
+        pruned_ += lost ? 1 : 0;
         it = lost ? live_.erase(it) : std::next(it);
     }
 }

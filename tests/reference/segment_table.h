@@ -53,6 +53,8 @@ class SegmentBook {
 
     bool live(uint32_t label) const { return live_.contains(label); }
     size_t live_labels() const { return live_.size(); }
+    uint32_t merged() const { return merged_; }
+    uint32_t pruned() const { return pruned_; }
     uint32_t root(uint32_t label) const;
 
   private:
@@ -67,7 +69,7 @@ class SegmentBook {
     void end_sweep(const std::map<uint32_t, uint32_t>& voxels);
 
     Rules rules_;
-    uint32_t now_ = 0;
+    uint32_t now_ = 0, merged_ = 0, pruned_ = 0;
     std::deque<uint32_t> free_;
     std::map<uint32_t, Age> live_;
     std::map<uint32_t, uint32_t> retired_;  ///< since when
