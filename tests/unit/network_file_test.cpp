@@ -183,7 +183,7 @@ TEST_F(NetworkFile, TensorsThatTheLayersDoNotAskForAreRefused) {
 
 TEST_F(NetworkFile, LayersThatCannotFollowOneAnotherAreRefused) {
     const auto erase = [](size_t layer) { return [=](TensorBytes&, json& list) { list["layers"].erase(layer); }; };
-    expect_error(erase(5), "layer 'full1' must come after the samples are pooled");
+    expect_error(erase(5), "full1.weight.shape is [7, 8], the list of layers asks for [7, 4]");
     expect_error(erase(1), "layer 'sample_pool' needs images of 1 pixel a side and gets 5");
     expect_error(
         [](TensorBytes&, json& list) {
