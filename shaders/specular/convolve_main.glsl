@@ -18,14 +18,13 @@ layout(constant_id = 7) const uint kQuadInputs = 4u;  // of a quad, that are use
 const uint kWindow = kTileWidth + kKernelSide - 1u;  // columns of the input that a tile's row needs
 
 vec4 sums[kTileImages * kTileHeight * kTileWidth];
-vec4 kernel[kKernelSide * 4u];  // a row of it: [kx][input of the quad]
+mat4 kernel[kKernelSide];  // a row of it, from a quad of inputs
 
-// The weights from a quad of inputs.
 void load_kernel(uint first) {
     [[unroll]] for (uint kx = 0u; kx < kKernelSide; ++kx) {
-        [[unroll]] for (uint c = 0u; c < kQuadInputs; ++c) {
-            kernel[kx * 4u + c] = WEIGHT(first + (kx * params.input_quads * 4u + c) * kOutputQuads);
-        }
+        const uint at = first + kx * params.input_quads * 4u * kOutputQuads;
+        kernel[kx] =
+            mat4(WEIGHT(at), WEIGHT(at + kOutputQuads), WEIGHT(at + 2u * kOutputQuads), WEIGHT(at + 3u * kOutputQuads));
     }
 }
 
@@ -34,7 +33,11 @@ void add_products(vec4 value, uint row, uint column) {
     [[unroll]] for (uint kx = 0u; kx < kKernelSide; ++kx) {
         if (column < kx || column >= kTileWidth + kx) continue;
         const uint at = row * kTileWidth + column - kx;
-        [[unroll]] for (uint c = 0u; c < kQuadInputs; ++c) sums[at] += value[c] * kernel[kx * 4u + c];
+        vec4 sum = sums[at] + value.x * kernel[kx][0];
+        if (kQuadInputs > 1u) sum += value.y * kernel[kx][1];
+        if (kQuadInputs > 2u) sum += value.z * kernel[kx][2];
+        if (kQuadInputs > 3u) sum += value.w * kernel[kx][3];
+        sums[at] = sum;
     }
 }
 
