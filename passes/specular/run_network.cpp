@@ -32,7 +32,7 @@ struct Step {
 
 uint32_t divided_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
-// Measured on lavapipe: more pixels spill more registers than they save loads.
+// Measured on lavapipe: fewer pixels load each weight more often; more gain nothing, as their code outgrows the caches.
 constexpr uint32_t kWidestTile = 16, kPixelsPerTile = 32, kMostImagesPerTile = 8;
 
 /// The tiles of a square of `side` pixels.
