@@ -70,10 +70,10 @@ std::string message_of(const json::exception& error) {
     return end == std::string::npos ? message : message.substr(end + 2);
 }
 
-json parse(const std::string& file, const std::vector<uint8_t>& bytes) {
+json parse_json(const std::string& file, std::span<const uint8_t> bytes) {
     Progress progress(file);
     try {
-        return json::parse(bytes, std::ref(progress));
+        return json::parse(bytes.begin(), bytes.end(), std::ref(progress));
     } catch (const json::out_of_range& error) {
         throw Error(file, " is not valid JSON: ", progress.key_path(), ": ", message_of(error));
     } catch (const json::exception& error) {
@@ -92,9 +92,10 @@ JsonValue JsonValue::part(std::string key, const json& value) const {
 
 std::string JsonValue::key_of(const std::string& member) const { return key_.empty() ? member : key_ + "." + member; }
 
-JsonValue JsonValue::read(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    return {std::make_shared<std::string>(name), "", std::make_shared<json>(parse(name, read_bytes(file)))};
+JsonValue JsonValue::read(const std::filesystem::path& file) { return parse(file.string(), read_bytes(file)); }
+
+JsonValue JsonValue::parse(const std::string& file, std::span<const uint8_t> bytes) {
+    return {std::make_shared<std::string>(file), "", std::make_shared<json>(parse_json(file, bytes))};
 }
 
 std::optional<JsonValue> JsonValue::find(const std::string& key) const {

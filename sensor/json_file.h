@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,10 @@ class JsonValue {
     /// Parses a file. Throws Error when it is missing or no JSON, when an object has the same key twice, or when a
     /// number is too large for a double.
     static JsonValue read(const std::filesystem::path& file);
+
+    /// Parses what is no file of its own, but for example the part of one; `file` names it in messages. Throws as
+    /// read().
+    static JsonValue parse(const std::string& file, std::span<const uint8_t> bytes);
 
     /// The member `key`. Throws Error when it is missing or this is no object.
     JsonValue at(const std::string& key) const;

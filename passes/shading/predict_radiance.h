@@ -33,7 +33,8 @@ struct PredictedImages {
         ks_alpha;        ///< W x H rgba16f: specular albedo and Ward roughness of the segment; 0 without a material
     graph::ImageId rgb;  ///< W x H rgba16f: linear pixel value; a is 1 where kd is known, else all is 0
     /// W x H rgba16f: what kd multiplies in rgb, the irradiance over pi with shadows and ambient term; a: the part of
-    /// the lamps' light that shadows leave, 0 on surfaces that face none; also where kd is not known.
+    /// the lamps' light that shadows leave, 0 on surfaces that face none, gpu::kNotMarched where no record around knows
+    /// it; also where kd is not known.
     graph::ImageId light;
 };
 

@@ -17,10 +17,11 @@ struct RestoreDetailInputs {
 /// Restores detail of the albedo that is finer than the observations' voxels, of which the finer voxels of the fused
 /// colour know: kd becomes the fused colour over the light, scaled such that its mean over the voxels around the point
 /// is the mean of kd there, so that light and highlights that change little within a voxel cancel out. Where kd is not
-/// known yet it becomes the fused colour over the light, which then is known. Where shadows end within that
-/// neighbourhood, where there is too little light, or where no colour was fused, kd stays; so do label, ks_alpha and
-/// light. Contrast no stronger than what shading and highlights may leave in the fused colours counts little. Returns
-/// the predicted images with kd and rgb replaced. Throws Error when extents differ.
+/// known yet it becomes the fused colour over the light, which then is known. Where no light was marched yet, rgb is
+/// the fused colour, as full light would shine in shadows. Where shadows end within that neighbourhood, where there is
+/// too little light, or where no colour was fused, kd stays; so do label, ks_alpha and light. Contrast no stronger than
+/// what shading and highlights may leave in the fused colours counts little. Returns the predicted images with kd and
+/// rgb replaced. Throws Error when extents differ.
 PredictedImages add_restore_detail(graph::Frame& frame, const PredictedImages& predicted,
                                    const RestoreDetailInputs& inputs);
 

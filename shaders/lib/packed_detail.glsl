@@ -9,7 +9,7 @@
 struct Detail {
     vec3 kd;
     vec3 apparent;  // fused colour over light: the albedo of what is evenly lit and has no highlight
-    float shadow;   // the part of the light that shadows leave
+    float shadow;   // the part of the light that shadows leave; below 0: not known
     bool lit;       // and its colour is known
     bool known;     // kd is
 };

@@ -25,8 +25,9 @@ layout(binding = 10, rgba16f) uniform writeonly image2D kd;        // a = 1 wher
 layout(binding = 11, r32ui) uniform writeonly uimage2D label;      // 0: none
 layout(binding = 12, rgba16f) uniform writeonly image2D ks_alpha;  // rgb, Ward roughness
 layout(std430, binding = 14) readonly buffer Segments { SegmentAlbedo segments[]; };
-layout(binding = 13, rgba16f) uniform writeonly image2D rgb;    // linear pixel value; a = 1 where kd is known
-layout(binding = 15, rgba16f) uniform writeonly image2D light;  // irradiance / pi; a: the part that shadows leave
+layout(binding = 13, rgba16f) uniform writeonly image2D rgb;  // linear pixel value; a = 1 where kd is known
+layout(binding = 15, rgba16f) uniform writeonly image2D
+    light;  // irradiance / pi; a: the part that shadows leave, kNotMarched where it is not known
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
@@ -96,7 +97,7 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
     const uvec4 content = PACKED(nearest.known == kNoRecord ? 0u : nearest.known);
     float marched = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) marched += share_of[i];
-    if (nearest.known != kNoRecord && marched == 0.0) {
+    if (packed_marched(content) && nearest.known != kNoRecord && marched == 0.0) {
         near_record[0] = nearest.known;
         share_of[0] = 1.0;
         visible_from[0] = uvec2(content.w, 0u);
@@ -104,14 +105,15 @@ Reflectance fill(SurfacePoint point, Reflectance found) {
     return filled(found, nearest, content);
 }
 
-// Makes the shares sum to 1. Where no light was marched yet, every light reaches the point.
-void normalise_shares() {
+// Makes the shares sum to 1. Where no light was marched yet, every light reaches the point; false.
+bool normalise_shares() {
     float all = 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) all += share_of[i];
     const float scale = all > 0.0 ? 1.0 / all : 0.0;
     [[unroll]] for (int i = 0; i < 8; ++i) share_of[i] *= scale;
     share_of[0] = all > 0.0 ? share_of[0] : 1.0;
     visible_from[0] = all > 0.0 ? visible_from[0] : uvec2(0xffffffffu);
+    return all > 0.0 || params.shadows == 0u;
 }
 
 // The share of the surface around the point that a light reaches.
@@ -188,12 +190,12 @@ void main() {
         gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
         found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
         if (kMostLights > kLightsOfOneWord) load_further_visibility();
-        normalise_shares();
+        const bool marched = normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
         const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss);
         known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
-        received = vec4(seen.light, seen.arrives);
+        received = vec4(seen.light, marched ? seen.arrives : kNotMarched);
     }
     imageStore(kd, pixel, known_kd);
     imageStore(label, pixel, uvec4(segment));

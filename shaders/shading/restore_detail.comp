@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Restores what of the diffuse albedo is finer than a voxel of the observations: the fused colour over the light,
-// scaled so that its mean over the voxels around the point is that of kd.
+// scaled so that its mean over the voxels around the point is that of kd. Where no light was marched yet, what is seen
+// is the fused colour.
 #include "lib/packed_detail.glsl"
 #include "shared/restore_detail.h"
 
@@ -45,7 +46,7 @@ vec3 restored(ivec2 pixel, vec4 hit, Detail own) {
                               abs(dot(away_m, facing)) < kOffPlaneVox * params.voxel_m;
             if (!near) continue;
             const Detail tap = unpack_detail(imageLoad(detail, at));
-            if (!tap.lit || !tap.known) continue;
+            if (!tap.lit || !tap.known || tap.shadow < 0.0) continue;
             const float share = exp(-2.0 * dot(away_m, away_m) / (reach_m * reach_m));
             sum_kd += share * tap.kd;
             sum_apparent += share * tap.apparent;
@@ -70,11 +71,12 @@ void main() {
     if (any(greaterThanEqual(pixel, imageSize(detail)))) return;
     const vec4 hit = imageLoad(position_m, pixel), shaded = imageLoad(rgb, pixel);
     const Detail own = unpack_detail(imageLoad(detail, pixel));
+    const bool lit = hit.w > 0.0 && own.lit, marched = own.shadow >= 0.0;
     vec4 detailed = vec4(own.kd, own.known ? 1.0 : 0.0);
-    if (hit.w > 0.0 && own.lit) {
-        detailed = vec4(own.known ? restored(pixel, hit, own) : min(own.apparent, vec3(1.0)), 1.0);
-    }
+    if (lit && !own.known) detailed = vec4(min(own.apparent, vec3(1.0)), 1.0);
+    if (lit && own.known && marched) detailed.rgb = restored(pixel, hit, own);
+    const vec3 received = imageLoad(light, pixel).rgb;
+    const vec3 relit = shaded.rgb + (detailed.rgb - own.kd) * received;
     imageStore(detailed_kd, pixel, detailed);
-    imageStore(detailed_rgb, pixel,
-               vec4(shaded.rgb + (detailed.rgb - own.kd) * imageLoad(light, pixel).rgb, detailed.a));
+    imageStore(detailed_rgb, pixel, vec4(lit && !marched ? own.apparent * received : relit, detailed.a));
 }

@@ -7,6 +7,7 @@ INTEROP_BEGIN
 INTEROP_CONST uint kPredictGroupX = 32u;
 INTEROP_CONST uint kPredictGroupY = 4u;
 INTEROP_CONST uint kFewLights = 4u;         // up to as many are shaded without a loop
+INTEROP_CONST float kNotMarched = -1.0f;    // for the part of the light that shadows leave: it is not known
 INTEROP_CONST uint kLightsOfOneWord = 32u;  // a packed record holds the visibility of as many
 
 struct IndexRecordsParams {

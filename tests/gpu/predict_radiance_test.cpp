@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "shared/predict_radiance.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/shading_rig.h"
 
@@ -198,7 +199,11 @@ TEST_F(PredictRadiance, LightsThatWereNotMarchedYetReachTheSurface) {
     });
     const ShadedView view = rig.predict(ShadingRig::camera(), kPose),
                      without = rig.predict(ShadingRig::camera(), kPose, false);
-    for_each_hit(view, 8, [&](uint32_t x, uint32_t y) { ASSERT_EQ(view.rgb.at(x, y), without.rgb.at(x, y)); });
+    for_each_hit(view, 8, [&](uint32_t x, uint32_t y) {
+        ASSERT_EQ(view.rgb.at(x, y), without.rgb.at(x, y));
+        ASSERT_EQ(view.light.at(x, y).a, gpu::kNotMarched) << "and says so";
+        ASSERT_EQ(without.light.at(x, y).a, 1) << "the paper's model knows of no shadows";
+    });
 }
 
 TEST_F(PredictRadiance, WhatNoRecordKnowsIsWhatTheRestOfTheSegmentHas) {

@@ -6,6 +6,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "shared/predict_radiance.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/restore_detail.h"
 
@@ -122,6 +123,22 @@ TEST_F(RestoreDetail, WhatIsNotKnownYetTakesItsColourOverTheLight) {
     EXPECT_EQ(restore(view).kd.at(20, 20), glm::vec4(0));
 }
 
+TEST_F(RestoreDetail, WhereNoLightWasMarchedTheFusedColourIsSeen) {
+    DetailView view = striped_wall(kExtent);
+    for (uint32_t y = 0; y < kExtent.height; ++y) {
+        for (uint32_t x = 0; x < kExtent.width; ++x) {
+            view.rgb.at(x, y) = glm::dvec4(glm::dvec3(view.light.at(x, y)) * glm::dvec3(view.kd.at(x, y)), 1);
+            if (x < 30) view.light.at(x, y).a = gpu::kNotMarched;
+        }
+    }
+    const Result got = restore(view);
+    for (uint32_t x = 8; x < 30; ++x) {
+        EXPECT_LT(off(got.rgb.at(x, 20), glm::dvec3(view.color.at(x, 20))), 1e-3) << x;
+        EXPECT_LT(off(got.kd.at(x, 20), view.kd.at(x, 20)), 1e-3) << "kd is known: " << x;
+    }
+    EXPECT_GT(off(got.kd.at(31, 20), view.kd.at(31, 20)), 0.01) << "of what is lit around there is detail";
+}
+
 TEST_F(RestoreDetail, AgreesWithTheReference) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(0, 1);
@@ -134,7 +151,7 @@ TEST_F(RestoreDetail, AgreesWithTheReference) {
             };
             view.position_m.pixels()[i].z += 0.02 * any(random);
             view.color.pixels()[i] = {varied(0, 0.6), any(random) < 0.9 ? 1 : 0};
-            view.light.pixels()[i] = {varied(0, 1), 0.9 + 0.1 * any(random)};
+            view.light.pixels()[i] = {varied(0, 1), any(random) < 0.1 ? -1 : 0.9 + 0.1 * any(random)};
             view.kd.pixels()[i] = any(random) < 0.9 ? glm::dvec4(varied(0.1, 0.7), 1) : glm::dvec4(0);
             view.rgb.pixels()[i] = {varied(0.5, 1), view.kd.pixels()[i].a};
             view.ks_alpha.pixels()[i] = {varied(0, 0.1), 0.2};

@@ -80,6 +80,25 @@ TEST_F(SharpenNormals, EachSideOfAnEdgeHasItsOwnFacesNormal) {
     }
 }
 
+TEST_F(SharpenNormals, AFlatFaceKeepsItsNormalUpToItsEdge) {
+    // Normals bent by up to 30 degrees within 8 mm of the edge: too little to be another face's.
+    const double bent_m = 0.008;
+    const SeenSurface seen = surface(
+        kExtent, [](double x, double) { return 2 + std::abs(x); },
+        [&](double x, double) {
+            const double bend = glm::radians(30.0) * std::max(1 - std::abs(x) / bent_m, 0.0);
+            const double angle = glm::radians(45.0) - bend;
+            return glm::dvec3((x < 0 ? -1 : 1) * std::sin(angle), 0, -std::cos(angle));
+        });
+    ASSERT_GT(degrees_between(seen.normal.at(30, 20), face_normal(-1)), 20) << "bent beside the edge";
+    const Image<glm::dvec3> sharp = sharpen(seen);
+    for (uint32_t y = 6; y + 6 < kExtent.height; ++y) {
+        for (uint32_t x = 6; x + 6 < kExtent.width; ++x) {
+            ASSERT_LT(degrees_between(sharp.at(x, y), face_normal(seen.position_m.at(x, y).x)), 2.5) << x << ' ' << y;
+        }
+    }
+}
+
 TEST_F(SharpenNormals, CurvedFacesStayAsTheyAre) {
     constexpr double kRadiusM = 0.06;
     const auto height = [&](double x, double y) {

@@ -132,7 +132,8 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
         const glm::dvec3 offset = scene.lights[i].position_m - point_m;
         const glm::dvec3 to_light = glm::normalize(offset);
         double lit = 1;
-        if (scene.shadows) lit = share_lit(around, i).value_or(fill ? double(fill->reached >> i & 1) : 1);
+        if (scene.shadows)
+            lit = share_lit(around, i).value_or(fill && fill->marched ? double(fill->reached >> i & 1) : 1);
         const Ward material{result.kd, result.gloss.ks, std::max(result.gloss.alpha, 0.01)};
         const glm::dvec3 facing = scene.lights[i].intensity / glm::dot(offset, offset);
         result.rgb += lit * ward(material, normal, to_light, glm::normalize(viewer_m - point_m)) * facing *

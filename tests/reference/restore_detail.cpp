@@ -46,7 +46,7 @@ std::vector<Neighbour> neighbours(const DetailView& view, Pixel p) {
             const glm::dvec3 away = glm::dvec3(there) - glm::dvec3(hit);
             const double off_plane = std::abs(glm::dot(away, glm::dvec3(view.normal.at(p.x, p.y))));
             if (there.w <= 0 || glm::length(away) >= 2 * view.voxel_m || off_plane >= view.voxel_m / 2) continue;
-            if (!is_lit(view, q) || view.kd.at(q.x, q.y).a == 0) continue;
+            if (!is_lit(view, q) || view.kd.at(q.x, q.y).a == 0 || view.light.at(q.x, q.y).a < 0) continue;
             found.push_back({std::exp(-2 * glm::dot(away, away) / (view.voxel_m * view.voxel_m)),
                              glm::dvec3(view.kd.at(q.x, q.y)), apparent(view, q), view.light.at(q.x, q.y).a});
         }
@@ -88,10 +88,17 @@ Detailed restore_detail(const DetailView& view) {
             if (view.position_m.at(x, y).w <= 0 || !is_lit(view, p)) continue;
             const glm::dvec3 before(view.kd.at(x, y));
             const bool known = view.kd.at(x, y).a > 0;
-            const glm::dvec3 kd = known ? restored(view, p) : glm::min(apparent(view, p), 1.0);
+            const bool marched = view.light.at(x, y).a >= 0;
+            glm::dvec3 kd = before;
+            if (!known)
+                kd = glm::min(apparent(view, p), 1.0);
+            else if (marched)
+                kd = restored(view, p);
             const glm::dvec3 added = (kd - before) * glm::dvec3(view.light.at(x, y));
+            const glm::dvec3 rgb =
+                glm::dvec3(marched ? view.rgb.at(x, y) : view.color.at(x, y)) + (marched ? added : glm::dvec3(0));
             result.kd.at(x, y) = glm::dvec4(kd, 1);
-            result.rgb.at(x, y) = glm::dvec4(glm::dvec3(view.rgb.at(x, y)) + added, 1);
+            result.rgb.at(x, y) = glm::dvec4(rgb, 1);
         }
     }
     return result;

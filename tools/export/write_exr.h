@@ -45,7 +45,7 @@ struct FrameDump {
     Image<glm::vec3> kd_segment{};   ///< diffuse albedo of the whole segment: before refinement
     Image<glm::vec3> rgb_segment{};  ///< rgb as kd_segment gives it
     Image<float> label{};            ///< segment or object, a whole number; 0 = none
-    Image<float> visibility{};       ///< of the lamps' light, the part that shadows leave; 0 where none shines
+    Image<float> visibility{};  ///< of the lamps' light, the part that shadows leave; 0 where none shines, -1 unknown
 };
 
 /// The channels of a frame: rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid, and those of kd, ks, alpha,

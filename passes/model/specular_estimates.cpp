@@ -1,0 +1,20 @@
+#include "passes/model/specular_estimates.h"
+
+namespace patina {
+
+SpecularEstimates::SpecularEstimates(vulkan::Device& device, uint32_t labels)
+    : labels_(labels),
+      means_(device.create_buffer({"specular.means", labels * sizeof(gpu::PerceptualMaterial)})),
+      materials_(device.create_buffer({"specular.materials", labels * sizeof(gpu::WardMaterial)})) {}
+
+void SpecularEstimates::reset(graph::Frame& frame) const {
+    frame.keep(frame.fill(frame.import(means_), 0));
+    frame.keep(frame.fill(frame.import(materials_), 0));
+}
+
+void SpecularEstimates::keep(graph::Frame& frame, const SpecularEstimateIds& ids) {
+    frame.keep(ids.means);
+    frame.keep(ids.materials);
+}
+
+}  // namespace patina

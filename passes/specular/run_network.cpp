@@ -1,0 +1,137 @@
+#include "passes/specular/run_network.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "shared/network.h"
+#include "spirv/shaders.h"
+
+namespace patina {
+
+namespace {
+
+/// The pixels that an invocation of a convolution computes a quad of channels of.
+struct Tile {
+    uint32_t width = 1;
+    uint32_t height = 1;
+    uint32_t images = 1;
+    uint32_t per_row = 1;  ///< as many side by side
+    uint32_t rows = 1;
+};
+
+/// One dispatch: a layer, or a convolution with the pooling that follows it.
+struct Step {
+    LayerKind kind = LayerKind::kConv;
+    bool max_pooled = false;  ///< a convolution
+    Tile tile{};
+    uint32_t quad_inputs = 4;  ///< that are used of each quad
+    gpu::LayerParams params{};
+    gpu::BatchWork work{};
+    uint64_t output_quads = 0;  ///< per segment
+};
+
+uint32_t divided_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
+
+// Measured on lavapipe: fewer pixels load each weight more often; more gain nothing, as their code outgrows the caches.
+constexpr uint32_t kWidestTile = 16, kPixelsPerTile = 32, kMostImagesPerTile = 8;
+
+/// The tiles of a square of `side` pixels.
+Tile tile_for(uint32_t side, bool max_pooled) {
+    const uint32_t least = divided_up(side, divided_up(side, kWidestTile));
+    const uint32_t height = max_pooled ? 2 : 1, width = divided_up(least, height) * height;
+    const uint32_t images = std::clamp(kPixelsPerTile / (width * height), 1u, kMostImagesPerTile);
+    return {width, height, images, divided_up(side, width), divided_up(side, height)};
+}
+
+uint64_t quads_in_segment(const ActivationShape& shape) {
+    return uint64_t{shape.images} * shape.side * shape.side * quads_of(shape);
+}
+
+/// Layers `first` to `last` of a network in one dispatch.
+Step make_step(const Network& network, size_t first, size_t last, uint32_t capacity) {
+    const ActivationShape &before = network.shapes()[first], &after = network.shapes()[last + 1];
+    const NetworkLayer& layer = network.description().layers[first];
+    Step step{layer.kind, last > first};
+    const Network::Place place = network.place(first);
+    gpu::LayerParams& params = step.params;
+    params = {before.images, before.side,  after.side,           layer.pad, quads_of(before), quads_of(after),
+              place.weights, place.biases, layer.relu ? 1u : 0u, capacity};
+    step.output_quads = quads_in_segment(after);
+    step.work = {before.images, 1, after.side * after.side * params.output_quads, 1};
+    if (layer.kind == LayerKind::kSamplePool) step.work = {1, 1, params.input_quads, 1};
+    if (layer.kind != LayerKind::kConv) return step;
+    const uint32_t computed = step.max_pooled ? 2 * after.side : after.side;
+    step.quad_inputs = std::min(before.channels, 4u);
+    step.tile = tile_for(computed, step.max_pooled);
+    step.work = {before.images, step.tile.images, step.tile.per_row * step.tile.rows * params.output_quads, 1};
+    return step;
+}
+
+std::vector<Step> plan(const Network& network, uint32_t capacity) {
+    const std::vector<NetworkLayer>& layers = network.description().layers;
+    std::vector<Step> steps;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const bool pooled =
+            layers[i].kind == LayerKind::kConv && i + 1 < layers.size() && layers[i + 1].kind == LayerKind::kMaxPool;
+        steps.push_back(make_step(network, i, i + pooled, capacity));
+        i += pooled;
+    }
+    return steps;
+}
+
+void check_images(const Network& network, uint32_t capacity, uint64_t bytes) {
+    const uint64_t needed = uint64_t{capacity} * quads_in_segment(network.shapes().front()) * 16;
+    if (bytes >= needed) return;
+    throw Error("the pass 'specular.run_network' has images of ", bytes, " bytes, a batch of ", capacity,
+                " segments takes ", needed);
+}
+
+const vulkan::Shader& shader_of(LayerKind kind, bool texel) {
+    switch (kind) {
+        case LayerKind::kConv: return texel ? spirv::convolve_texel : spirv::convolve;
+        case LayerKind::kMaxPool: return spirv::max_pool;
+        case LayerKind::kSamplePool: return spirv::pool_samples;
+        case LayerKind::kFull: break;
+    }
+    return texel ? spirv::connect_texel : spirv::connect;
+}
+
+}  // namespace
+
+MapAccess preferred_network_access(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity) {
+    uint64_t most = network.bytes() / 16;
+    for (const ActivationShape& shape : network.shapes()) most = std::max(most, capacity * quads_in_segment(shape));
+    return caps.software() && most <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage;
+}
+
+graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
+                                const SegmentBatch& batch, MapAccess access) {
+    const std::vector<Step> steps = plan(network, batch.capacity);
+    check_images(network, batch.capacity, frame.bytes(images));
+    if (steps.empty()) return images;
+    std::vector<gpu::BatchWork> work;
+    for (const Step& step : steps) work.push_back(step.work);
+    const graph::BufferId arguments = add_plan_batch(frame, batch, work);
+
+    const graph::BufferId weights = network.import(frame);
+    graph::BufferId activations = images;
+    for (size_t i = 0; i < steps.size(); ++i) {
+        const Step& step = steps[i];
+        const vulkan::Shader& shader = shader_of(step.kind, access == MapAccess::kTexel);
+        auto pass = frame.compute(text(shader.name, "_", i + 1), shader);
+        pass.read("Batch", batch.list).read("Inputs", activations).push(step.params);
+        if (shader.find_binding("Weights")) pass.read("Weights", weights);
+        if (step.kind == LayerKind::kConv) {
+            pass.specialise("kTileWidth", step.tile.width).specialise("kTileHeight", step.tile.height);
+            pass.specialise("kTileImages", step.tile.images).specialise("kPooled", step.max_pooled);
+            pass.specialise("kTilesPerRow", step.tile.per_row).specialise("kTileRows", step.tile.rows);
+            pass.specialise("kOutputQuads", step.params.output_quads);
+            pass.specialise("kQuadInputs", step.quad_inputs);
+        }
+        activations = pass.create("Outputs", batch.capacity * step.output_quads * 16);
+        pass.dispatch_indirect(arguments, i * sizeof(glm::uvec4));
+    }
+    return activations;
+}
+
+}  // namespace patina

@@ -1,0 +1,5 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Convolution with activations and weights in storage buffers, as every device can bind them.
+#include "specular/convolve_main.glsl"
