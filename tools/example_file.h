@@ -10,7 +10,7 @@
 
 namespace patina::tools {
 
-/// What precedes the examples of a file; docs/specular.md tells the format.
+/// What precedes the examples of a file; docs/training.md tells the format.
 struct ExampleFileHeader {
     char magic[8] = {'P', 'A', 'T', 'H', 'E', 'M', 'I', '\0'};
     uint32_t version = 1;

@@ -20,6 +20,11 @@ struct ExampleRenderer::Inputs {
     }
 };
 
+/// What cameras see of them.
+struct ExampleRenderer::Shaded {
+    graph::BufferId readings, exposures;
+};
+
 namespace {
 
 /// One member of all scenes, side by side.
@@ -77,8 +82,8 @@ void ExampleRenderer::keep_all_voxels() {
     runner_.submit(std::move(frame));
 }
 
-graph::BufferId ExampleRenderer::add_shade(graph::Frame& frame, const Inputs& inputs, const gpu::ExampleParams& params,
-                                           ObservationMapIds& ids) {
+ExampleRenderer::Shaded ExampleRenderer::add_shade(graph::Frame& frame, const Inputs& inputs,
+                                                   const gpu::ExampleParams& params, ObservationMapIds& ids) {
     const uint32_t voxels = params.scenes * gpu::kExampleVoxels;
     const uint32_t groups = (voxels + gpu::kExampleGroup - 1) / gpu::kExampleGroup;
     auto start = frame.compute("synthetic.start_examples", spirv::start_examples);
@@ -99,7 +104,7 @@ graph::BufferId ExampleRenderer::add_shade(graph::Frame& frame, const Inputs& in
     const graph::BufferId readings =
         shade.create("Readings", uint64_t{gpu::kExampleViews} * voxels * sizeof(gpu::ExampleReading));
     shade.dispatch(groups, gpu::kExampleViews);
-    return readings;
+    return {readings, exposures};
 }
 
 void ExampleRenderer::add_insert(graph::Frame& frame, graph::BufferId readings, uint32_t scenes, uint32_t view,
@@ -140,8 +145,8 @@ RenderedExamples ExampleRenderer::submit(uint64_t seed, uint64_t first, std::spa
     params.scenes = count;
     params.min_cosine = observation_params(map_).min_cosine;
     ObservationMapIds ids = map_.import(frame);
-    const graph::BufferId readings = add_shade(frame, inputs, params, ids);
-    for (uint32_t view = 0; view < gpu::kExampleViews; ++view) add_insert(frame, readings, count, view, ids);
+    const Shaded shaded = add_shade(frame, inputs, params, ids);
+    for (uint32_t view = 0; view < gpu::kExampleViews; ++view) add_insert(frame, shaded.readings, count, view, ids);
 
     std::vector<uint32_t> list(1 + count);
     std::iota(list.begin(), list.end(), 0u);
@@ -154,8 +159,11 @@ RenderedExamples ExampleRenderer::submit(uint64_t seed, uint64_t first, std::spa
     const uint32_t words = count * gpu::kExampleHalves / 2;
     const graph::BufferId halves = pack.create("Halves", uint64_t{words} * sizeof(uint32_t));
     pack.dispatch_covering(words);
-    RenderedExamples rendered{frame.read_back(halves), frame.read_back(images.drawn), {}};
-    if (keep_readings_) rendered.readings = frame.read_back(readings);
+    RenderedExamples rendered{frame.read_back(halves), frame.read_back(images.drawn)};
+    if (keep_readings_) {
+        rendered.readings = frame.read_back(shaded.readings);
+        rendered.exposures = frame.read_back(shaded.exposures);
+    }
     runner_.submit(std::move(frame));
     return rendered;
 }

@@ -14,9 +14,11 @@ namespace patina::tools {
 
 /// HemiImages of a batch of scenes, on their way from the device.
 struct RenderedExamples {
-    graph::Readback halves;    ///< u16[scene][gpu::kExampleHalves]: fp16, [sample][y][x][channel], then one of padding
-    graph::Readback drawn;     ///< u32[scene][gpu::kHemiSamples]; gpu::kNoRecord where no voxel was seen often enough
-    graph::Readback readings;  ///< gpu::ExampleReading[view][scene][voxel]; empty unless asked for
+    graph::Readback halves;  ///< u16[scene][gpu::kExampleHalves]: fp16, [sample][y][x][channel], then one of padding
+    graph::Readback drawn;   ///< u32[scene][gpu::kHemiSamples]; gpu::kNoRecord where no voxel was seen often enough
+    // For tests, empty unless asked for:
+    graph::Readback readings{};   ///< gpu::ExampleReading[view][scene][voxel]
+    graph::Readback exposures{};  ///< float[scene]: linear pixel value per radiance
 };
 
 /// Renders example scenes through the pipeline's own passes: readings become observations by the insertion of
@@ -33,9 +35,10 @@ class ExampleRenderer {
 
   private:
     struct Inputs;
+    struct Shaded;
     void keep_all_voxels();
-    graph::BufferId add_shade(graph::Frame& frame, const Inputs& inputs, const gpu::ExampleParams& params,
-                              ObservationMapIds& ids);
+    Shaded add_shade(graph::Frame& frame, const Inputs& inputs, const gpu::ExampleParams& params,
+                     ObservationMapIds& ids);
     void add_insert(graph::Frame& frame, graph::BufferId readings, uint32_t scenes, uint32_t view,
                     ObservationMapIds& ids);
 

@@ -17,7 +17,7 @@ struct SynthHemiOptions {
     bool quiet = false;
 };
 
-/// Writes a file of labelled HemiImages (docs/specular.md): the same for a seed on the same device. The file appears
+/// Writes a file of labelled HemiImages (docs/training.md): the same for a seed on the same device. The file appears
 /// whole or not at all. Throws Error when it exists or cannot be written; Interrupted when the user stops it.
 void synthesise_hemi_images(vulkan::Device& device, const SynthHemiOptions& options);
 

@@ -10,7 +10,7 @@
 
 namespace patina::sensor {
 
-/// A scene that shows one segment, for training: docs/specular.md tells what is drawn from what.
+/// A scene that shows one segment, for training: docs/training.md tells what is drawn from what.
 struct ExampleScene {
     gpu::ExampleScene scene{};
     std::array<gpu::PointLight, gpu::kExampleLamps> lamps{};

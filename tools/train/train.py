@@ -23,7 +23,7 @@ from examples import Batches
 from hemi_network import HemiNetwork, description, loss, loss_weights
 from tensor_file import write_tensors
 
-WARM_UP = 300  # steps over which the learning rate rises
+WARM_UP = 300  # steps at most, over which the learning rate rises
 
 
 def arguments():
@@ -46,6 +46,7 @@ def arguments():
     add("--checkpoint-every", type=int, default=500, help="steps")
     add("--validate-every", type=int, default=1000, help="steps, on a part of the validation file")
     add("--threads", type=int, default=1, help="of a process on a CPU")
+    add("--export-only", action="store_true", help="report and export what the checkpoint holds; trains nothing")
     return parser.parse_args()
 
 
@@ -103,7 +104,7 @@ class Training:
     def rate(self):
         share = min(self.step / self.steps(), 1)
         cosine = 0.01 + 0.99 * (0.5 + 0.5 * math.cos(math.pi * share))
-        return self.options.rate * cosine * min((self.step + 1) / WARM_UP, 1)
+        return self.options.rate * cosine * min((self.step + 1) / min(WARM_UP, 1 + self.steps() / 10), 1)
 
     def learn(self, images, w, random):
         """One step; its loss."""
@@ -146,10 +147,19 @@ def commit():
         return "unknown"
 
 
+def check_outputs(network, examples=2):
+    """What the network makes of images that anyone can make up again: value i, of all in their order, is the upper 12
+    bits of i * 2654435761 modulo 2^32, over 4096."""
+    shape = (examples, SAMPLES, SIDE, SIDE, 3)
+    values = (np.arange(np.prod(shape), dtype=np.uint64) * 2654435761 % 2**32 >> 20) / 4096
+    with torch.no_grad():
+        return network(torch.from_numpy(values.astype(np.float32).reshape(shape))).double().tolist()
+
+
 def export(training, w):
     """Weights and how they came about."""
     options = training.options
-    kd_ks_alpha = validate.table(w, training.truth)[1]
+    figures = validate.table(w, training.truth)[1]
     metadata = {
         "network": description(options.map),
         "commit": commit(),
@@ -162,7 +172,8 @@ def export(training, w):
                                 "average": options.average, "of": options.examples}),
         "losses": json.dumps({"training": training.history[-1][1] if training.history else None,
                               "validation": training.loss_of(w)}),
-        "mean_absolute_errors": json.dumps(kd_ks_alpha),
+        "mean_absolute_errors": json.dumps(figures),
+        "check": json.dumps(check_outputs(training.averaged().cpu())),
     }
     write_tensors(options.export, training.averaged().tensors(), metadata)
 
@@ -208,7 +219,8 @@ def main():
     try:
         training = Training(options)
         training.resume()
-        train(training)
+        if not options.export_only:
+            train(training)
         finish(training)
     except ExampleFileError as error:
         sys.exit(f"train.py: {error}")
