@@ -137,15 +137,18 @@ TEST_F(ExampleRendererTest, LampsShineAsWardSays) {
                 const double cosine = glm::dot(glm::normalize(way), glm::dvec3(voxel.normal));
                 const gpu::ExampleReading& reading = result.at(k, s, v);
                 const bool seen = k < scenes[s].scene.views && cosine >= std::cos(glm::radians(80.0));
-                if (std::abs(cosine - std::cos(glm::radians(80.0))) > 1e-4) ASSERT_EQ(reading.to_viewer.w == 1, seen);
+                if (std::abs(cosine - std::cos(glm::radians(80.0))) > 1e-4) {
+                    ASSERT_EQ(reading.to_viewer.w == 1, seen);
+                }
                 if (reading.to_viewer.w == 0) continue;
                 const glm::dvec3 value =
                     under_lamps(scenes[s], voxel, glm::normalize(way)) * double{result.exposures[s]};
                 for (int c = 0; c < 3; ++c) {
                     // fp32 may land on the neighbouring code.
                     EXPECT_NEAR(reading.rgb[c], quantised(value[c]), 0.0095) << s << ", " << v << ", view " << k;
-                    if (std::abs(value[c] - 1) > 0.01)
-                        EXPECT_EQ(static_cast<uint32_t>(reading.rgb.w) >> c & 1, value[c] > 1);
+                    if (std::abs(value[c] - 1) > 0.01) {
+                        EXPECT_EQ((static_cast<uint32_t>(reading.rgb.w) >> c & 1u) != 0, value[c] > 1);
+                    }
                 }
                 dark += value.g < 1e-6 ? 1 : 0;
                 ++compared;
