@@ -30,28 +30,22 @@ def description(hemisphere_map):
 
 
 class HemiNetwork(nn.Module):
-    """Images [example][sample][y][x][channel] to w [example][7]. While it is trained, what convolutions give is
-    normalised over the batch, without which it takes several times as long; plain() makes that a part of their weights.
-    """
+    """Images [example][sample][y][x][channel] to w [example][7]."""
 
-    def __init__(self, normalised=False):
+    def __init__(self):
         super().__init__()
-        self.normalised = normalised
         channels = CHANNELS
         for layer in LAYERS:
             if layer["kind"] == "sample_pool":
                 channels *= 2
             if layer["kind"] == "conv":
                 self.add_module(layer["name"], nn.Conv2d(channels, layer["outputs"], 3, padding=layer["pad"]))
-                if normalised:
-                    self.add_module(layer["name"] + "_norm", nn.BatchNorm2d(layer["outputs"]))
             if layer["kind"] == "full":
                 self.add_module(layer["name"], nn.Linear(channels, layer["outputs"]))
             channels = layer.get("outputs", channels)
         for module in self.children():
-            if not isinstance(module, nn.BatchNorm2d):
-                nn.init.kaiming_normal_(module.weight, nonlinearity="relu")
-                nn.init.zeros_(module.bias)
+            nn.init.kaiming_normal_(module.weight, nonlinearity="relu")
+            nn.init.zeros_(module.bias)
         with torch.no_grad():  # estimates begin near the middle of what materials there are
             self.full3.weight *= 0.1
             self.full3.bias[:] = torch.tensor([0.5, 0, 0, 0.1, 0.1, 0.1, 0.8])
@@ -67,26 +61,11 @@ class HemiNetwork(nn.Module):
                 values = torch.cat((values.mean(dim=1), values.amax(dim=1)), dim=1)
             else:
                 values = getattr(self, layer["name"])(values)
-                if self.normalised and layer["kind"] == "conv":
-                    values = getattr(self, layer["name"] + "_norm")(values)
                 values = torch.relu(values) if layer["relu"] else values
         return values
 
-    def plain(self):
-        """The same function without normalisation: the network of the weight file."""
-        result = HemiNetwork().to(self.full3.weight.device)
-        state = {name: values.clone() for name, values in self.state_dict().items() if "_norm" not in name}
-        for layer in LAYERS if self.normalised else ():
-            if layer["kind"] == "conv":
-                name, norm = layer["name"], getattr(self, layer["name"] + "_norm")
-                factor = norm.weight / torch.sqrt(norm.running_var + norm.eps)
-                state[name + ".weight"] = state[name + ".weight"] * factor[:, None, None, None]
-                state[name + ".bias"] = (state[name + ".bias"] - norm.running_mean) * factor + norm.bias
-        result.load_state_dict(state)
-        return result
-
     def tensors(self):
-        """Weights and biases by the names of the weight file; of a plain network."""
+        """Weights and biases by the names of the weight file."""
         return {name: values.detach().cpu().numpy() for name, values in self.state_dict().items()}
 
 

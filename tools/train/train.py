@@ -62,7 +62,7 @@ class Training:
         if self.ranks > 1:
             torch.distributed.init_process_group("nccl" if self.device.type == "cuda" else "gloo")
         torch.manual_seed(options.seed)
-        self.network = HemiNetwork(normalised=True).to(self.device)
+        self.network = HemiNetwork().to(self.device)
         self.mean = {name: values.clone() for name, values in self.network.state_dict().items()}
         self.parallel = torch.nn.parallel.DistributedDataParallel(self.network) if self.ranks > 1 else self.network
         self.adam = torch.optim.Adam(self.network.parameters(), lr=options.rate)
@@ -120,16 +120,15 @@ class Training:
         # Shorter at first, when the mean would be that of the start.
         share = max(1 - self.options.average, 1 / (self.step + 2))
         for name, values in self.network.state_dict().items():
-            if values.is_floating_point():
-                self.mean[name].lerp_(values, share)
+            self.mean[name].lerp_(values, share)
         self.step += 1
         return float(value.detach())
 
     def averaged(self):
-        """A plain network with the running mean of weights."""
-        network = HemiNetwork(normalised=True).to(self.device)
+        """A network with the running mean of weights."""
+        network = HemiNetwork().to(self.device)
         network.load_state_dict(self.mean)
-        return network.plain()
+        return network
 
     def estimates(self, most=None):
         return validate.estimates(self.averaged(), self.held_out[:most], self.device)
