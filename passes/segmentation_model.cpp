@@ -103,7 +103,8 @@ void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& m
     add_relabel_records(frame, map, records, table_.import(frame), uniforms);
     if (!samples_are_due(frame_index, settings_.sample_every)) return;
     SegmentSampleIds ids = samples_.import(frame);
-    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations, settings_.sample_seed);
+    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations,
+                       settings_.sample_seed + frame_index);
     SegmentSamples::keep(frame, ids);
 }
 

@@ -30,7 +30,7 @@ struct SegmentationSettings {
     uint32_t sample_every =
         16;  ///< frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
-    uint32_t sample_seed = 1;
+    uint32_t sample_seed = 1;          ///< of the first choice; others differ
 };
 
 /// How often voxels changed from one label to another, after the first frames, and but for frames in which labels were

@@ -16,7 +16,7 @@ namespace patina {
 /// How the specular materials of segments are estimated.
 struct SpecularSettings {
     bool fit = true;                  ///< Ward's parameters are fitted to the observations
-    uint32_t segments_per_frame = 8;  ///< estimated at most
+    uint32_t segments_per_frame = 4;  ///< estimated at most
     float memory = 0.97f;             ///< FitWardInputs::memory
     uint32_t seed = 1;                ///< of the voxels that the network is shown
 };

@@ -27,6 +27,7 @@ const float kAlphaBefore = 0.2;
 const float kNetworkKsDeviation = 0.06;    // of ks from the network's
 const float kNetworkAlphaDeviation = 0.7;  // octaves
 const float kDullKs = 0.01;                // whose roughness does not matter
+const float kSeenLobe = 0.5;               // a view this near to the peak tells it; from flanks alone it is a guess
 const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known half
 
 struct Prior {
@@ -57,7 +58,7 @@ void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior) {
     const float octaves = log2(alpha / prior.alpha);
     const vec3 cost = color2 - 2.0 * ks * product + ks * ks * lobe2 + prior.ks_weight * off * off;
     ks_cost[a] = vec4(ks, dot(cost, vec3(1.0)) + prior.alpha_weight * octaves * octaves);
-    known[a] = dot(lobe2 / (lobe2 + prior.ks_weight), vec3(1.0 / 3.0));
+    known[a] = dot(lobe2 / (lobe2 + prior.ks_weight), vec3(1.0 / 3.0)) * min(sum.lobe2.w / kSeenLobe, 1.0);
 }
 
 uint least_cost() {
@@ -105,7 +106,8 @@ void main() {
     if (a < kFitAlphas) {
         FitSums sum = sums[segment * kFitAlphas + a];
         if (kept > 0.0) {
-            sum.lobe2 += kept * curves[label * kFitAlphas + a].lobe2;
+            const vec4 before = kept * curves[label * kFitAlphas + a].lobe2;
+            sum.lobe2 = vec4(sum.lobe2.rgb + before.rgb, max(sum.lobe2.w, before.w));
             sum.product += kept * curves[label * kFitAlphas + a].product;
         }
         curves[label * kFitAlphas + a] = sum;

@@ -30,21 +30,26 @@ layout(push_constant) uniform Push { FitParams params; };
 #include "lib/record_directions.glsl"
 
 const uint kAlphas = kFitAlphasPerGroup;
-const uint kRows = 6u * kAlphas + 4u;
+const uint kSumRows = 6u * kAlphas + 4u;
+const uint kRows = kSumRows + kAlphas;
 
 shared float partial[kRows][kFitGroup + 1u];
 
 vec3 lobe2[kAlphas];
 vec3 product[kAlphas];
-vec4 total;  // rgb: squared colours; w: how many, by channel
+float peak[kAlphas];  // the largest lobe, 1 for a view at a mirrored light
+vec4 total;           // rgb: squared colours; w: how many, by channel
 
 // exp(-tan^2 / alpha^2) for each alpha, the largest first. The square of alpha halves within half a block.
 void add_lobes(inout vec3 lobes[kAlphas], vec3 gloss, float tan2, float inverse_most2) {
+    const float lit = any(greaterThan(gloss, vec3(0.0))) ? 1.0 : 0.0;
     [[unroll]] for (uint i = 0u; i < kAlphas / 2u; ++i) {
         const float scale = exp2(2.0 * float(i) / float(kFitAlphaSteps)) * inverse_most2;
         const float lobe = exp2(max(-kFitLog2E * tan2 * scale, kFitLeastExponent));
         lobes[i] += gloss * lobe;
         lobes[i + kAlphas / 2u] += gloss * (lobe * lobe);
+        peak[i] = max(peak[i], lit * lobe);
+        peak[i + kAlphas / 2u] = max(peak[i + kAlphas / 2u], lit * lobe * lobe);
     }
 }
 
@@ -104,7 +109,10 @@ void main() {
     const uint segment = gl_WorkGroupID.x, block = gl_WorkGroupID.y, lane = gl_LocalInvocationIndex;
     const float most = fit_alpha(float(block * kAlphas));
     total = vec4(0.0);
-    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobe2[a] = product[a] = vec3(0.0);
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
+        lobe2[a] = product[a] = vec3(0.0);
+        peak[a] = 0.0;
+    }
     for (uint slot = lane; slot < kSegmentSamples; slot += kFitGroup) {
         const uint record = voxels[segment * kSegmentSamples + slot];
         if (record != kNoRecord) add_voxel(segment, slot, record, 1.0 / (most * most));
@@ -114,19 +122,23 @@ void main() {
             partial[6u * a + c][lane] = lobe2[a][c];
             partial[6u * a + 3u + c][lane] = product[a][c];
         }
+        partial[kSumRows + a][lane] = peak[a];
     }
     [[unroll]] for (uint c = 0u; c < 4u; ++c) partial[6u * kAlphas + c][lane] = total[c];
     barrier();
     if (lane < kRows) {
         float sum = 0.0;
-        for (uint i = 0u; i < kFitGroup; ++i) sum += partial[lane][i];
+        for (uint i = 0u; i < kFitGroup; ++i) {
+            const float more = partial[lane][i];
+            sum = lane < kSumRows ? sum + more : max(sum, more);
+        }
         partial[lane][0] = sum;
     }
     barrier();
     if (lane < kAlphas) {
         const uint row = 6u * lane;
         sums[segment * kFitAlphas + block * kAlphas + lane] =
-            FitSums(vec4(partial[row][0], partial[row + 1u][0], partial[row + 2u][0], 0.0),
+            FitSums(vec4(partial[row][0], partial[row + 1u][0], partial[row + 2u][0], partial[kSumRows + lane][0]),
                     vec4(partial[row + 3u][0], partial[row + 4u][0], partial[row + 5u][0], 0.0));
     }
     const uint row = 6u * kAlphas;

@@ -32,6 +32,8 @@ const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB
 const float kRelativeNoise = 0.05;  // and that of bright ones: normals, lights and colours are estimates
 const float kRobustScale = 3.0;     // deviations at which a weight is a quarter
 const float kLeastDeviation = 0.1;  // where everything fits, weights would take what does not for noise
+// Of an estimate that tells outliers: to one without a highlight, the first view of it would be one.
+const float kTrustedConfidence = 0.5;
 const uint kRobustSteps = 2u;
 
 uint direction_word[kMaxObservations];
@@ -118,7 +120,7 @@ void main() {
     add_highlights(surface_point_m(known, params.records, params.edge_shift), normal, visibility[record], alpha,
                    estimated ? header.count : 0u);
     take_highlights(record, observation_count(known), estimated ? fit.ks_alpha.rgb * lobe_scale(alpha) : vec3(0.0));
-    if (estimated) reweight(max(fit.deviation, kLeastDeviation));
+    if (fit.confidence >= kTrustedConfidence) reweight(max(fit.deviation, kLeastDeviation));
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k)
         weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = trust[k] * robust[k];
 }
