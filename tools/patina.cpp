@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     tools::add_doctor(app);
     tools::add_info(app);
     tools::add_synth(app);
+    tools::add_synth_hemi(app);
     tools::add_run(app);
     tools::add_render(app);
     tools::add_eval(app);

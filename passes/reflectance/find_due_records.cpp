@@ -19,12 +19,12 @@ void bind(graph::PassBuilder& pass, ReflectanceFrame& reflectance, RecordList& m
     refine.arguments = pass.modify("RefineArguments", refine.arguments);
 }
 
-void add_due_window(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecords& due) {
+void add_due_window(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed, DueRecords& due) {
     auto pass = frame.compute("reflectance.due_window", spirv::due_window);
     bind(pass, reflectance, due.march, due.refine);
     const ObservationMapIds& ids = reflectance.records;
     pass.read("Keys", ids.keys).read("Blocks", ids.blocks).read("RecordTable", ids.record_table);
-    pass.read("RecordCounters", ids.record_counters);
+    pass.read("RecordCounters", ids.record_counters).read("ChangedList", changed.list);
     reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
     const uint32_t buckets =
         std::min(reflectance.params.max_window + gpu::kMaxProbes, reflectance.map.table_slots() / gpu::kBucketSlots);
@@ -65,7 +65,7 @@ DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectan
     const uint32_t capacity = reflectance.map.settings().capacity_records;
     DueRecords due{create_record_list(frame, "reflectance.march", capacity),
                    create_record_list(frame, "reflectance.refine", capacity)};
-    add_due_window(frame, reflectance, due);
+    add_due_window(frame, reflectance, changed, due);
     const WaitingRecords waiting = add_due_changed(frame, reflectance, changed, due.refine);
     const uint32_t stamp = reflectance.params.stamp;
     add_accept_due(frame, reflectance, waiting.never_marched, {stamp, reflectance.budgets.first_marched_records},

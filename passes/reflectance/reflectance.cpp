@@ -18,7 +18,7 @@ void check_budget(const char* name, uint32_t records) {
 }
 
 gpu::ReflectanceParams make_params(const ReflectanceModels& models, const ReflectanceSettings& settings,
-                                   uint32_t max_window) {
+                                   uint32_t max_window, float least_share) {
     gpu::ReflectanceParams params{};
     params.records = models.observation_map.grid();
     params.voxels = models.voxel_map.grid();
@@ -28,6 +28,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     params.max_window = max_window;
     params.shadows = settings.shadows ? 1 : 0;
     params.materials = models.materials.capacity();
+    params.least_share = least_share;
     return params;
 }
 
@@ -68,7 +69,8 @@ RefinedReflectance add_refine_reflectance(graph::Frame& frame, const Reflectance
     check_budget("refreshed_records", settings.refreshed_records);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
     return add_update(frame, models, voxels, records, changed, access,
-                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u)), settings);
+                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u), gpu::kLeastRefreshed),
+                      settings);
 }
 
 RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
@@ -78,7 +80,7 @@ RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const Reflect
     all.first_marched_records = all.marched_records = all.refreshed_records = kEverything;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
     const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
-    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets), all);
+    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets, 1), all);
 }
 
 }  // namespace patina

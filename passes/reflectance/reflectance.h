@@ -12,8 +12,10 @@ struct ReflectanceSettings {
     bool albedo = true;   ///< false: only visibility is found, under lights that never shone
     /// New records whose lights are marched in a frame at most, about: until then nothing is known of their albedo.
     uint32_t first_marched_records = 8192;
-    uint32_t marched_records = 1024;   ///< others whose surface moved, about
-    uint32_t refreshed_records = 512;  ///< and others, looked at again in turn, about
+    uint32_t marched_records = 1024;  ///< others whose surface moved, about
+    /// And others, looked at again in turn, about; where few records change (gpu::kBusyChanges), few of them are
+    /// marched.
+    uint32_t refreshed_records = 512;
 };
 
 /// The fastest on this device.

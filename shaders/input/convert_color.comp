@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lens.glsl"
+#include "lib/srgb.glsl"
 #include "shared/convert_color.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
@@ -30,9 +31,7 @@ vec4 srgb_at(uint index) {
     // Only a pixel that crosses into the next word reads it: the last pixel may end the buffer.
     if (shift > 8u) packed_rgb |= words[word + 1u] << (32u - shift);
     const uvec3 codes = (uvec3(packed_rgb) >> uvec3(0u, 8u, 16u)) & 255u;
-    const vec3 encoded = vec3(codes) / 255.0;
-    const vec3 rgb = mix(pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(codes, uvec3(10u)));
-    return vec4(rgb, any(equal(codes, uvec3(255u))) ? kColorClipped : kColorValid);
+    return vec4(linear_of_srgb(codes), any(equal(codes, uvec3(255u))) ? kColorClipped : kColorValid);
 }
 
 vec4 color_at(uvec2 pixel) {

@@ -1,8 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists what is due of the records in a window of the table that moves on with every update. A window of the table,
-// which is in the order of hashes, holds the same voxels in every run, as record ids would not.
-#include "lib/voxel_map.glsl"
+// which is in the order of hashes, holds the same voxels in every run, as record ids would not. What is around a record
+// may have changed and its shadow with it, the less likely the fewer records did: as many are marched again.
+#include "lib/observations.glsl"
+#include "lib/record_hash.glsl"
 #include "reflectance/due_main.glsl"
 
 layout(local_size_x = kWindowGroup) in;
@@ -11,12 +13,20 @@ layout(std430, binding = 9) readonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 10) readonly buffer RecordTable { uvec4 record_table[]; };
 layout(std430, binding = 11) readonly buffer RecordCounters { MapCounters record_counters; };
 layout(std430, binding = 12) buffer Cursors { RefreshCursors cursors; };
+layout(std430, binding = 13) readonly buffer ChangedList { uint changed_list[]; };
+
+const uint kShareSteps = 1024u;
+
+uint refreshed_steps;  // of kShareSteps
 
 void list_for_marching(uint record, bool marched) { APPEND_RECORD(march, march_arguments, record) }
 
 void consider_quad(uvec4 entries) {
     for (uint i = 0u; i < 4u; ++i) {
-        if (entries[i] < kNewRecord) consider(entries[i], false, true);
+        const uint record = entries[i];
+        if (record >= kNewRecord) continue;
+        const uint hash = hash_of_voxel(records[record].block_key, voxel_in_block(records[record]));
+        consider(record, false, hash_of_key(hash + params.stamp) % kShareSteps < refreshed_steps);
     }
 }
 
@@ -36,6 +46,8 @@ void main() {
     if (key == kEmptyKey || ((hash_of_key(key) - cursor) & mask) >= window) return;
     const uint block = blocks[slot];
     if (block == kNoBlock) return;
+    const float busy = float(changed_list[0]) / kBusyChanges;
+    refreshed_steps = uint(clamp(busy, params.least_share, 1.0) * float(kShareSteps));
     const uint quads = 1u << (3u * params.edge_shift - 2u);
     for (uint quad = 0u; quad < quads; ++quad) consider_quad(record_table[block * quads + quad]);
 }

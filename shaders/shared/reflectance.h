@@ -5,8 +5,10 @@
 #include "shared/observations.h"
 INTEROP_BEGIN
 
-INTEROP_CONST float kKdDeviation = 0.05f;  // an albedo of this standard deviation has half the weight of an exact one
-INTEROP_CONST uint kWindowGroup = 64u;     // of the pass over table slots
+INTEROP_CONST float kKdDeviation = 0.05f;    // an albedo of this standard deviation has half the weight of an exact one
+INTEROP_CONST uint kWindowGroup = 64u;       // of the pass over table slots
+INTEROP_CONST float kBusyChanges = 1024.0f;  // so many changed records, and all of a window are marched again;
+INTEROP_CONST float kLeastRefreshed = 1.0f / 16.0f;  // of fewer their share, but no less than this
 
 // The specular part of a segment's material; label 0, and labels without an entry, have none.
 struct SegmentMaterial {
@@ -46,12 +48,12 @@ struct ReflectanceParams {
     VoxelGrid voxels;   // the voxel map's
     uint edge_shift;    // of the observation map
     uint stamp;         // the update's index + 1
-    uint refreshed;     // records marched again in one update though nothing says that they have changed, about
+    uint refreshed;     // records looked at again in one update though nothing says that they have changed, about
     uint max_window;    // buckets of the table looked at
     uint shadows;       // 0: every light reaches every voxel
     uint materials;     // entries of the table
+    float least_share;  // of the records looked at, that is marched again although no record changed
     uint pad0;
-    uint pad1;
 };
 
 // Which of the records that wait for marching are taken.

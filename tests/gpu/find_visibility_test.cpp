@@ -224,6 +224,26 @@ TEST_F(FindVisibilityTest, WorkFollowsChange) {
     EXPECT_EQ(refined, 0u);
 }
 
+TEST_F(FindVisibilityTest, WhereLittleChangesLittleIsMarchedAgain) {
+    const auto model = make_model();
+    ReflectanceRig& rig = model->reflectance;
+    ReflectanceSettings settings;
+    rig.update_all(settings);
+    const auto count = static_cast<uint32_t>(rig.records().size());
+    ASSERT_GT(count, gpu::kBusyChanges);
+    settings.refreshed_records = 2000;
+    const auto all = [&](graph::Frame& frame, ObservationMapIds&) { return add_list_records(frame, count); };
+    const auto mean_marched = [&](const auto& update) {
+        uint32_t marched = 0;
+        for (int i = 0; i < 20; ++i) marched += update().marched;
+        return marched / 20.0;
+    };
+    const double resting = mean_marched([&] { return rig.update(settings); }),
+                 moving = mean_marched([&] { return rig.update(settings, all); });
+    EXPECT_GT(moving, 1000);
+    EXPECT_NEAR(resting / moving, double{gpu::kLeastRefreshed}, 0.4 * double{gpu::kLeastRefreshed});
+}
+
 TEST_F(FindVisibilityTest, WhatWasNeverMarchedHasABudgetOfItsOwn) {
     const auto model = make_model();
     ReflectanceRig& rig = model->reflectance;

@@ -37,6 +37,7 @@ struct SequenceArguments {
 void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
+void add_synth_hemi(CLI::App& app);
 void add_run(CLI::App& app);
 void add_render(CLI::App& app);
 void add_eval(CLI::App& app);

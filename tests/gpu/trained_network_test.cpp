@@ -1,0 +1,60 @@
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "passes/specular/run_network.h"
+#include "shared/hemi_images.h"
+#include "shared/specular_estimates.h"
+#include "tests/gpu/gpu_test.h"
+#include "tools/network_file.h"
+#include "tools/tensor_file.h"
+
+namespace patina {
+namespace {
+
+const std::filesystem::path kFile = PATINA_SOURCE_DIR "/assets/hemicnn.safetensors";
+
+/// The images that the file's own check is about: docs/training.md.
+std::vector<glm::vec4> check_images(size_t segments) {
+    std::vector<glm::vec4> pixels(segments * gpu::kHemiSamples * gpu::kHemiPixels, glm::vec4(0));
+    for (size_t i = 0; i < pixels.size() * 3; ++i) {
+        const auto word = static_cast<uint32_t>(i * 2654435761u);
+        pixels[i / 3][static_cast<int>(i % 3)] = static_cast<float>(word >> 20) / 4096;
+    }
+    return pixels;
+}
+
+TEST(TrainedNetworkFile, IsTheDocumentedNetworkAndSmall) {
+    EXPECT_LT(std::filesystem::file_size(kFile), 340u * 1000);
+    const NetworkDescription network = tools::read_network_file(kFile);
+    size_t parameters = 0;
+    for (const NetworkLayer& layer : network.layers) parameters += layer.weight.size() + layer.bias.size();
+    EXPECT_EQ(parameters, 71895u);
+    EXPECT_EQ(network.map, HemisphereMap::kParabolic);
+}
+
+class TrainedNetwork : public GpuTest {};
+
+TEST_F(TrainedNetwork, GivesWhatItGaveWhereItWasTrained) {
+    const nlohmann::json want = nlohmann::json::parse(tools::read_tensor_file(kFile).metadata.at("check"));
+    const auto segments = static_cast<uint32_t>(want.size());
+    ASSERT_GT(segments, 0u);
+    Network network(device(), tools::read_network_file(kFile));
+    std::vector<uint32_t> list(1 + segments);
+    list[0] = segments;
+    graph::Frame frame = runner().begin();
+    const SegmentBatch batch{frame.upload<uint32_t>("batch", list), segments};
+    const graph::BufferId images = frame.upload<glm::vec4>("images", check_images(segments));
+    const MapAccess access = preferred_network_access(device().caps(), network, segments);
+    const graph::Readback result = frame.read_back(add_run_network(frame, network, images, batch, access));
+    run(std::move(frame));
+    const auto got = result.as<gpu::PerceptualMaterial>();
+    for (uint32_t i = 0; i < segments; ++i) {
+        const float w[7] = {got[i].lab_cr.x,       got[i].lab_cr.y,       got[i].lab_cr.z,      got[i].lab_cr.w,
+                            got[i].cgb_d_weight.x, got[i].cgb_d_weight.y, got[i].cgb_d_weight.z};
+        for (size_t k = 0; k < 7; ++k) EXPECT_NEAR(w[k], want[i][k].get<double>(), 1e-4) << i << ", output " << k;
+    }
+}
+
+}  // namespace
+}  // namespace patina
