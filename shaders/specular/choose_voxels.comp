@@ -17,10 +17,9 @@ layout(push_constant) uniform Push { FitParams params; };
 
 shared uvec2 places[kSegmentSamples];
 
-// Lit, by lights that reach it or do not: what half a voxel sees moves with its surface, as a highlight does.
+// Voxels that some light may reach only in part count too: faces whose sides were never seen have no others.
 bool is_lit(uint record) {
-    return is_marched(status[record].marched, params.position_version) &&
-           any(notEqual(visibility[record], uvec2(0u))) && all(equal(status[record].uncertain, uvec2(0u)));
+    return is_marched(status[record].marched, params.position_version) && any(notEqual(visibility[record], uvec2(0u)));
 }
 
 bool is_before(uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
