@@ -1,5 +1,6 @@
 #include "passes/reconstruction.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/gtc/packing.hpp>
@@ -55,6 +56,10 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     if (settings.gains && !settings.fusion.color) {
         throw Error("gains are estimated from fused colours, but fusion.color is false");
     }
+    if (settings.specular && !(settings.reflectance && settings.segmentation)) {
+        throw Error("specular materials are estimated from the reflectance of segments, but there ",
+                    settings.reflectance ? "are no segments" : "is no reflectance");
+    }
     return settings;
 }
 
@@ -81,6 +86,8 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
     if (settings.gains) color_correction_.emplace(device, map_, *settings.gains, access_);
     if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
     if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
+    if (settings.specular)
+        specular_.emplace(device, *settings.specular, settings.segmentation->capacity_labels, settings.network);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -160,8 +167,10 @@ void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, Observ
         inputs.motion = {make_camera(frame.color.camera, *world_from_color_before_).camera_from_world,
                          frame.shutter_share};
     }
-    reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
-                      make_camera(frame.color.camera, world_from_color_of(frame)), frames_);
+    const RecordList changed =
+        reflectance_->add(graph, ids, inputs, make_camera(frame.depth.camera, frame.world_from_depth),
+                          make_camera(frame.color.camera, world_from_color_of(frame)), frames_);
+    if (specular_) specular_->add(graph, *reflectance_, *segmentation_, changed, frames_);
 }
 
 void Reconstruction::refine_all() {
@@ -188,6 +197,7 @@ void Reconstruction::add(const RgbdFrame& frame) {
         if (color_correction_) color_correction_->reset(graph);
         if (reflectance_) reflectance_->reset(graph, center_m);
         if (segmentation_) segmentation_->reset(graph);
+        if (specular_) specular_->reset(graph);
         runner_.submit(std::move(graph));
     }
     graph::Frame graph = runner_.begin();
@@ -242,7 +252,17 @@ Mesh Reconstruction::extract_surface() {
 MeshReflectance Reconstruction::sample_reflectance(const Mesh& mesh) {
     if (!reflectance_ || frames_ == 0) return {};
     refine_all();
-    return sample_mesh(runner_, *reflectance_, mesh);
+    MeshReflectance sampled = sample_mesh(runner_, *reflectance_, mesh);
+    if (!specular_) return sampled;
+    graph::Frame graph = runner_.begin();
+    const graph::Readback read = graph.read_back(specular_->fits(graph));
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    const auto fits = read.as<gpu::WardFit>();
+    for (size_t label = 0; label < std::min(fits.size(), sampled.segments.size()); ++label) {
+        if (auto& gloss = sampled.segments[label].gloss) gloss->confidence = fits[label].confidence;
+    }
+    return sampled;
 }
 
 void Reconstruction::take_counts() {

@@ -16,6 +16,7 @@
 #include "passes/model/voxel_map.h"
 #include "passes/reflectance_model.h"
 #include "passes/segmentation_model.h"
+#include "passes/specular_model.h"
 #include "passes/surface/mesh.h"
 #include "passes/surface/mesh_reflectance.h"
 
@@ -35,6 +36,9 @@ struct ReconstructionSettings {
     std::optional<ReflectanceModelSettings> reflectance{};
     /// Segments of the map; empty: none.
     std::optional<SegmentationSettings> segmentation{};
+    /// Specular materials of the segments; empty: those that the reflectance was given. Needs both of the former.
+    std::optional<SpecularSettings> specular{};
+    std::optional<NetworkDescription> network{};  ///< that estimates specular materials; empty: none
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -140,6 +144,9 @@ class Reconstruction {
     /// The segments of the map; null when the settings have none.
     const SegmentationModel* segmentation() const { return segmentation_ ? &*segmentation_ : nullptr; }
 
+    /// The specular materials of the segments; null when the settings have none.
+    const SpecularModel* specular() const { return specular_ ? &*specular_ : nullptr; }
+
     /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
     /// Brings the reflectance up to date first.
     /// Without reflectance nothing changes. Throws Error as Lights::set does.
@@ -175,6 +182,7 @@ class Reconstruction {
     std::optional<ColorCorrection> color_correction_;
     std::optional<ReflectanceModel> reflectance_;
     std::optional<SegmentationModel> segmentation_;
+    std::optional<SpecularModel> specular_;
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
     struct PendingCounts {

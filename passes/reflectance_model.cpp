@@ -45,15 +45,25 @@ void ReflectanceModel::set_material(uint32_t label, glm::vec3 ks, float alpha) {
 void ReflectanceModel::reset(graph::Frame& frame, glm::dvec3 center_m) {
     observations_.reset(frame, center_m);
     state_.reset(frame);
+    // Uploaded before a frame that replaces them.
+    materials_.import(frame);
 }
 
-void ReflectanceModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
-                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index) {
+RecordList ReflectanceModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+                                 const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
+                                 uint32_t frame_index) {
     ObservationMapIds records = observations_.import(frame);
     const CollectedRecords collected = add_collect_observations(
         frame, observations_, records, inputs, settings_.observe, depth_camera, color_camera, frame_index);
     add_refine_reflectance(frame, models(), voxels, records, collected.changed, access_, settings_.refine);
     ObservationMap::keep(frame, records);
+    return collected.changed;
+}
+
+SpecularInputs ReflectanceModel::add_specular_inputs(graph::Frame& frame) {
+    return {observations_,         observations_.import(frame), state_.import(frame).status,
+            lights_.upload(frame), lights_.position_version(),  materials_.import(frame),
+            materials_.capacity()};
 }
 
 void ReflectanceModel::refine_all(graph::Frame& frame, const VoxelMapIds& voxels) {

@@ -39,6 +39,17 @@ struct SegmentIds {
     graph::BufferId materials;  ///< gpu::SegmentMaterial per label
 };
 
+/// What estimates of specular materials read and replace.
+struct SpecularInputs {
+    const ObservationMap& map;
+    ObservationMapIds records;
+    graph::BufferId status;     ///< gpu::RecordStatus per record
+    graph::BufferId lights;     ///< Lights::upload
+    uint32_t position_version;  ///< of the lights
+    graph::BufferId materials;  ///< gpu::SegmentMaterial per label; to be kept once replaced
+    uint32_t material_count;
+};
+
 /// What a surface reflects, beside the voxel map that says where it is: observations by voxel, the lights, materials by
 /// label, and kd refined from them (paper, Sections 3.4 and 3.7). Lives as long as the map.
 class ReflectanceModel {
@@ -54,12 +65,15 @@ class ReflectanceModel {
     /// Empties the model, placing it around the map's centre; the first thing done with it.
     void reset(graph::Frame& frame, glm::dvec3 center_m);
 
-    /// Collects a frame's observations and refines what they change.
-    void add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
-             const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index);
+    /// Collects a frame's observations and refines what they change. Returns the records that they changed.
+    RecordList add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+                   const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index);
 
     /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
     const ObservationMap& observations() const { return observations_; }
+
+    /// What the frame's records and materials are so far.
+    SpecularInputs add_specular_inputs(graph::Frame& frame);
 
     /// Brings every record up to date.
     void refine_all(graph::Frame& frame, const VoxelMapIds& voxels);

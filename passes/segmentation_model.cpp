@@ -1,5 +1,7 @@
 #include "passes/segmentation_model.h"
 
+#include <bit>
+
 #include "passes/segmentation/assign_labels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
@@ -12,6 +14,17 @@
 #include "passes/segmentation/update_labels.h"
 
 namespace patina {
+
+namespace {
+
+/// In the beginning, when most records are new, more often: after 4, 8, ... frames.
+bool samples_are_due(uint32_t frame_index, uint32_t every) {
+    if (every == 0) return false;
+    const uint32_t frames = frame_index + 1;
+    return frames % every == 0 || (frames >= 4 && frames < every && std::has_single_bit(frames));
+}
+
+}  // namespace
 
 SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
                                      MapAccess access)
@@ -88,9 +101,10 @@ void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& m
     values.stamp = frame_index + 1;
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
     add_relabel_records(frame, map, records, table_.import(frame), uniforms);
-    if (settings_.sample_every == 0 || frame_index % settings_.sample_every != settings_.sample_every - 1) return;
+    if (!samples_are_due(frame_index, settings_.sample_every)) return;
     SegmentSampleIds ids = samples_.import(frame);
-    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations, settings_.sample_seed);
+    add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations,
+                       settings_.sample_seed + frame_index);
     SegmentSamples::keep(frame, ids);
 }
 

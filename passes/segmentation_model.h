@@ -27,9 +27,10 @@ struct SegmentationSettings {
     float merge_chroma = 0.03f;  ///< labels whose mean chromaticities differ by more are not merged
     uint32_t prune_voxels = 10;  ///< labels with fewer voxels are given up
     uint32_t prune_frames = 30;  ///< when they were not seen for so many frames
-    uint32_t sample_every = 16;  ///< frames after which each segment's records are chosen anew; 0: never
+    uint32_t sample_every =
+        16;  ///< frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
-    uint32_t sample_seed = 1;
+    uint32_t sample_seed = 1;          ///< of the first choice; others differ
 };
 
 /// How often voxels changed from one label to another, after the first frames, and but for frames in which labels were

@@ -12,6 +12,7 @@
 #include "tools/frame_dumps.h"
 #include "tools/run_lights.h"
 #include "tools/run_settings.h"
+#include "tools/run_specular.h"
 #include "tools/scene_files.h"
 #include "tools/version.h"
 
@@ -145,6 +146,7 @@ class Run {
         record.settings["lighting"] = options_.lighting;
         record.lights = lights_json(fusion_.illumination());
         record.settings["labels"] = options_.labels;
+        record.settings["specular"] = specular_mode(fusion_.settings());
         record.settings["truth_materials"] = options_.truth_materials;
         record.settings["sequence"] = options_.sequence;
         record.settings["frames"] = options_.frames;
@@ -168,6 +170,9 @@ class Run {
         }
         if (ReflectanceModel* reflectance = reconstruction_.reflectance()) {
             for (const auto& pool : reflectance->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
+        }
+        if (const SpecularModel* specular = reconstruction_.specular()) {
+            for (const auto& pool : specular->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
         }
         record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
         record.totals = {{"vertices", scene.vertices},

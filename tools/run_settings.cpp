@@ -69,6 +69,11 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("observe.max_blur_px", s.reflectance->observe.max_blur_px);
         visit("observe.rest_px", s.reflectance->observe.rest_px);
     }
+    if (s.specular) {
+        visit("specular.segments_per_frame", s.specular->segments_per_frame);
+        visit("specular.memory", s.specular->memory);
+        visit("specular.seed", s.specular->seed);
+    }
 }
 
 std::string known_keys() {
@@ -77,6 +82,7 @@ std::string known_keys() {
     defaults.gains.emplace();
     defaults.reflectance.emplace();
     defaults.segmentation.emplace();
+    defaults.specular.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
@@ -103,6 +109,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
     }
     if (!settings.segmentation && key.starts_with("segmentation.")) settings.segmentation.emplace();
     if (!settings.gains && key.starts_with("gains.")) settings.gains.emplace();
+    if (!settings.specular && key.starts_with("specular.")) settings.specular.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

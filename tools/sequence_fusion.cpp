@@ -11,6 +11,7 @@
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
 #include "tools/run_lights.h"
+#include "tools/run_specular.h"
 
 namespace patina::tools {
 
@@ -58,6 +59,7 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
         settings.segmentation.emplace();
     }
     if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
+    set_specular(settings, options);
     return settings;
 }
 

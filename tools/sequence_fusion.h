@@ -41,6 +41,9 @@ struct SequenceOptions {
     std::string lighting;
     std::string labels = "geometry";  ///< segments: "off", "geometry", or "truth", those of the sequence's truth/labels
     bool truth_materials = false;     ///< ks and alpha are those of truth/materials.json, by label
+    /// How specular materials are estimated: "fit", "hemicnn", "both" or "off"; empty: both where there is a network.
+    std::string specular;
+    std::filesystem::path network;  ///< weights; empty: those that ship with the program
     GainMode gains = GainMode::kAuto;
     uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
     vulkan::DeviceOptions device;

@@ -12,6 +12,7 @@ namespace patina {
 struct WardGloss {
     glm::vec3 ks{0};
     float alpha = 1;
+    std::optional<float> confidence{};  ///< of an estimate: 0 to 1
 };
 
 /// What is known of a segment.

@@ -22,10 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".json";
 
-fs::path scenes_folder() {
-    const char* assets = std::getenv("PATINA_ASSETS");
-    return fs::path(assets ? assets : PATINA_ASSETS_FOLDER) / "scenes";
-}
+fs::path scenes_folder() { return assets_folder() / "scenes"; }
 
 fs::path file_of(const std::string& name_or_file) {
     if (name_or_file.find('/') != std::string::npos || name_or_file.ends_with(kExtension)) return name_or_file;
@@ -56,6 +53,11 @@ Scene read_scene(const fs::path& file, const fs::path& mesh) {
 Scene load_scene(const std::string& name_or_file, const SceneChanges& changes) {
     Scene scene = read_scene(file_of(name_or_file), changes.mesh);
     return changes.vary ? varied(std::move(scene), *changes.vary) : scene;
+}
+
+std::filesystem::path assets_folder() {
+    const char* assets = std::getenv("PATINA_ASSETS");
+    return assets ? assets : PATINA_ASSETS_FOLDER;
 }
 
 std::string scene_names() {

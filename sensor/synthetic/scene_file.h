@@ -19,6 +19,9 @@ struct SceneChanges {
 /// path in the JSON and value, for whatever is wrong in the file or in what it names.
 Scene load_scene(const std::string& name_or_file, const SceneChanges& changes = {});
 
+/// What ships with the source: assets/, or where the environment's PATINA_ASSETS says.
+std::filesystem::path assets_folder();
+
 /// The names of the built-in scenes, as "balls, bunnies, cubes, office".
 std::string scene_names();
 

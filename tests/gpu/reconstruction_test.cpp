@@ -5,6 +5,7 @@
 #include "sensor/synthetic/scene_file.h"
 #include "sensor/synthetic/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
+#include "tools/bench/random_network.h"
 #include "tools/rgbd_frame.h"
 
 namespace patina {
@@ -150,6 +151,47 @@ TEST_F(ReconstructionTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) 
     EXPECT_LT(kd_errors[kd_errors.size() * 8 / 10], 0.08) << "4 cm voxels do not follow the shadows' borders";
     EXPECT_LT(rgb_errors[rgb_errors.size() / 2], 0.02);
     EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
+}
+
+TEST_F(ReconstructionTest, SpecularMaterialsAreFittedUnderKnownLights) {
+    constexpr uint32_t kFrames = 16, kFloor = 1;
+    const LabelledCubes cubes(device(), kFrames);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular.emplace();
+    Reconstruction reconstruction(device(), settings);
+    reconstruction.reflectance()->set_lights(cubes.lights);
+    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
+    expect_sound(reconstruction, "a frame with a fit");
+    const MeshReflectance found = reconstruction.sample_reflectance(reconstruction.extract_surface());
+    for (const sensor::Material& truth : cubes.materials) {
+        if (truth.id != kFloor) continue;
+        const std::optional<WardGloss>& gloss = found.segments[truth.id].gloss;
+        ASSERT_TRUE(gloss && gloss->confidence);
+        EXPECT_LT(glm::distance(gloss->ks, glm::vec3(truth.ks)), 0.02f);
+        EXPECT_NEAR(gloss->alpha, truth.alpha, 0.04);
+        EXPECT_GT(*gloss->confidence, 0.5f);
+    }
+    EXPECT_FALSE(found.segments[100].gloss) << "no segment";
+}
+
+TEST_F(ReconstructionTest, SpecularMaterialsFollowTheNetwork) {
+    const LabelledCubes cubes(device(), 8);
+    for (const bool fit : {false, true}) {
+        ReconstructionSettings settings = small_settings_with_reflectance();
+        settings.specular = SpecularSettings{.fit = fit};
+        settings.network = random_hemi_network(1);
+        Reconstruction reconstruction(device(), settings);
+        reconstruction.reflectance()->set_lights(cubes.lights);
+        for (uint32_t i = 0; i < 8; ++i) reconstruction.add(cubes.frame(i));
+        expect_sound(reconstruction, fit ? "a frame with network and fit" : "a frame with a network");
+    }
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular = SpecularSettings{.fit = false};
+    const auto refusal = [](const char* part) { return ::testing::ThrowsMessage<Error>(::testing::HasSubstr(part)); };
+    EXPECT_THAT([&] { Reconstruction(device(), settings); }, refusal("by a network, but there is none"));
+    settings.specular = SpecularSettings{};
+    settings.segmentation.reset();
+    EXPECT_THAT([&] { Reconstruction(device(), settings); }, refusal("there are no segments"));
 }
 
 TEST_F(ReconstructionTest, LabelsOfAnotherSizeAreRefused) {

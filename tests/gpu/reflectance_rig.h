@@ -36,6 +36,8 @@ class ReflectanceRig {
     std::vector<RefinedRecord> records(uint32_t count);
     std::vector<RefinedRecord> records();
 
+    const ReflectanceState& state() const { return state_; }
+
     Lights lights;
     SegmentMaterials materials;
     ReflectanceAccess access;

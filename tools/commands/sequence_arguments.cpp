@@ -43,6 +43,13 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
         ->capture_default_str();
     add_truth_option(command, "--materials", options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
+    command
+        .add_option("--specular", options.specular,
+                    "Specular materials of segments: fit (Ward's model, to the observations), hemicnn (the network), "
+                    "both (its estimates hold where observations do not tell) or off; by default both where there is "
+                    "a network, else fit")
+        ->check(CLI::IsMember({"fit", "hemicnn", "both", "off"}));
+    command.add_option("--network", options.network, "Weights of the network, instead of those that ship with patina");
     command.add_flag_callback(
         "--no-shadows", [&options] { reflectance_of(options.settings).refine.shadows = false; },
         "Every light reaches every surface, as in the paper");

@@ -26,6 +26,7 @@ std::string materials_json(std::span<const SegmentReflectance> segments, std::sp
         if (segment.gloss) {
             entry["ks"] = rounded(segment.gloss->ks);
             entry["alpha"] = rounded(segment.gloss->alpha);
+            if (segment.gloss->confidence) entry["specular_confidence"] = rounded(*segment.gloss->confidence);
         }
         entry["voxels"] = segment.voxels;
         entry["observations"] = segment.observations;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/graph/frame.h"
+#include "engine/vulkan/device.h"
+#include "shared/ward_fit.h"
+
+namespace patina {
+
+/// Versions of the fits' buffers within one frame.
+struct WardFitIds {
+    graph::BufferId fits;      ///< gpu::WardFit per label
+    graph::BufferId curves;    ///< gpu::FitSums[gpu::kFitAlphas] per label
+    graph::BufferId progress;  ///< gpu::SegmentProgress per label
+};
+
+/// What the observations of each segment told about its specular material so far, by label. Lives as long as the
+/// segments; specular/fit_ward.h fills it.
+class WardFits {
+  public:
+    /// Throws Error when memory runs out.
+    WardFits(vulkan::Device& device, uint32_t labels);
+
+    /// Forgets all; the first thing done with it.
+    void reset(graph::Frame& frame) const;
+
+    WardFitIds import(graph::Frame& frame) const {
+        return {frame.import(fits_), frame.import(curves_), frame.import(progress_)};
+    }
+    static void keep(graph::Frame& frame, const WardFitIds& ids);
+
+    uint32_t labels() const { return labels_; }
+    uint64_t bytes() const { return fits_->bytes() + curves_->bytes() + progress_->bytes(); }
+
+  private:
+    uint32_t labels_;
+    vulkan::BufferRef fits_, curves_, progress_;
+};
+
+}  // namespace patina

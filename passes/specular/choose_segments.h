@@ -1,0 +1,37 @@
+#pragma once
+
+#include "engine/graph/frame.h"
+#include "passes/model/record_list.h"
+#include "passes/model/segment_batch.h"
+#include "passes/model/specular_estimates.h"
+#include "passes/model/ward_fits.h"
+
+namespace patina {
+
+/// What estimates of specular materials bring up to date.
+struct SpecularMaterialIds {
+    SpecularEstimateIds estimates;
+    WardFitIds fits;
+    graph::BufferId materials;  ///< gpu::SegmentMaterial by label
+};
+
+struct ChooseSegmentsInputs {
+    graph::BufferId records;   ///< ObservationMapIds::records
+    RecordList changed;        ///< in this frame
+    graph::BufferId labels;    ///< SegmentTableIds::labels
+    graph::BufferId counts;    ///< SegmentSampleIds::counts
+    uint32_t label_count = 0;  ///< of all tables by label
+    uint32_t materials = 0;    ///< entries of the table of materials
+    uint32_t stamp = 0;        ///< the frame's index + 1
+};
+
+/// The segments that a frame estimates, at most `capacity`: by turns the one of which most observations changed since
+/// it was estimated last, and the one that has waited longest, so that none starves. Only segments that keep samples
+/// and changed at all are taken. What is known of labels that were handed out anew since is forgotten.
+SegmentBatch add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
+                                 SpecularMaterialIds& ids);
+
+/// The network's estimates of a batch's segments become their materials as they are.
+void add_adopt_estimates(graph::Frame& frame, const SegmentBatch& batch, uint32_t materials, SpecularMaterialIds& ids);
+
+}  // namespace patina

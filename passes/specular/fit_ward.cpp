@@ -1,0 +1,64 @@
+#include "passes/specular/fit_ward.h"
+
+#include <array>
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+static_assert(gpu::kFitAlphas % gpu::kFitAlphasPerGroup == 0 && gpu::kFitAlphas <= gpu::kFitGroup);
+static_assert(gpu::kFitAlphasPerGroup == gpu::kFitAlphaSteps, "half a block halves the square of alpha");
+static_assert(gpu::kFitGroup == gpu::kBatchGroup && gpu::kSegmentSamples % gpu::kFitGroup == 0);
+
+void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,
+                  WardFitIds& fits, graph::BufferId& segment_materials) {
+    const ObservationMapIds& records = inputs.records;
+    const gpu::FitParams params{inputs.map.grid(),
+                                inputs.map.edge_shift(),
+                                table.labels(),
+                                inputs.materials,
+                                inputs.position_version,
+                                inputs.memory,
+                                0,
+                                0,
+                                0};
+    const uint64_t voxel_count = uint64_t{batch.capacity} * gpu::kSegmentSamples;
+    // A group per segment; one per some of its voxels; and one per segment and block of alphas.
+    const std::array work{gpu::BatchWork{1, 1, gpu::kBatchGroup, 1}, gpu::BatchWork{1, 1, gpu::kSegmentSamples, 1},
+                          gpu::BatchWork{1, 1, gpu::kBatchGroup, gpu::kFitAlphas / gpu::kFitAlphasPerGroup}};
+    const graph::BufferId arguments = add_plan_batch(frame, batch, work);
+
+    auto choose = frame.compute("specular.choose_voxels", spirv::choose_voxels);
+    choose.read("Batch", batch.list).read("Records", records.records).push(params);
+    choose.read("Counts", inputs.sample_ids.counts).read("Kept", inputs.sample_ids.kept);
+    choose.read("Visibility", records.visibility).read("Status", inputs.status);
+    const graph::BufferId voxels = choose.create("Voxels", voxel_count * sizeof(uint32_t));
+    choose.dispatch_indirect(arguments);
+
+    auto weigh = frame.compute("specular.weigh_observations", spirv::weigh_observations);
+    weigh.read("Lights", inputs.lights).read("Batch", batch.list).read("Voxels", voxels).push(params);
+    weigh.read("Records", records.records).read("Visibility", records.visibility).read("Fits", fits.fits);
+    weigh.read("Directions", records.directions).read("Colors", records.colors);
+    weigh.specialise("kVoxelChunks", inputs.map.chunks());
+    const graph::BufferId weights = weigh.create("Weights", voxel_count * gpu::kMaxObservations * sizeof(float));
+    weigh.dispatch_indirect(arguments, sizeof(glm::uvec4));
+
+    auto sum = frame.compute("specular.sum_lobes", spirv::sum_lobes);
+    sum.read("Lights", inputs.lights).read("Voxels", voxels).read("Records", records.records).push(params);
+    sum.read("Visibility", records.visibility).read("Weights", weights);
+    sum.read("Directions", records.directions).read("Colors", records.colors);
+    sum.specialise("kVoxelChunks", inputs.map.chunks());
+    const graph::BufferId sums = sum.create("Sums", uint64_t{batch.capacity} * gpu::kFitAlphas * sizeof(gpu::FitSums));
+    const graph::BufferId totals = sum.create("Totals", batch.capacity * sizeof(glm::vec4));
+    sum.dispatch_indirect(arguments, 2 * sizeof(glm::uvec4));
+
+    auto solve = frame.compute("specular.solve_ward", spirv::solve_ward);
+    solve.read("Batch", batch.list).read("Sums", sums).read("Totals", totals).read("Network", inputs.network);
+    solve.push(params);
+    fits.curves = solve.modify("Curves", fits.curves);
+    fits.fits = solve.modify("Fits", fits.fits);
+    segment_materials = solve.modify("Materials", segment_materials);
+    solve.dispatch_indirect(arguments);
+}
+
+}  // namespace patina

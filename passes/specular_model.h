@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/graph/frame.h"
+#include "passes/model/network.h"
+#include "passes/model/specular_estimates.h"
+#include "passes/model/ward_fits.h"
+#include "passes/reflectance_model.h"
+#include "passes/segmentation_model.h"
+
+namespace patina {
+
+/// How the specular materials of segments are estimated.
+struct SpecularSettings {
+    bool fit = true;                  ///< Ward's parameters are fitted to the observations
+    uint32_t segments_per_frame = 4;  ///< estimated at most
+    float memory = 0.97f;             ///< FitWardInputs::memory
+    uint32_t seed = 1;                ///< of the voxels that the network is shown
+};
+
+/// Specular materials of the map's segments: HemiCNN's estimate (paper, Section 3.6) where there is a network, and a
+/// fit of Ward's model. In each frame the segments whose observations changed most are estimated, and in turn those
+/// that have waited longest. Lives as long as the segments.
+class SpecularModel {
+  public:
+    /// Throws Error for settings that cannot be met, a network that does not estimate materials, or lack of memory.
+    SpecularModel(vulkan::Device& device, const SpecularSettings& settings, uint32_t labels,
+                  std::optional<NetworkDescription> network);
+
+    /// Forgets everything; the first thing done with it.
+    void reset(graph::Frame& frame) const;
+
+    /// Estimates what a frame's observations changed: `changed` is what ReflectanceModel::add returned. Replaces
+    /// materials of the reflectance.
+    void add(graph::Frame& frame, ReflectanceModel& reflectance, const SegmentationModel& segmentation,
+             const RecordList& changed, uint32_t frame_index);
+
+    /// gpu::WardFit per label.
+    graph::BufferId fits(graph::Frame& frame) const { return fits_.import(frame).fits; }
+
+    std::vector<VoxelMap::PoolBytes> memory() const;
+    const SpecularSettings& settings() const { return settings_; }
+    bool has_network() const { return network_.has_value(); }
+
+  private:
+    SpecularSettings settings_;
+    SpecularEstimates estimates_;
+    WardFits fits_;
+    std::optional<Network> network_;
+    MapAccess network_access_ = MapAccess::kStorage;
+};
+
+}  // namespace patina

@@ -1,0 +1,29 @@
+// Lights as the Ward fit sees them. The includer declares
+//   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
+#ifndef PATINA_LIB_FIT_LIGHTS_GLSL
+#define PATINA_LIB_FIT_LIGHTS_GLSL
+
+struct FitLight {
+    vec3 to_light;
+    float cosine;
+    vec3 gloss;  // rgb: intensity / r^2 sqrt(cos), of Eq. 3 and 6; 0 where it does not reach the voxel
+};
+
+bool bit_is_set(uvec2 bits, uint i) { return ((i < 32u ? bits.x >> i : bits.y >> (i - 32u)) & 1u) != 0u; }
+
+FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
+    const vec3 offset_m = lights[i].position_m.xyz - point_m;
+    const float distance2 = max(dot(offset_m, offset_m), 1e-6);
+    const vec3 to_light = offset_m * inversesqrt(distance2);
+    const float cosine = max(dot(normal, to_light), 0.0);
+    const vec3 gloss = lights[i].intensity.rgb * (sqrt(cosine) / distance2);
+    return FitLight(to_light, cosine, bit_is_set(reached, i) ? gloss : vec3(0.0));
+}
+
+// tan^2 of the angle between normal and half vector: with unit l and v, h = l + v has |h|^2 = 2 + 2 l.v.
+float tan2_of_half(FitLight light, vec3 to_viewer, float viewer_cosine) {
+    const float along = light.cosine + viewer_cosine;
+    return max((2.0 + 2.0 * dot(light.to_light, to_viewer)) / (along * along) - 1.0, 0.0);
+}
+
+#endif
