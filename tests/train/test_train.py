@@ -136,6 +136,14 @@ class Batches(WithFolder):
             np.testing.assert_array_equal(w, again_w)
             self.assertEqual(random.integers(1 << 30), again_random.integers(1 << 30))
 
+    def test_waiting_for_a_file_ends_when_asked_to(self):
+        os.remove(examples.shard_path(self.folder, 1))
+        source = self.batches()
+        source.stop.append(True)
+        with self.assertRaises(examples.Stopped):
+            next(iter(source))
+        self.assertEqual(source.position, (0, 0, 0))
+
     def test_processes_share_the_files(self):
         seen = [next(iter(self.batches(rank=rank, ranks=2)))[1] for rank in (0, 1)]
         for rank, w in enumerate(seen):

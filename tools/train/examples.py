@@ -28,11 +28,8 @@ def shard_path(folder, number):
     return os.path.join(folder, f"{number:04}.hemi")
 
 
-def wait_for(path, poll_s=5):
-    """Opens a file as soon as it is there: it may still be in the making."""
-    while not os.path.exists(path):
-        time.sleep(poll_s)
-    return ExampleFile(path)
+class Stopped(Exception):
+    """The training was asked to stop."""
 
 
 class Batches:
@@ -43,6 +40,15 @@ class Batches:
         self.folder, self.shards, self.batch, self.seed = folder, shards, batch, seed
         self.map, self.rank, self.ranks = hemisphere_map, rank, ranks
         self.position = (0, 0, 0)  # pass, file within it, batch within that
+        self.stop = []  # not empty: nobody wants more
+
+    def _wait_for(self, path, poll_s=1):
+        """Opens a file as soon as it is there: it may still be in the making."""
+        while not os.path.exists(path):
+            if self.stop:
+                raise Stopped
+            time.sleep(poll_s)
+        return ExampleFile(path)
 
     def _order(self, number):
         own = np.arange(1, self.shards + 1)[self.rank :: self.ranks]
@@ -59,7 +65,7 @@ class Batches:
             self.position = (number + 1, 0, 0)
 
     def _of_file(self, number, index, shard, begin):
-        file = wait_for(shard_path(self.folder, shard))
+        file = self._wait_for(shard_path(self.folder, shard))
         if file.map != self.map:
             raise ExampleFileError(f"{file.path}: map is {file.map}, the network is for {self.map}")
         images, w = file.images(), file.labels()["w"]

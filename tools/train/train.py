@@ -19,7 +19,7 @@ import torch
 import report
 import validate
 from example_file import MAPS, SAMPLES, SIDE, ExampleFile, ExampleFileError
-from examples import Batches
+from examples import Batches, Stopped
 from hemi_network import HemiNetwork, description, loss, loss_weights
 from tensor_file import write_tensors
 
@@ -193,13 +193,17 @@ def finish(training):
 
 
 def train(training):
-    stop = []
+    stop = training.batches.stop
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.append(True))
     options, recent, started, first = training.options, [], time.monotonic(), training.seen
     batches = iter(training.batches)
     while training.step < training.steps() and not stop:
-        recent.append(training.learn(*next(batches)))
+        try:
+            batch = next(batches)
+        except Stopped:
+            break
+        recent.append(training.learn(*batch))
         if training.rank == 0 and training.step % options.validate_every == 0:
             held_out = training.loss_of(training.estimates(1024))
             training.history.append([training.seen, float(np.mean(recent)), held_out, training.rate()])
