@@ -17,7 +17,7 @@ namespace patina {
 struct SpecularSettings {
     bool fit = true;                  ///< Ward's parameters are fitted to the observations
     uint32_t segments_per_frame = 4;  ///< estimated at most
-    float memory = 0.97f;             ///< FitWardInputs::memory
+    float memory = 0.93f;             ///< FitWardInputs::memory
     uint32_t seed = 1;                ///< of the voxels that the network is shown
 };
 

@@ -20,13 +20,13 @@ struct FitWardInputs {
     const SegmentSampleIds& sample_ids;
     graph::BufferId network;  ///< SpecularEstimateIds::materials: the prior, where there is an estimate
     uint32_t materials = 0;   ///< entries of the table of materials
-    float memory = 0.97f;     ///< what is left of the frames before when a segment is fitted again
+    float memory = 0.93f;     ///< what is left of the frames before when a segment is fitted again
 };
 
 /// Fits Ward's ks and alpha (paper, Eq. 2-6) of a batch's segments to the observations of the voxels that they keep.
 /// Given alpha, the model is linear in kd, per voxel, and in ks: kd drops out with the mean over a voxel's
 /// observations, ks follows in closed form, and the best alpha of a grid is refined between its neighbours (variable
-/// projection). Clipped channels, flat views and voxels whose lights are not known or reach it in part are left out;
+/// projection). Clipped channels, flat views and voxels whose lights are not known, or all hidden, are left out;
 /// outliers of the estimate before count less. Sums are kept by label, `memory` of them from one fit to the next.
 /// Priors of ks and alpha hold where observations do not tell: the network's estimate, else ks 0. `fits` is brought up
 /// to date, and `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the material does.

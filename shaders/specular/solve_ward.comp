@@ -18,7 +18,7 @@ layout(std430, binding = 5) buffer Fits { WardFit fits[]; };
 layout(std430, binding = 6) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
-const float kLeastDeviation = 0.1;  // as in weigh_observations.comp
+const float kLeastDeviation = 0.1;  // of observations, for the prior's weight
 // Observations of one voxel, and voxels beside each other, err together: so many count as one.
 const float kCorrelated = 50.0;
 const float kKsDeviation = 0.15;    // of ks from 0, where no network has said anything

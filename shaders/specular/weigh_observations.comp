@@ -30,8 +30,8 @@ layout(push_constant) uniform Push { FitParams params; };
 
 const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB's steps in dark tones
 const float kRelativeNoise = 0.05;  // and that of bright ones: normals, lights and colours are estimates
-const float kRobustScale = 3.0;     // deviations at which a weight is a quarter
-const float kLeastDeviation = 0.1;  // where everything fits, weights would take what does not for noise
+const float kRobustScale = 2.0;     // deviations at which a weight is a quarter
+const float kLeastDeviation = 0.3;  // where everything fits, weights would take what does not for noise
 // Of an estimate that tells outliers: to one without a highlight, the first view of it would be one.
 const float kTrustedConfidence = 0.5;
 const uint kRobustSteps = 2u;
