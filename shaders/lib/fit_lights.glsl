@@ -2,14 +2,13 @@
 //   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
 #ifndef PATINA_LIB_FIT_LIGHTS_GLSL
 #define PATINA_LIB_FIT_LIGHTS_GLSL
+#include "lib/reflectance.glsl"
 
 struct FitLight {
     vec3 to_light;
     float cosine;
     vec3 gloss;  // rgb: intensity / r^2 sqrt(cos), of Eq. 3 and 6; 0 where it does not reach the voxel
 };
-
-bool bit_is_set(uvec2 bits, uint i) { return ((i < 32u ? bits.x >> i : bits.y >> (i - 32u)) & 1u) != 0u; }
 
 FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
     const vec3 offset_m = lights[i].position_m.xyz - point_m;

@@ -31,6 +31,9 @@ bool is_marched_from(uint word, VoxelRecord record, uint position_version) {
            abs(offset - surface_offset_vox(record)) < 0.15;
 }
 
+// Whether light i is in a record's visibility.
+bool bit_is_set(uvec2 bits, uint i) { return ((i < 32u ? bits.x >> i : bits.y >> (i - 32u)) & 1u) != 0u; }
+
 // The versions that an albedo was computed with. Never 0, as lights' versions are not.
 uint refined_word(uint lights_version, uint material_version) {
     return max(lights_version & 0xffffu, 1u) | material_version << 16;

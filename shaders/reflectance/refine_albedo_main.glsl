@@ -58,8 +58,6 @@ float brightness[kMaxObservations];   // of that
 float trust[kMaxObservations];        // its inverse variance, relative to one without a highlight; 0: no observation
 float whole_trust[kMaxObservations];  // less where a channel is clipped
 
-uint bit_of(uvec2 bits, uint i) { return (i < 32u ? bits.x >> i : bits.y >> (i - 32u)) & 1u; }
-
 // Adds up all lights. Ward's lobe (lib/ward.glsl) in a form without trigonometry: with unit l and v, h = l + v has
 // |h|^2 = 2 + 2 l.v, and tan^2 of its angle to the normal is |h|^2 / (n.h)^2 - 1. The error of this difference, 1e-6,
 // is small beside alpha^2.
@@ -73,9 +71,9 @@ Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scal
         const float cosine = max(dot(normal, to_light), 0.0);
         const vec3 facing = lights[i].intensity.rgb / distance2;
         const vec3 received = facing * (cosine / kWardPi);
-        const bool lit = bit_of(reached, i) != 0u;
+        const bool lit = bit_is_set(reached, i);
         irradiance.sum += lit ? received : vec3(0.0);
-        irradiance.uncertain += bit_of(uncertain, i) != 0u ? received : vec3(0.0);
+        irradiance.uncertain += bit_is_set(uncertain, i) ? received : vec3(0.0);
         // cos / sqrt(cos) of Eq. 3 and 6.
         const vec3 gloss = lit ? facing * sqrt(cosine) : vec3(0.0);
         if (!specular) continue;

@@ -46,6 +46,8 @@ def arguments():
     add("--checkpoint-every", type=int, default=500, help="steps")
     add("--validate-every", type=int, default=1000, help="steps, on a part of the validation file")
     add("--threads", type=int, default=1, help="of a process on a CPU")
+    add("--precision", choices=("bf16", "f32"), default="bf16", help="of activations; weights and what is measured are "
+        "f32. bf16 is three times as fast on CPUs that have AVX-512 BF16, and slow on those that do not")
     add("--export-only", action="store_true", help="report and export what the checkpoint holds; trains nothing")
     return parser.parse_args()
 
@@ -113,7 +115,9 @@ class Training:
         # A small segment has fewer voxels than are drawn; and steps are faster.
         images = images[:, random.permutation(SAMPLES)[: random.integers(self.options.least_samples, SAMPLES + 1)]]
         images = torch.from_numpy(images).to(self.device).float().unflatten(2, (SIDE, SIDE))
-        value = loss(self.parallel(images), torch.from_numpy(w).to(self.device), self.weights)
+        with torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=self.options.precision == "bf16"):
+            estimate = self.parallel(images).float()
+        value = loss(estimate, torch.from_numpy(w).to(self.device), self.weights)
         self.adam.zero_grad(set_to_none=True)
         value.backward()
         self.adam.step()
@@ -169,7 +173,8 @@ def export(training, w):
         "training": json.dumps({"seed": options.seed, "examples_seen": training.seen, "batch": options.batch,
                                 "processes": training.ranks, "rate": options.rate, "least_samples": options.least_samples,
                                 "lambda_d": options.lambda_d, "lambda_l": options.lambda_l,
-                                "average": options.average, "of": options.examples}),
+                                "average": options.average, "of": options.examples,
+                                "precision": options.precision}),
         "losses": json.dumps({"training": training.history[-1][1] if training.history else None,
                               "validation": training.loss_of(w)}),
         "mean_absolute_errors": json.dumps(figures),
