@@ -152,6 +152,7 @@ RaycastImages Reconstruction::sharpened(graph::Frame& graph, const RaycastImages
 graph::ImageId Reconstruction::segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                                        const RaycastImages& model, const InputImages& input, const RgbdFrame& frame) {
     SegmentationInputs inputs{surface_of(visible, model), input.filtered_depth_m, input.color, {}};
+    if (specular_) inputs.fits = specular_->fits(graph);
     if (settings_.segmentation->given) {
         const Extent2D extent = frame.depth.camera.extent;
         std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());

@@ -12,16 +12,25 @@
 #include "passes/segmentation/sample_records.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
+#include "shared/ward_fit.h"
 
 namespace patina {
 
 namespace {
+
+// Not in the frames in which samples are chosen, which add passes of their own.
+constexpr uint32_t kSweepTurn = 1, kRelabelTurn = 3;
 
 /// In the beginning, when most records are new, more often: after 4, 8, ... frames.
 bool samples_are_due(uint32_t frame_index, uint32_t every) {
     if (every == 0) return false;
     const uint32_t frames = frame_index + 1;
     return frames % every == 0 || (frames >= 4 && frames < every && std::has_single_bit(frames));
+}
+
+/// Of no label: one entry, as buffers have some bytes.
+graph::BufferId no_fits(graph::Frame& frame) {
+    return frame.fill(frame.create_buffer("segmentation.no_fits", sizeof(gpu::WardFit)), 0);
 }
 
 }  // namespace
@@ -54,6 +63,9 @@ gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camer
     params.merge_share = settings_.merge_share;
     params.merge_count = settings_.merge_frames;
     params.merge_chroma = settings_.merge_chroma;
+    params.merge_brightness = settings_.merge_brightness;
+    params.merge_ks = settings_.merge_ks;
+    params.merge_alpha = settings_.merge_alpha;
     params.new_pixels = settings_.new_pixels;
     params.prune_voxels = settings_.prune_voxels;
     params.prune_frames = settings_.prune_frames;
@@ -86,13 +98,16 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
         add_sample_labels(frame, map_, labels, table.parents, surface, access_, gpu::kSampleStride);
     const SegmentOverlaps overlaps =
         add_count_overlaps(frame, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
-    const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, uniforms);
+    KnownMaterials materials{samples_.import(frame).kd, inputs.fits ? *inputs.fits : no_fits(frame)};
+    const graph::BufferId assigned = add_assign_labels(frame, table, seen, overlaps, materials, uniforms);
+    // In these frames add_records() begins it anew.
+    if (!samples_are_due(frame_index, settings_.sample_every)) frame.keep(materials.kd);
     const DueBlocks due = add_list_due_blocks(frame, map_, voxels, labels, surface.blocks, values.stamp);
     add_update_labels(frame, map_, voxels, labels, table, surface, due, seen, assigned);
-    add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
+    if (values.stamp % gpu::kSweepEvery == kSweepTurn) add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);
-    return add_label_pixels(frame, seen, known, table.parents, assigned);
+    return add_label_pixels(frame, seen, known, table.parents, assigned, {values.extent.x, values.extent.y});
 }
 
 void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
@@ -100,7 +115,8 @@ void SegmentationModel::add_records(graph::Frame& frame, const ObservationMap& m
     gpu::SegmentationParams values{};
     values.stamp = frame_index + 1;
     const auto uniforms = frame.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
-    add_relabel_records(frame, map, records, table_.import(frame), uniforms);
+    if (values.stamp % gpu::kSweepEvery == kRelabelTurn)
+        add_relabel_records(frame, map, records, table_.import(frame), uniforms);
     if (!samples_are_due(frame_index, settings_.sample_every)) return;
     SegmentSampleIds ids = samples_.import(frame);
     add_sample_records(frame, map, records, samples_, ids, settings_.sample_observations,

@@ -16,17 +16,20 @@ namespace patina {
 
 /// Sizes and thresholds of the segmentation of the map.
 struct SegmentationSettings {
-    SegmentSettings frame;            ///< how a frame is divided
-    bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
-    uint32_t capacity_labels = 4096;  ///< label 0 included
-    float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
-    uint32_t inherit_pixels = 15;     ///< and how many at least
-    uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
-    float merge_share = 0.2f;    ///< of a segment's pixels that its second label must cover to be the same object's
-    uint32_t merge_frames = 3;   ///< in which two labels were the same, less those in which they were not
-    float merge_chroma = 0.03f;  ///< labels whose mean chromaticities differ by more are not merged
-    uint32_t prune_voxels = 10;  ///< labels with fewer voxels are given up
-    uint32_t prune_frames = 30;  ///< when they were not seen for so many frames
+    SegmentSettings frame{.stride_px = 2};  ///< how a frame is divided
+    bool given = false;                     ///< segments are those of RgbdFrame::labels, whose ids are the labels
+    uint32_t capacity_labels = 4096;        ///< label 0 included
+    float inherit_share = 0.3f;             ///< of a segment's pixels that a label must cover to be the segment's
+    uint32_t inherit_pixels = 15;           ///< and how many at least
+    uint32_t new_pixels = 100;              ///< smaller segments get no label of their own
+    float merge_share = 0.2f;       ///< of a segment's pixels that its second label must cover to be the same object's
+    uint32_t merge_frames = 3;      ///< in which two labels were the same, less those in which they were not
+    float merge_chroma = 0.03f;     ///< labels whose mean chromaticities differ by more are not merged
+    float merge_brightness = 1.4f;  ///< nor those whose kd's luminances have a larger ratio
+    float merge_ks = 0.1f;          ///< nor those whose ks differs by more, in any channel
+    float merge_alpha = 2;          ///< or whose alpha's ratio is larger
+    uint32_t prune_voxels = 10;     ///< labels with fewer voxels are given up
+    uint32_t prune_frames = 30;     ///< when they were not seen for so many frames
     uint32_t sample_every =
         16;  ///< frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
@@ -49,7 +52,8 @@ struct LabelStability {
         voxels += counters.frame_voxels;
         flips += counters.frame_flips;
         if (counters.frame_due > 0)
-            seen += static_cast<double>(counters.frame_voxels) * counters.frame_seen / counters.frame_due;
+            seen += static_cast<double>(counters.frame_voxels) * counters.frame_seen * gpu::kLabelQuads /
+                    counters.frame_due;
     }
 };
 
@@ -59,6 +63,7 @@ struct SegmentationInputs {
     graph::ImageId depth_m;                 ///< W x H r32f: smoothed readings
     graph::ImageId color_linear;            ///< rgba16f, of the colour camera
     std::optional<graph::ImageId> given{};  ///< W x H r32ui: ids that take the place of the frame's own segments
+    std::optional<graph::BufferId> fits{};  ///< gpu::WardFit per label, as of the frame before
 };
 
 /// The map's segments: a label per voxel, carried over from the segments of frames so that an object keeps its label.
@@ -80,8 +85,8 @@ class SegmentationModel {
     graph::ImageId add(graph::Frame& frame, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
                        const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index) const;
 
-    /// Brings one part of the observations' labels up to date with merged and pruned segments, another in every frame,
-    /// and chooses the segments' records when that is due. To be called in every frame in which add() was.
+    /// Brings one part of the observations' labels up to date with merged and pruned segments, another every few
+    /// frames, and chooses the segments' records when that is due. To be called in every frame in which add() was.
     void add_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
                      uint32_t frame_index) const;
 

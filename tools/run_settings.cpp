@@ -35,6 +35,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
     if (s.segmentation) {
         visit("segmentation.capacity_labels", s.segmentation->capacity_labels);
         visit("segmentation.min_pixels", s.segmentation->frame.min_pixels);
+        visit("segmentation.stride_px", s.segmentation->frame.stride_px);
         visit("segmentation.crease_degrees", s.segmentation->frame.edges.crease_degrees);
         visit("segmentation.crease_sigmas", s.segmentation->frame.edges.crease_sigmas);
         visit("segmentation.jump_m", s.segmentation->frame.edges.jump_m);
@@ -44,6 +45,9 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("segmentation.merge_share", s.segmentation->merge_share);
         visit("segmentation.merge_frames", s.segmentation->merge_frames);
         visit("segmentation.merge_chroma", s.segmentation->merge_chroma);
+        visit("segmentation.merge_brightness", s.segmentation->merge_brightness);
+        visit("segmentation.merge_ks", s.segmentation->merge_ks);
+        visit("segmentation.merge_alpha", s.segmentation->merge_alpha);
         visit("segmentation.prune_voxels", s.segmentation->prune_voxels);
         visit("segmentation.prune_frames", s.segmentation->prune_frames);
     }

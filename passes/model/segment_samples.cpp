@@ -5,13 +5,18 @@ namespace patina {
 SegmentSamples::SegmentSamples(vulkan::Device& device, uint32_t labels)
     : labels_(labels),
       counts_(device.create_buffer({"segments.sample_counts", labels * sizeof(gpu::SegmentSampleCount)})),
-      kept_(device.create_buffer({"segments.samples", uint64_t{labels} * gpu::kSegmentSamples * sizeof(uint32_t)})) {}
+      kept_(device.create_buffer({"segments.samples", uint64_t{labels} * gpu::kSegmentSamples * sizeof(uint32_t)})),
+      kd_(device.create_buffer({"segments.kd", labels * sizeof(gpu::SegmentKd)})) {}
 
-void SegmentSamples::reset(graph::Frame& frame) const { frame.keep(frame.fill(frame.import(counts_), 0)); }
+void SegmentSamples::reset(graph::Frame& frame) const {
+    frame.keep(frame.fill(frame.import(counts_), 0));
+    frame.keep(frame.fill(frame.import(kd_), 0));
+}
 
 void SegmentSamples::keep(graph::Frame& frame, const SegmentSampleIds& ids) {
     frame.keep(ids.counts);
     frame.keep(ids.kept);
+    frame.keep(ids.kd);
 }
 
 }  // namespace patina

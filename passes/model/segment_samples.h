@@ -12,6 +12,7 @@ namespace patina {
 struct SegmentSampleIds {
     graph::BufferId counts;  ///< gpu::SegmentSampleCount per label
     graph::BufferId kept;    ///< u32 record ids, gpu::kSegmentSamples per label, in no order
+    graph::BufferId kd;      ///< gpu::SegmentKd per label: of the records that were kept, as they were then
 };
 
 /// References to records of an observation map by segment: all of them where there are at most gpu::kSegmentSamples,
@@ -26,15 +27,17 @@ class SegmentSamples {
     /// No segment has any; the first thing done with it.
     void reset(graph::Frame& frame) const;
 
-    SegmentSampleIds import(graph::Frame& frame) const { return {frame.import(counts_), frame.import(kept_)}; }
+    SegmentSampleIds import(graph::Frame& frame) const {
+        return {frame.import(counts_), frame.import(kept_), frame.import(kd_)};
+    }
     static void keep(graph::Frame& frame, const SegmentSampleIds& ids);
 
     uint32_t labels() const { return labels_; }
-    uint64_t bytes() const { return counts_->bytes() + kept_->bytes(); }
+    uint64_t bytes() const { return counts_->bytes() + kept_->bytes() + kd_->bytes(); }
 
   private:
     uint32_t labels_;
-    vulkan::BufferRef counts_, kept_;
+    vulkan::BufferRef counts_, kept_, kd_;
 };
 
 }  // namespace patina

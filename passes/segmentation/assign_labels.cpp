@@ -5,7 +5,7 @@
 namespace patina {
 
 graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
-                                  const SegmentOverlaps& overlaps, graph::BufferId params) {
+                                  const SegmentOverlaps& overlaps, KnownMaterials& materials, graph::BufferId params) {
     constexpr uint64_t kEntries = gpu::kMaxFrameSegments + 1;
     auto pass = frame.compute("segmentation.assign_labels", spirv::assign_labels);
     pass.read("Segments", segments.segments).read("SegmentCount", segments.count).read("Segmentation", params);
@@ -20,6 +20,8 @@ graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, c
     table.labels = pass.modify("Labels", table.labels);
     table.pairs = pass.modify("Pairs", table.pairs);
     table.free_labels = pass.modify("FreeLabels", table.free_labels);
+    materials.kd = pass.modify("SegmentKds", materials.kd);
+    pass.read("Fits", materials.fits);
     table.counters = pass.modify("Counters", table.counters);
     pass.dispatch(1);
     return assigned;

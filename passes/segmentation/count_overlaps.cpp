@@ -16,9 +16,11 @@ uint32_t overlap_slots(Extent2D extent) {
 SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
                                    graph::ImageId map_label, graph::ImageId position_m, graph::ImageId color_linear,
                                    graph::BufferId params) {
-    const Extent2D extent = frame.common_extent({segments.segment, position_m});
+    const Extent2D extent = frame.shape(position_m).extent;
     const Extent2D sampled = frame.shape(map_label).extent;
-    check_sampled("segmentation.count_overlaps", extent, sampled);
+    check_sampled("segmentation.count_overlaps", "labels of the map", extent, sampled, gpu::kSampleStride);
+    check_sampled("segmentation.count_overlaps", "segments", extent, frame.shape(segments.segment).extent,
+                  segments.stride);
     const uint32_t slots = overlap_slots(extent);
     SegmentOverlaps out;
     out.table = frame.fill(frame.create_buffer("segmentation.overlaps", slots * sizeof(gpu::SegmentOverlap)), 0);
@@ -29,6 +31,7 @@ SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, 
     out.table = pass.modify("Overlaps", out.table);
     out.list = pass.modify("OverlapList", out.list);
     table.labels = pass.modify("Labels", table.labels);
+    pass.specialise("kSegmentStride", segments.stride);
     const uint32_t strips = (sampled.width + gpu::kStripPixels - 1) / gpu::kStripPixels;
     pass.dispatch_covering(Extent2D{strips, sampled.height});
     return out;

@@ -14,7 +14,7 @@ uint32_t overlap_slots(Extent2D extent);
 /// Counts the pixels of `segments` by label in `map_label` (add_sample_labels of every gpu::kSampleStride-th pixel;
 /// each stands for those around it), and adds chromaticities of `color_linear` (rgba16f, seen by
 /// gpu::SegmentationParams::color_camera) where clipping did not change them to the labels' sums. `params` holds
-/// gpu::SegmentationParams. Throws Error when images differ in extent.
+/// gpu::SegmentationParams. Throws Error when images do not fit each other.
 SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
                                    graph::ImageId map_label, graph::ImageId position_m, graph::ImageId color_linear,
                                    graph::BufferId params);

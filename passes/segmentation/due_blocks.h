@@ -6,7 +6,8 @@ namespace patina {
 
 /// Blocks whose voxels a frame's segments label.
 struct DueBlocks {
-    graph::BufferId list;       ///< u32: count, then block ids in no order
+    graph::BufferId
+        list;  ///< u32: count, then block ids in no order, | gpu::kSettledBlock if their labels have settled
     graph::BufferId arguments;  ///< dispatch of one group per listed block, in rows of gpu::kGroupsPerRow
 };
 

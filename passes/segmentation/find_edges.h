@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/graph/frame.h"
+#include "passes/segmentation/frame_segments.h"
 #include "shared/camera.h"
 #include "shared/find_edges.h"
 
@@ -33,12 +34,14 @@ struct EdgeSettings {
     float claim_m = 0.006f;       ///< an edge pixel joins a segment whose tangent plane is so near
     float claim_sigmas = 3;       ///< and so many sigmas of its depth,
     uint32_t claim_reach_px = 6;  ///< within so many pixels in x or y
+    uint32_t color_reach_px = 2;  ///< how far on both sides of a pixel colours are compared
 };
 
-/// The parameters that passes on a frame's surface share; components of fewer than `min_pixels` get no pixels. Throws
-/// Error for a reach below 1 px, or bounds that cross.
+/// The parameters that passes on a frame's surface share; components of fewer than `min_pixels` get no pixels. Settings
+/// count pixels of the camera; passes look at every `stride_px`-th of them in x and y. Throws Error for a reach or
+/// stride below 1 px, or bounds that cross.
 gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const EdgeSettings& settings,
-                                            uint32_t min_pixels);
+                                            uint32_t min_pixels, uint32_t stride_px = 1);
 
 /// What a depth camera sees of a frame.
 struct FrameSurface {
@@ -54,9 +57,10 @@ struct ColorPicture {
 
 /// The model's depth where there is one, else the reading, and its colours. `model_position_m`: W x H rgba32f, w is
 /// depth, 0 where nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none
-/// (add_filter_depth); both seen by `camera`. Throws Error when extents differ.
+/// (add_filter_depth); both seen by `camera`. Every `stride_px`-th pixel in x and y is looked at: images of W x H over
+/// that, rounded up, of which the other passes see no more. Throws Error when extents differ.
 FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
-                              const gpu::Camera& camera, const ColorPicture& color);
+                              const gpu::Camera& camera, const ColorPicture& color, uint32_t stride_px = 1);
 
 /// Normals from eight depths around each pixel of FrameSurface::depth_m. Returns W x H r32ui:
 /// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none

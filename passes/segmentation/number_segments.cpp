@@ -18,7 +18,7 @@ graph::BufferId add_empty_keys(graph::Frame& frame, const std::string& name, uin
 }
 
 FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, graph::ImageId key,
-                                  graph::ImageId depth_m, uint32_t min_pixels, uint32_t capacity) {
+                                  graph::ImageId depth_m, uint32_t min_pixels, uint32_t capacity, uint32_t stride) {
     if (min_pixels == 0) throw Error("the least size of a segment is 0 px, it must be 1 at least");
     if (capacity == 0 || capacity > gpu::kMaxFrameSegments) {
         throw Error("a frame's table of segments for ", capacity, " is asked for, it must be 1 to ",
@@ -26,13 +26,15 @@ FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, g
     }
     const Extent2D extent = frame.common_extent({key, depth_m});
     const auto groups = static_cast<uint32_t>(frame.bytes(pixels) / kGroupBytes);
-    const gpu::NumberSegmentsParams params{min_pixels, capacity, groups, 0};
+    const uint32_t area = stride * stride, least = (min_pixels + area - 1) / area;
+    const gpu::NumberSegmentsParams params{least, capacity, groups, 0};
     auto total = frame.compute("segmentation.total_segments", spirv::total_segments);
     total.read("Pixels", pixels).push(params);
     const graph::BufferId totals = total.create("Totals", groups * sizeof(gpu::KeyTotals));
     total.dispatch(groups);
 
     FrameSegments out;
+    out.stride = stride;
     const uint64_t table_bytes = (uint64_t{capacity} + 1) * sizeof(gpu::FrameSegment);
     out.segments = frame.fill(frame.create_buffer("segmentation.segments", table_bytes), 0);
     auto number = frame.compute("segmentation.number_segments", spirv::number_segments);
@@ -48,7 +50,7 @@ FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, g
     out.segment = measure.create("segment", {extent, vulkan::Format::kR32u});
     const auto keys = static_cast<uint32_t>(frame.bytes(pixels) / sizeof(uint32_t));
     measure.push(
-        gpu::MeasureSegmentsParams{{extent.width, extent.height}, row_words_of(extent), keys, min_pixels, 0, 0, 0});
+        gpu::MeasureSegmentsParams{{extent.width, extent.height}, row_words_of(extent), keys, least, area, 0, 0});
     measure.dispatch_covering(words_of(extent));
     return out;
 }

@@ -6,7 +6,8 @@
 
 namespace patina {
 
-/// Goes through one of gpu::kSweepFrames parts of the observations, chosen by the blocks' keys and the frame's stamp:
+/// Goes through one of gpu::kSweepParts parts of the observations, chosen by the blocks' keys and the frame's stamp
+/// over gpu::kSweepEvery:
 /// replaces the labels of records by their roots, those given up by 0. `params` holds gpu::SegmentationParams.
 void add_relabel_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
                          const SegmentTableIds& table, graph::BufferId params);

@@ -6,11 +6,11 @@
 
 namespace patina {
 
-void check_sampled(const char* pass, Extent2D segments, Extent2D sampled) {
-    const Extent2D expected = sampled_extent(segments, gpu::kSampleStride);
+void check_sampled(const char* pass, const char* what, Extent2D full, Extent2D sampled, uint32_t stride) {
+    const Extent2D expected = sampled_extent(full, stride);
     if (sampled != expected) {
-        throw Error("the pass '", pass, "' got labels of the map of ", sampled, " pixels, it must be ", expected,
-                    " for segments of ", segments);
+        throw Error("the pass '", pass, "' got ", what, " of ", sampled, " pixels, it must be ", expected,
+                    " for pictures of ", full);
     }
 }
 

@@ -22,11 +22,13 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
     auto choose = frame.compute("segmentation.choose_samples", spirv::choose_samples);
     choose.read("Levels", levels).push(params);
     ids.counts = choose.write("Counts", ids.counts);
+    ids.kd = choose.write("SegmentKds", ids.kd);
     choose.dispatch_covering(labels);
 
     auto collect = frame.compute("segmentation.collect_samples", spirv::collect_samples);
     collect.read("RecordCounters", records.record_counters).read("Records", records.records).push(params);
-    collect.read("Counts", ids.counts);
+    collect.read("Counts", ids.counts).read("Albedo", records.albedo);
+    ids.kd = collect.modify("SegmentKds", ids.kd);
     collect.modify("Filled", zeros("segmentation.samples_filled", labels));
     ids.kept = collect.write("Kept", ids.kept);
     collect.dispatch_covering(capacity);

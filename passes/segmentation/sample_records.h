@@ -6,7 +6,8 @@
 
 namespace patina {
 
-/// Chooses anew which records of each segment are kept, among those with at least `min_observations`.
+/// Chooses anew which records of each segment are kept, among those with at least `min_observations`, and
+/// sums up their albedo.
 void add_sample_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
                         const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations, uint32_t seed);
 

@@ -15,8 +15,9 @@ constexpr uint32_t kGivenIds = 65536;
 
 FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
                                 const gpu::Camera& camera, const ColorPicture& color, const SegmentSettings& settings) {
-    const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels);
-    const FrameSurface surface = add_choose_depth(frame, model_position_m, reading_m, camera, color);
+    const uint32_t stride = settings.stride_px;
+    const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels, stride);
+    const FrameSurface surface = add_choose_depth(frame, model_position_m, reading_m, camera, color, stride);
     const graph::ImageId normal = add_fit_normals(frame, surface.depth_m, params);
     const graph::ImageId inner_depth_m = add_find_edges(frame, surface, normal, params);
     const auto [component, pixels, parents] =
@@ -24,7 +25,7 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
     const ClaimedEdges claimed = add_claim_edges(frame, component, pixels, surface, normal, params);
     const graph::BufferId joined = add_join_folds(frame, claimed.contacts, parents, pixels, settings.folds);
     return add_number_segments(frame, joined, claimed.component, surface.depth_m, settings.min_pixels,
-                               settings.capacity);
+                               settings.capacity, stride);
 }
 
 FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m, uint32_t capacity) {

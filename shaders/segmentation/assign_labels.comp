@@ -3,9 +3,12 @@
 // Gives every segment of the frame a label: that of the map which it shares most with, or a new one. Joins labels that
 // segments have often enough said to be one, and once in a sweep prunes labels and takes back those that nothing holds
 // any more. One workgroup; whatever depends on an order is done in that of segments or labels.
+#include "lib/luminance.glsl"
 #include "lib/voxel_map.glsl"
 #include "shared/frame_segments.h"
+#include "shared/segment_samples.h"
 #include "shared/segments.h"
+#include "shared/ward_fit.h"
 
 layout(local_size_x = kAssignLabelsGroup) in;
 layout(std430, binding = 0) readonly buffer Segments { FrameSegment segments[]; };
@@ -20,9 +23,13 @@ layout(std430, binding = 8) coherent buffer Labels { SegmentLabel labels[]; };
 layout(std430, binding = 9) coherent buffer Pairs { SegmentPair pairs[]; };
 layout(std430, binding = 10) coherent buffer FreeLabels { uint free_labels[]; };
 layout(std430, binding = 11) coherent buffer Counters { SegmentCounters counters; };
+layout(std430, binding = 12) coherent buffer SegmentKds { SegmentKd kds[]; };
+layout(std430, binding = 13) readonly buffer Fits { WardFit fits[]; };
 
 const uint kGroup = kAssignLabelsGroup;
 const uint kNone = 0xffffffffu;
+const float kKdError = 0.01;  // of a segment's mean: light that was not accounted for does so much to dark surfaces
+const float kSureFit = 0.5;   // confidence of a specular fit that counts
 
 shared uint partial[kGroup];
 shared uint merged;
@@ -101,6 +108,7 @@ bool joins(SegmentVote vote, uint pixels) {
 
 void start_label(uint label) {
     labels[label] = SegmentLabel(kLiveLabel, frame.stamp, frame.stamp, 0u, 0u, 0u, 0u, 0u);
+    kds[label] = SegmentKd(0u, 0u, 0u, 0u);
     parents[label] = label;
     atomicMax(counters.high_water, label + 1u);
 }
@@ -184,8 +192,46 @@ bool same_chroma(uint a, uint b) {
     return max(apart.x, apart.y) <= frame.merge_chroma;
 }
 
+bool is_kd_known(uint label) { return kds[label].samples >= kLeastKdSamples; }
+
+vec3 mean_kd(uint label) {
+    const SegmentKd sums = kds[label];
+    return vec3(sums.r, sums.g, sums.b) / (float(sums.samples) * kKdSteps);
+}
+
+// Light and shadow are not in kd: brightness says as much as chromaticity does, but for errors of dark colours.
+bool same_kd(uint a, uint b) {
+    const vec3 one = mean_kd(a), two = mean_kd(b);
+    const float one_sum = max(one.r + one.g + one.b, 1e-3), two_sum = max(two.r + two.g + two.b, 1e-3);
+    const vec2 apart = abs(one.rg / one_sum - two.rg / two_sum);
+    const float darker = min(luminance(one), luminance(two)), brighter = max(luminance(one), luminance(two));
+    return max(apart.x, apart.y) <= frame.merge_chroma + kKdError / min(one_sum, two_sum) &&
+           brighter <= frame.merge_brightness * darker + kKdError;
+}
+
+bool is_gloss_known(uint label) {
+    return label < uint(fits.length()) && fits[label].estimates > 0u && fits[label].confidence >= kSureFit;
+}
+
+bool same_gloss(uint a, uint b) {
+    const vec4 one = fits[a].ks_alpha, two = fits[b].ks_alpha;
+    const vec3 apart = abs(one.rgb - two.rgb);
+    return max(max(apart.r, apart.g), apart.b) <= frame.merge_ks &&
+           max(one.a, two.a) <= frame.merge_alpha * min(one.a, two.a);
+}
+
+// What is known of both has to agree.
+bool same_material(uint a, uint b) {
+    if (is_gloss_known(a) && is_gloss_known(b) && !same_gloss(a, b)) return false;
+    return is_kd_known(a) && is_kd_known(b) ? same_kd(a, b) : same_chroma(a, b);
+}
+
 void merge_labels(uint into, uint label) {
     parents[label] = into;
+    kds[into].samples += kds[label].samples;
+    kds[into].r += kds[label].r;
+    kds[into].g += kds[label].g;
+    kds[into].b += kds[label].b;
     labels[into].chroma_samples += labels[label].chroma_samples;
     labels[into].chroma_r += labels[label].chroma_r;
     labels[into].chroma_g += labels[label].chroma_g;
@@ -211,7 +257,7 @@ void count_pairs(uint count) {
         if (pairs[pair].stamp == frame.stamp) continue;
         pairs[pair].stamp = frame.stamp;
         pairs[pair].count += 1u;
-        if (pairs[pair].count < frame.merge_count || !same_chroma(low, high)) continue;
+        if (pairs[pair].count < frame.merge_count || !same_material(low, high)) continue;
         // The one that more was seen of keeps its name; of equal ones the smaller.
         const bool keeps_low = labels[low].chroma_samples >= labels[high].chroma_samples;
         merge_labels(keeps_low ? low : high, keeps_low ? high : low);
@@ -308,6 +354,7 @@ void main() {
         counters.frame_merged = 0u;
         counters.frame_voxels = 0u;
         counters.frame_flips = 0u;
+        counters.frame_due = 0u;
         counters.overflows += overflow ? 1u : 0u;
     }
     join();

@@ -5,6 +5,7 @@
 #include "shared/choose_depth.h"
 #include "shared/convert_color.h"
 
+layout(constant_id = 0) const int kStride = 1;  // of the pixels in x and y
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, rgba32f) uniform readonly image2D model_position_m;  // w: depth, 0 where nothing was hit
 layout(binding = 1, r32f) uniform readonly image2D reading_m;
@@ -14,12 +15,13 @@ layout(binding = 4, r32ui) uniform writeonly uimage2D chroma;
 layout(push_constant) uniform Push { ChooseDepthParams params; };
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    const ivec2 sampled = ivec2(gl_GlobalInvocationID.xy);
+    const ivec2 pixel = sampled * kStride;
     if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
     const float model = imageLoad(model_position_m, pixel).w;
     const float reading = imageLoad(reading_m, pixel).x;
     const float z = model > 0.0 ? model : reading;
-    imageStore(depth_m, pixel, vec4(z));
+    imageStore(depth_m, sampled, vec4(z));
 
     const vec2 ray = (vec2(pixel) - params.depth_focal_center_px.zw) / params.depth_focal_center_px.xy;
     const vec3 at = (params.color_from_depth * vec4(ray * z, z, 1.0)).xyz;
@@ -27,5 +29,5 @@ void main() {
     // Outside the image loads are zero: no colour.
     const vec4 seen = imageLoad(color_linear, ivec2(floor(place + 0.5)));
     const bool known = z > 0.0 && at.z > 0.0 && seen.a >= kColorValid;
-    imageStore(chroma, pixel, uvec4(known ? pack_chroma(seen.rgb) : 0u));
+    imageStore(chroma, sampled, uvec4(known ? pack_chroma(seen.rgb) : 0u));
 }

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Chooses each segment's lowest level so that what is of it or above fits.
+// Chooses each segment's lowest level so that what is of it or above fits. Begins the sums of its albedo.
 #include "shared/segment_samples.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Levels { uint levels[]; };
 layout(std430, binding = 1) writeonly buffer Counts { SegmentSampleCount counts[]; };
+layout(std430, binding = 2) writeonly buffer SegmentKds { SegmentKd kds[]; };
 layout(push_constant) uniform Push { SegmentSampleParams params; };
 
 void main() {
@@ -18,5 +19,6 @@ void main() {
         kept = fits ? eligible : kept;
         lowest = fits ? uint(i) : lowest;
     }
+    kds[label] = SegmentKd(0u, 0u, 0u, 0u);
     counts[label] = SegmentSampleCount(kept, eligible, lowest, 0u);
 }

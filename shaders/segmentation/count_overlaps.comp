@@ -17,6 +17,8 @@ layout(std430, binding = 5) coherent buffer Overlaps { SegmentOverlap overlaps[]
 layout(std430, binding = 6) coherent buffer OverlapList { uint overlap_list[]; };  // entries asked for, then slots
 layout(std430, binding = 7) buffer Labels { SegmentLabel labels[]; };
 
+layout(constant_id = 0) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of
+
 const int kStride = int(kSampleStride);
 
 // Adds to the entry of a key. A table that is three quarters full takes no more keys: the frame is then left out as a
@@ -58,7 +60,7 @@ void main() {
     // Beyond the image's border loads are zero: no segment.
     [[unroll]] for (int i = 0; i < int(kStripPixels); ++i) {
         const ivec2 pixel = first + ivec2(i, 0);
-        const uint here = imageLoad(map_label, pixel).x | imageLoad(segment, pixel * kStride).x << 16;
+        const uint here = imageLoad(map_label, pixel).x | imageLoad(segment, pixel * kStride / kSegmentStride).x << 16;
         if (here != key) {
             count(key, run);
             key = here;

@@ -26,7 +26,6 @@ Side side_at(ivec2 pixel, Side here, ivec2 offset, float limit_m) {
                 joined ? surface_point_m(params, place, z) : here.point_m);
 }
 
-const int kColorReach = 2;           // how far on both sides colours are compared (pixels)
 const float kParallelCosine = 0.95;  // of the normals on both sides of a step, which it tilts
 
 // What the surface does from one side of a pixel to the other.
@@ -75,7 +74,7 @@ void main() {
 
     const Bend x = bend_at(pixel, here, ivec2(reach, 0), limit_m, cosine, step_m);
     const Bend y = bend_at(pixel, here, ivec2(0, reach), limit_m, cosine, step_m);
-    const bool edge = packed == 0u || x.crease || y.crease || differ(pixel, ivec2(kColorReach, 0), x.fold) ||
-                      differ(pixel, ivec2(0, kColorReach), y.fold);
+    const bool edge = packed == 0u || x.crease || y.crease || differ(pixel, ivec2(params.color_reach_px, 0), x.fold) ||
+                      differ(pixel, ivec2(0, params.color_reach_px), y.fold);
     imageStore(inner_depth_m, pixel, vec4(edge ? -depth : depth));
 }

@@ -16,7 +16,7 @@ void add(uint number, uint count, uint first_x, uint y) {
     if (number == 0u) return;
     const uvec2 last = params.extent - 1u;
     const bool at_border = first_x == 0u || first_x + count - 1u == last.x || y == 0u || y == last.y;
-    atomicAdd(segments[number].pixels, count);
+    atomicAdd(segments[number].pixels, count * params.area);
     if (at_border) segments[number].touches_border = 1u;
 }
 

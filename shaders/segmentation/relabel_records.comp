@@ -19,7 +19,7 @@ void main() {
     const uint block = gl_GlobalInvocationID.x;
     if (block >= counters.high_water) return;
     const uint key = block_keys[block];
-    if (key == kEmptyKey || hash_of_key(key) % kSweepFrames != frame.stamp % kSweepFrames) return;
+    if (key == kEmptyKey || hash_of_key(key) % kSweepParts != frame.stamp / kSweepEvery % kSweepParts) return;
     const uint count = 1u << 3u * params.edge_shift;
     for (uint i = 0u; i < count; ++i) {
         const uint record = record_table[block * count + i];

@@ -42,7 +42,7 @@ void main() {
     barrier();
     const uint id = gl_GlobalInvocationID.x;
     const uint key = id < counters.high_water ? block_keys[id] : kEmptyKey;
-    if (key != kEmptyKey && hash_of_key(key) % kSweepFrames == frame.stamp % kSweepFrames)
+    if (key != kEmptyKey && hash_of_key(key) % kSweepParts == frame.stamp / kSweepEvery % kSweepParts)
         due[atomicAdd(due_count, 1u)] = id;
     barrier();
     const uint count = due_count;

@@ -9,8 +9,9 @@
 #include "lib/voxel_map.glsl"
 #include "shared/visible_blocks.h"
 
+layout(constant_id = 1) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of
 layout(local_size_x = kUpdateLabelsGroup) in;
-layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids
+layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids | kSettledBlock
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(binding = 3, rgba32f) uniform readonly image2D position_m;
@@ -27,6 +28,7 @@ layout(std430, binding = 19) readonly buffer Visible { uint visible[]; };  // co
 layout(std430, binding = 20) buffer Stamps { uint stamps[]; };             // as LabelMapIds::stamps
 
 const float kNearVox = 1.0;        // from the surface, of a voxel that may hold a point of it
+const float kMayBeVox = 2.0;       // from what a pixel shows of it, of a voxel of which nothing better is known
 const float kGrazingCosine = 0.1;  // of steeper views the pixels say little
 
 shared uint voted;
@@ -35,20 +37,35 @@ shared uint unsettled;  // voxels near the surface whose label is not known, not
 shared uint listed;
 shared uint list[kBlockVoxels];  // voxels near the surface, in any order: each is updated by itself
 
-// The label that a voxel's pixel gives it; 0 where it is hidden, or its pixel has none.
-uint seen_label(vec3 center_m, vec3 camera_m) {
-    const vec3 at = to_camera(view.camera, center_m);
-    if (at.z < view.near_m) return kNoLabel;
-    const ivec2 pixel = ivec2(floor(project(view.camera, at) + 0.5));
-    const uint here = imageLoad(segment, pixel).x;
+// The label that a pixel which was looked at gives a voxel at `at`, in camera coordinates; 0 where the voxel is hidden
+// there, or the pixel has none.
+uint label_at(ivec2 looked_at, vec3 at, vec3 toward, float near_vox) {
+    const uint here = imageLoad(segment, looked_at).x;
     if (here == 0u) return kNoLabel;
+    const ivec2 pixel = looked_at * kSegmentStride;
     const float depth_m = imageLoad(position_m, pixel).w;  // one channel is gathered faster than three
     const vec3 facing = imageLoad(normal, pixel).xyz;
-    const vec3 toward = camera_m - center_m;
     const bool grazing = dot(facing, toward) < kGrazingCosine * length(toward);
     const vec3 offset_m = to_world_direction(view.camera, at - unproject(view.camera, vec2(pixel)) * depth_m);
-    const bool apart = abs(dot(facing, offset_m)) > kNearVox * view.grid.voxel_m;
+    const bool apart = abs(dot(facing, offset_m)) > near_vox * view.grid.voxel_m;
     return grazing || apart ? kNoLabel : imageLoad(SegmentLabels, int(here)).x;
+}
+
+// The label of the nearest pixel that was looked at. If that is not of the voxel's surface, as beside a silhouette,
+// one of the other three around it may be.
+uint seen_label(vec3 center_m, vec3 camera_m, float near_vox) {
+    const vec3 at = to_camera(view.camera, center_m);
+    if (at.z < view.near_m) return kNoLabel;
+    const vec2 place = project(view.camera, at) / float(kSegmentStride);
+    const ivec2 nearest = ivec2(floor(place + 0.5));
+    const vec3 toward = camera_m - center_m;
+    uint label = label_at(nearest, at, toward, near_vox);
+    if (kSegmentStride == 1) return label;
+    const ivec2 other = mix(ivec2(-1), ivec2(1), greaterThan(place, vec2(nearest)));
+    if (label == kNoLabel) label = label_at(nearest + ivec2(other.x, 0), at, toward, near_vox);
+    if (label == kNoLabel) label = label_at(nearest + ivec2(0, other.y), at, toward, near_vox);
+    if (label == kNoLabel) label = label_at(nearest + other, at, toward, near_vox);
+    return label;
 }
 
 uint updated(uint word, uint label, inout uint votes, inout uint flips) {
@@ -61,11 +78,14 @@ uint updated(uint word, uint label, inout uint votes, inout uint flips) {
     return next;
 }
 
-// Lists the voxels of the block that are near the surface. An invocation looks at four along x at a time.
-void list_near(uint block) {
+// Lists the voxels of the block that are near the surface. An invocation looks at four along x at a time. Of a block
+// that has settled it looks at every fourth four, others in every turn, which lie in all layers of x, y and z.
+void list_near(uint block, bool settled) {
     const uint first_quad = index_in_chunk(view.grid.chunk_shift, block) * (kBlockVoxels / 4u);
-    for (uint i = 0u; i < kLabelQuads; ++i) {
-        const uint quad = i * kUpdateLabelsGroup + gl_LocalInvocationIndex;
+    const uint lane = gl_LocalInvocationIndex;
+    const uint chosen = 4u * lane + (stamps[block] / kSettledFrames + lane / 4u) % 4u;
+    for (uint i = 0u; i < (settled ? 1u : kLabelQuads); ++i) {
+        const uint quad = settled ? chosen : i * kUpdateLabelsGroup + lane;
         uvec4 voxels;
 #define LOAD_TSDF(C) voxels = tsdf[C].quads[first_quad + quad]
         WITH_CHUNK(view.grid.chunk_shift, block, LOAD_TSDF)
@@ -78,16 +98,14 @@ void list_near(uint block) {
 
 void main() {
     const uint item = group_item(gl_WorkGroupID);
-    if (item == 0u && gl_LocalInvocationIndex == 0u) {
-        counters.frame_due = due[0];
-        counters.frame_seen = visible[0];
-    }
+    if (item == 0u && gl_LocalInvocationIndex == 0u) counters.frame_seen = visible[0];
     if (item >= due[0]) return;
-    const uint block = due[1u + item];
+    const uint block = due[1u + item] & ~kSettledBlock;
+    const bool settled = due[1u + item] >= kSettledBlock;
     const uint lane = gl_LocalInvocationIndex;
     if (lane == 0u) voted = flipped = listed = unsettled = 0u;
     barrier();
-    list_near(block);
+    list_near(block, settled);
     barrier();
     const ivec3 corner = block_of_key(view.grid, block_keys[block]) * int(kBlockEdge);
     const uint first = index_in_chunk(view.grid.chunk_shift, block) * kBlockVoxels;
@@ -97,11 +115,11 @@ void main() {
         const uint voxel = list[i];
         const ivec3 within = ivec3(voxel & 7u, voxel >> 3 & 7u, voxel >> 6);
         const vec3 center_m = (vec3(corner + within) + 0.5) * view.grid.voxel_m;
-        const uint label = seen_label(center_m, camera_m);
         uint known;
 #define LOAD_WORD(C) known = labels[C].words[first + voxel]
 #define STORE_WORD(C) labels[C].words[first + voxel] = known
         WITH_CHUNK(view.grid.chunk_shift, block, LOAD_WORD)
+        const uint label = seen_label(center_m, camera_m, known == 0u ? kMayBeVox : kNearVox);
         const uint before = known;
         known = updated(known, label, votes, flips);
         open += known >> 16 < max(kSettledConfidence, before >> 16) ? 1u : 0u;
@@ -111,7 +129,8 @@ void main() {
     if (flips > 0u) atomicAdd(flipped, flips);
     if (open > 0u) atomicAdd(unsettled, open);
     barrier();
-    if (lane == 0u && listed > 0u && unsettled == 0u) stamps[block] |= kSettledBlock;
+    if (lane == 0u) atomicAdd(counters.frame_due, settled ? 1u : kLabelQuads);
+    if (lane == 0u && (settled || listed > 0u) && unsettled == 0u) stamps[block] |= kSettledBlock;
     if (lane == 0u && voted > 0u) atomicAdd(counters.frame_voxels, voted);
     if (lane == 0u && flipped > 0u) atomicAdd(counters.frame_flips, flipped);
 }

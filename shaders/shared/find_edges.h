@@ -4,7 +4,7 @@
 #include "shared/interop.h"
 INTEROP_BEGIN
 
-// What the passes on a frame's surface share.
+// What the passes on a frame's surface share. Pixels are those that are looked at.
 struct FrameSurfaceParams {
     vec4 focal_center_px;  // fx, fy, cx, cy
     uvec2 extent;          // pixels
@@ -25,6 +25,7 @@ struct FrameSurfaceParams {
     float claim_sigmas;    // claim_m + claim_sigmas * sigma(z)
     int claim_reach_px;    // and so near in x or y
     uint min_pixels;       // smaller components are none
+    int color_reach_px;    // how far on both sides of a pixel colours are compared
 };
 
 INTEROP_END

@@ -33,10 +33,10 @@ struct MeasureSegmentsParams {
     uvec2 extent;  // pixels
     uint row_words;
     uint keys;
-    uint min_pixels;
+    uint min_pixels;  // of those that are looked at
+    uint area;        // how many each of them stands for
     uint pad0;
     uint pad1;
-    uint pad2;
 };
 
 INTEROP_END

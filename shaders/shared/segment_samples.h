@@ -17,6 +17,17 @@ struct SegmentSampleCount {
     uint pad0;
 };
 
+// The albedo of the records that were kept of a segment: whole numbers, so that the order of arrival does not matter.
+struct SegmentKd {
+    uint samples;  // records whose kd is known
+    uint r;        // sums of kd, up to 1, in steps of 1 / kKdSteps
+    uint g;
+    uint b;
+};
+INTEROP_CONST float kKdSteps = 1023.0f;
+INTEROP_CONST float kLeastKdCertainty = 0.5f;  // in every channel, of a record whose kd counts
+INTEROP_CONST uint kLeastKdSamples = 8u;       // that say what a segment's albedo is
+
 struct SegmentSampleParams {
     uint seed;
     uint labels;            // label 0 included

@@ -11,6 +11,8 @@ INTEROP_CONST uint kMaxLabelConfidence = 255u;  // of a voxel: 8 bits
 INTEROP_CONST uint kPairBuckets = 1024u;        // of the pair counters
 INTEROP_CONST uint kPairWays = 4u;              // counters of one bucket
 INTEROP_CONST uint kSweepFrames = 64u;          // in which every voxel block is swept once
+INTEROP_CONST uint kSweepEvery = 4u;            // of so many frames one sweeps voxels, another one the observations
+INTEROP_CONST uint kSweepParts = kSweepFrames / kSweepEvery;
 INTEROP_CONST float kChromaSteps = 1023.0f;
 INTEROP_CONST uint kMostChromaSamples = 1u << 20;  // then the sums are halved
 
@@ -84,7 +86,7 @@ struct SegmentCounters {
     uint frame_merged;  // in this frame
     uint frame_voxels;  // voxels that this frame's segments voted on
     uint frame_flips;   // of these, how many went from one label to another
-    uint frame_due;     // blocks that had their turn in this frame
+    uint frame_due;     // blocks that had their turn in this frame, times kLabelQuads; of settled ones a part had it
     uint frame_seen;    // and those in sight
 };
 
@@ -99,12 +101,16 @@ struct SegmentationParams {
     uint inherit_pixels;
     float merge_share;  // of a segment's pixels, for its second label
     uint merge_count;
-    float merge_chroma;  // the largest difference of chromaticities
+    float merge_chroma;  // the largest difference of chromaticities,
     uint new_pixels;
     uint prune_voxels;
     uint prune_frames;
+    float merge_brightness;  // the largest ratio of kd's luminances,
+    float merge_ks;          // difference of ks
+    float merge_alpha;       // and ratio of alphas
     uint pad0;
     uint pad1;
+    uint pad2;
 };
 
 struct RelabelParams {

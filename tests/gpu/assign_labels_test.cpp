@@ -1,8 +1,11 @@
 #include "passes/segmentation/assign_labels.h"
 
 #include <algorithm>
+#include <array>
 #include <random>
 
+#include "shared/segment_samples.h"
+#include "shared/ward_fit.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/segment_table.h"
 
@@ -25,10 +28,15 @@ class AssignLabels : public GpuTest {
         params_.merge_share = 0.2f;
         params_.merge_count = 3;
         params_.merge_chroma = 0.03f;
+        params_.merge_brightness = 1.4f;
+        params_.merge_ks = 0.1f;
+        params_.merge_alpha = 2;
         params_.new_pixels = 100;
         params_.prune_voxels = 10;
         params_.prune_frames = 30;
         table_.emplace(device(), capacity);
+        kd_.assign(capacity, {});
+        fits_.assign(1, {});
         graph::Frame frame = runner().begin();
         table_->reset(frame);
         run(std::move(frame));
@@ -41,12 +49,15 @@ class AssignLabels : public GpuTest {
         SegmentTableIds ids = table_->import(frame);
         const auto uniforms = frame.upload<gpu::SegmentationParams>("params", std::span(&params_, 1));
         const FrameSegments segments = upload_segments(frame, seen, keys);
+        KnownMaterials materials{frame.upload<gpu::SegmentKd>("kd", std::span(std::as_const(kd_))),
+                                 frame.upload<gpu::WardFit>("fits", std::span(std::as_const(fits_)))};
         const graph::Readback read =
-            frame.read_back(add_assign_labels(frame, ids, segments, upload_overlaps(frame, seen), uniforms));
-        const graph::Readback counters = frame.read_back(ids.counters);
+            frame.read_back(add_assign_labels(frame, ids, segments, upload_overlaps(frame, seen), materials, uniforms));
+        const graph::Readback counters = frame.read_back(ids.counters), kd = frame.read_back(materials.kd);
         SegmentTable::keep(frame, ids);
         run(std::move(frame));
         counters_ = counters.as<gpu::SegmentCounters>().front();
+        kd_ = kd.as<gpu::SegmentKd>();
         auto labels = read.as<uint32_t>();
         labels.erase(labels.begin());
         labels.resize(seen.size());
@@ -74,7 +85,26 @@ class AssignLabels : public GpuTest {
         });
     }
 
+    /// Two labels that one segment has covered for three frames, with colours that are alike or not, and what else is
+    /// known of their materials. Returns whether they were merged.
+    bool merges(bool alike, const std::array<glm::vec3, 2>& kd, uint32_t samples,
+                const std::vector<gpu::WardFit>& fits = std::vector<gpu::WardFit>(1)) {
+        start(64);
+        assign({{500, {}}, {500, {}}});
+        paint_all(300, 300);
+        if (!alike) change([](uint32_t label, gpu::SegmentLabel& known) { known.chroma_r += label == 2 ? 60 : 0; });
+        for (size_t i = 0; i < 2; ++i) {
+            const glm::uvec3 sums(kd[i] * (gpu::kKdSteps * static_cast<float>(samples)));
+            kd_[1 + i] = {samples, sums.r, sums.g, sums.b};
+        }
+        fits_ = fits;
+        for (int i = 0; i < 3; ++i) assign({{1000, {{1, 400}, {2, 500}}}});
+        return counters_.merged > 0;
+    }
+
     gpu::SegmentationParams params_{};
+    std::vector<gpu::SegmentKd> kd_;
+    std::vector<gpu::WardFit> fits_;
     gpu::SegmentCounters counters_{};
     std::optional<SegmentTable> table_;
 
@@ -139,6 +169,39 @@ TEST_F(AssignLabels, LabelsThatAreOneForThreeFramesAreMergedIfTheirColoursAgree)
         EXPECT_EQ(counters_.merged, alike ? 1u : 0u);
         EXPECT_EQ(counters_.live, alike ? 1u : 2u);
     }
+}
+
+TEST_F(AssignLabels, TheAlbedoDecidesOnMergingWhereItIsKnownOfBoth) {
+    const glm::vec3 grey(0.4f), blue(0.2f, 0.3f, 0.6f);
+    EXPECT_TRUE(merges(false, {grey, grey}, 20)) << "coloured light does not matter";
+    EXPECT_TRUE(merges(true, {grey, grey * 0.8f}, 20));
+    EXPECT_FALSE(merges(true, {grey, grey * 0.6f}, 20)) << "of another brightness";
+    EXPECT_FALSE(merges(true, {grey, blue}, 20)) << "of another colour";
+    EXPECT_TRUE(merges(true, {grey, grey * 0.6f}, gpu::kLeastKdSamples - 1)) << "too few records to tell";
+    EXPECT_TRUE(merges(true, {glm::vec3(0.012f), glm::vec3(0.006f)}, 20)) << "as dark as errors";
+}
+
+TEST_F(AssignLabels, SureSpecularFitsHaveToAgree) {
+    const glm::vec3 grey(0.4f);
+    const auto fit = [](float ks, float alpha, float confidence) {
+        return gpu::WardFit{{ks, ks, ks, alpha}, {}, confidence, 0, 1, 0};
+    };
+    const auto with = [&](const gpu::WardFit& one, const gpu::WardFit& two) {
+        return merges(true, {grey, grey}, 20, {{}, one, two});
+    };
+    EXPECT_TRUE(with(fit(0.2f, 0.1f, 0.9f), fit(0.25f, 0.15f, 0.9f)));
+    EXPECT_FALSE(with(fit(0.2f, 0.1f, 0.9f), fit(0.4f, 0.1f, 0.9f))) << "ks";
+    EXPECT_FALSE(with(fit(0.2f, 0.1f, 0.9f), fit(0.2f, 0.3f, 0.9f))) << "alpha";
+    EXPECT_TRUE(with(fit(0.2f, 0.1f, 0.9f), fit(0.4f, 0.3f, 0.3f))) << "one of them is not sure";
+}
+
+TEST_F(AssignLabels, MergedLabelsShareTheirAlbedoAndNewOnesHaveNone) {
+    EXPECT_TRUE(merges(true, {glm::vec3(0.4f), glm::vec3(0.5f)}, 20));
+    EXPECT_EQ(kd_[1].samples, 40u);
+    EXPECT_NEAR(kd_[1].r / (40 * gpu::kKdSteps), 0.45, 1e-3);
+    kd_[3] = {9, 1, 1, 1};
+    EXPECT_THAT(assign({{500, {}}}), ElementsAre(3));
+    EXPECT_EQ(kd_[3].samples, 0u);
 }
 
 TEST_F(AssignLabels, OfMergedLabelsTheOneThatMoreWasSeenOfRemains) {

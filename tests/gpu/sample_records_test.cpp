@@ -26,25 +26,30 @@ class SampleRecords : public GpuTest {
         std::vector<gpu::SegmentSampleCount> counts;
         std::vector<std::set<uint32_t>> kept;      ///< voxels by label
         std::vector<std::vector<uint32_t>> drawn;  ///< likewise, in the order of the draw
+        std::vector<gpu::SegmentKd> kd;
     };
 
-    Sampled sample(const std::vector<gpu::VoxelRecord>& records, uint32_t seed, uint32_t draw_seed) {
+    /// `albedo`: by record, as the refinement stores it; none: nothing is known.
+    Sampled sample(const std::vector<gpu::VoxelRecord>& records, uint32_t seed, uint32_t draw_seed,
+                   const std::vector<glm::uvec2>& albedo = {}) {
         graph::Frame frame = runner().begin();
         ObservationMapIds ids = map_.import(frame);
         gpu::MapCounters counters{};
         counters.high_water = static_cast<uint32_t>(records.size());
         ids.record_counters = frame.upload_bytes(ids.record_counters, 0, std::as_bytes(std::span(&counters, 1)), true);
         ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(records)), false);
+        if (!albedo.empty()) ids.albedo = frame.upload_bytes(ids.albedo, 0, std::as_bytes(std::span(albedo)), false);
         SegmentSampleIds sampled = samples_.import(frame);
         add_sample_records(frame, map_, ids, samples_, sampled, 4, seed);
         ObservationMap::keep(frame, ids);
         SegmentSamples::keep(frame, sampled);
         const graph::Readback counts = frame.read_back(sampled.counts), kept = frame.read_back(sampled.kept),
+                              kd = frame.read_back(sampled.kd),
                               drawn =
                                   frame.read_back(add_draw_records(frame, ids, samples_, sampled, kDraws, draw_seed));
         runner().submit(std::move(frame));
         runner().wait();
-        Sampled result{counts.as<gpu::SegmentSampleCount>(), {}, {}};
+        Sampled result{counts.as<gpu::SegmentSampleCount>(), {}, {}, kd.as<gpu::SegmentKd>()};
         const auto voxel = [&](uint32_t id) { return records[id].block_key * 8 + (records[id].state >> 5 & 7); };
         const auto all = kept.as<uint32_t>(), draws = drawn.as<uint32_t>();
         for (uint32_t label = 0; label < kLabels; ++label) {
@@ -94,6 +99,32 @@ TEST_F(SampleRecords, KeepsAllOfASmallSegmentAndBetweenHalfAndAllPlacesOfALargeO
         EXPECT_EQ(different.size(), kDraws) << label;
         EXPECT_TRUE(std::ranges::includes(sampled.kept[label], different)) << label;
     }
+}
+
+/// kd as the refinement packs it: a shared exponent of 5 bits, which puts a half at 256; and three times 10 bits.
+glm::uvec2 packed_albedo(glm::vec3 kd, float certainty) {
+    const glm::uvec3 m(glm::round(kd * 512.0f));
+    const auto c = static_cast<uint32_t>(certainty * 1023);
+    return {m.r | m.g << 9 | m.b << 18 | 15u << 27, c | c << 10 | c << 20};
+}
+
+TEST_F(SampleRecords, SumsUpTheAlbedoOfTheRecordsThatAreKept) {
+    std::vector<gpu::VoxelRecord> records;
+    std::vector<glm::uvec2> albedo;
+    for (uint32_t i = 0; i < 1200; ++i) {
+        records.push_back(record(i, i < 40 ? 1 : i < 80 ? 2 : 3));
+        const glm::vec3 kd = i < 40 ? glm::vec3(i % 2 == 0 ? 0.6f : 0.2f, 0.5f, 0.3f) : glm::vec3(0.7f);
+        albedo.push_back(packed_albedo(kd, i >= 40 && i < 80 ? 0.4f : 0.9f));
+    }
+    const Sampled sampled = sample(records, 1, 2, albedo);
+    EXPECT_EQ(sampled.kd[1].samples, 40u);
+    EXPECT_NEAR(sampled.kd[1].r / (40 * gpu::kKdSteps), 0.4, 2e-3);  // 9 bits, and steps of kd
+    EXPECT_NEAR(sampled.kd[1].g / (40 * gpu::kKdSteps), 0.5, 2e-3);
+    EXPECT_NEAR(sampled.kd[1].b / (40 * gpu::kKdSteps), 0.3, 2e-3);
+    EXPECT_EQ(sampled.kd[2].samples, 0u) << "not sure";
+    EXPECT_EQ(sampled.kd[3].samples, sampled.kept[3].size());
+    EXPECT_NEAR(sampled.kd[3].g / (float(sampled.kd[3].samples) * gpu::kKdSteps), 0.7, 2e-3);
+    EXPECT_EQ(sample({record(0, 1)}, 1, 2, {glm::uvec2(0)}).kd[1].samples, 0u) << "begun anew, and nothing is known";
 }
 
 TEST_F(SampleRecords, NeitherTheOrderOfRecordsNorTheRunMatters) {

@@ -246,6 +246,31 @@ TEST_F(SegmentFrame, NoiseDoesNotSplitThem) {
     }
 }
 
+/// Of every second pixel the parts are the same, but for what lies between two of those that are looked at.
+TEST_F(SegmentFrame, EverySecondPixelShowsTheSameParts) {
+    const SegmentSettings half{.stride_px = 2};
+    for (const Extent2D extent : {kExtent, Extent2D{319, 241}}) {
+        const Image<float> exact_m = rendered(box_on_floor(), extent);
+        for (const Image<float>& depth_m : {exact_m, noisy(exact_m, 2)}) {
+            const Result full = segment(depth_m), got = segment(depth_m, half);
+            ASSERT_EQ(got.segment.extent(), (Extent2D{(extent.width + 1) / 2, (extent.height + 1) / 2}));
+            EXPECT_EQ(got.count.segments, 2u);
+            size_t differ = 0, known = 0;
+            for (uint32_t y = 0; y < got.segment.extent().height; ++y) {
+                for (uint32_t x = 0; x < got.segment.extent().width; ++x) {
+                    known += got.segment.at(x, y) != 0 ? 1 : 0;
+                    differ += got.segment.at(x, y) != full.segment.at(2 * x, 2 * y) ? 1 : 0;
+                }
+            }
+            EXPECT_LT(differ, known / 40);
+            EXPECT_EQ(got.segments[1].pixels + got.segments[2].pixels, 4 * known);
+        }
+    }
+    SegmentSettings large = half;
+    large.min_pixels = kExtent.width * kExtent.height / 2;
+    EXPECT_EQ(segment(rendered(box_on_floor()), large).count.segments, 1u) << "settings count all pixels";
+}
+
 TEST_F(SegmentFrame, ReadingsStandInWhereThereIsNoModel) {
     const Image<float> depth_m = rendered(box_on_floor());
     Image<float> model_m = depth_m, reading_m(depth_m.extent());

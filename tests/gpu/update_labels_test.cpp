@@ -19,11 +19,13 @@ class UpdateLabels : public GpuTest {
         gpu::SegmentCounters counters{};
     };
 
-    /// Updates all blocks in use from a view whose pixels are in these segments.
+    /// Updates all blocks in use from a view whose pixels are in these segments; `listed_as`: gpu::kSettledBlock for
+    /// blocks that have settled.
     Update update(LabelRig& rig, const RigidTransform& world_from_camera, const Image<uint32_t>& segment,
-                  const std::vector<uint32_t>& segment_labels, const std::vector<uint32_t>& roots) {
+                  const std::vector<uint32_t>& segment_labels, const std::vector<uint32_t>& roots, uint32_t stride = 1,
+                  uint32_t listed_as = 0) {
         const Intrinsics& camera = LabelRig::camera();
-        const std::vector<uint32_t> list = blocks_in_use(rig);
+        const std::vector<uint32_t> list = blocks_in_use(rig, listed_as);
         graph::Frame frame = runner().begin();
         const VoxelMapIds voxels = rig.map().import(frame);
         const VisibleBlocks visible =
@@ -33,10 +35,11 @@ class UpdateLabels : public GpuTest {
         const std::vector<uint32_t> groups{gpu::kGroupsPerRow, (list[0] + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow,
                                            1, 0};
         const DueBlocks due{frame.upload<uint32_t>("blocks", list), frame.upload<uint32_t>("arguments", groups)};
-        const FrameSegments segments{
-            frame.upload("segment", {camera.extent, vulkan::Format::kR32u}, std::as_bytes(std::span(segment.pixels()))),
-            {},
-            {}};
+        const FrameSegments segments{frame.upload("segment", {segment.extent(), vulkan::Format::kR32u},
+                                                  std::as_bytes(std::span(segment.pixels()))),
+                                     {},
+                                     {},
+                                     stride};
         SegmentTableIds table = table_.import(frame);
         table.parents = frame.upload<uint32_t>("parents", roots);
         table.counters = frame.fill(table.counters, 0);
@@ -48,7 +51,7 @@ class UpdateLabels : public GpuTest {
                               counters = frame.read_back(table.counters);
         run(std::move(frame));
         return {{camera, world_from_camera, position.image<glm::vec4>(), widen(normal.image<uint64_t>()), segment,
-                 segment_labels, rig.map().settings().voxel_m},
+                 segment_labels, rig.map().settings().voxel_m, static_cast<int>(stride)},
                 counters.as<gpu::SegmentCounters>().front()};
     }
 
@@ -56,11 +59,11 @@ class UpdateLabels : public GpuTest {
 
   private:
     /// Count, then ids.
-    static std::vector<uint32_t> blocks_in_use(LabelRig& rig) {
+    static std::vector<uint32_t> blocks_in_use(LabelRig& rig, uint32_t listed_as) {
         std::vector<uint32_t> list{0};
         const std::vector<uint32_t> keys = rig.fusion().table().block_keys;
         for (uint32_t block = 0; block < keys.size(); ++block) {
-            if (keys[block] != gpu::kEmptyKey) list.push_back(block);
+            if (keys[block] != gpu::kEmptyKey) list.push_back(block | listed_as);
         }
         list[0] = static_cast<uint32_t>(list.size() - 1);
         return list;
@@ -71,7 +74,9 @@ bool is_near_surface(const reference::Voxel& voxel, double voxel_m) {
     return voxel.weight > 0 && std::abs(voxel.sdf_m) < voxel_m;
 }
 
-TEST_F(UpdateLabels, AgreesWithTheReference) {
+class UpdateLabelsAtStride : public UpdateLabels, public ::testing::WithParamInterface<uint32_t> {};
+
+TEST_P(UpdateLabelsAtStride, AgreesWithTheReference) {
     std::mt19937 random(23);
     const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
     LabelRig rig(device(), runner());
@@ -79,13 +84,14 @@ TEST_F(UpdateLabels, AgreesWithTheReference) {
     const std::vector<uint32_t> roots = random_roots(LabelRig::kLabels, random);
     std::vector<uint32_t> labels(kSegments);
     for (uint32_t s = 1; s < kSegments; ++s) labels[s] = roots[below(LabelRig::kLabels)];
-    Image<uint32_t> segment(LabelRig::camera().extent);
+    const uint32_t stride = GetParam();
+    Image<uint32_t> segment(sampled_extent(LabelRig::camera().extent, stride));
     for (size_t i = 0; i < segment.pixels().size(); ++i) {
         segment.pixels()[i] = static_cast<uint32_t>(i / 7 * 31 % kSegments);  // runs of seven pixels
     }
     const reference::Volume volume = rig.fusion().volume();
     const reference::LabelVolume before = rig.volume();
-    const Update got = update(rig, reference::look_at({0.2, -0.1, 0.1}, {0, 0, 1}), segment, labels, roots);
+    const Update got = update(rig, reference::look_at({0.2, -0.1, 0.1}, {0, 0, 1}), segment, labels, roots, stride);
     const reference::LabelVolume after = rig.volume();
     uint32_t voted = 0, flipped = 0, differ = 0;
     for (const auto& [block, voxels] : volume.blocks) {
@@ -93,7 +99,7 @@ TEST_F(UpdateLabels, AgreesWithTheReference) {
             const glm::dvec3 center_m = volume.center_m(block, static_cast<int>(i));
             const reference::VoxelLabel known = before.blocks.at(block)[i];
             const uint32_t label =
-                is_near_surface(voxels[i], volume.voxel_m) ? reference::seen_label(got.view, center_m) : 0;
+                is_near_surface(voxels[i], volume.voxel_m) ? reference::seen_label(got.view, center_m, known) : 0;
             const reference::VoxelLabel root = reference::relabelled(known, roots);
             const reference::VoxelLabel expected = label == 0 ? known : reference::voted(root, label);
             voted += label != 0 ? 1 : 0;
@@ -108,6 +114,8 @@ TEST_F(UpdateLabels, AgreesWithTheReference) {
     EXPECT_NEAR(got.counters.frame_voxels, voted, voted / 500.0);
     EXPECT_NEAR(got.counters.frame_flips, flipped, 3);
 }
+
+INSTANTIATE_TEST_SUITE_P(Strides, UpdateLabelsAtStride, ::testing::Values(1u, 2u, 3u));
 
 /// How near the way from a point to a camera passes the ball's centre.
 double distance_from_ball_m(glm::dvec3 from_m, const RigidTransform& world_from_camera) {
@@ -182,6 +190,35 @@ TEST_F(UpdateLabels, ABlockSettlesWhenAllItsVoxelsNearTheSurfaceAreSure) {
     rig.set(std::vector<uint32_t>(voxels, label_word({5, 100})), no_stamps);
     update(rig, front, segment, {0, 6}, roots);
     EXPECT_LT(settled(), before / 2) << "contradicted, but for blocks out of sight";
+}
+
+TEST_F(UpdateLabels, InFourTurnsEveryVoxelOfASettledBlockHasOne) {
+    LabelRig rig(device(), runner());
+    std::vector<uint32_t> roots(LabelRig::kLabels);
+    std::iota(roots.begin(), roots.end(), 0u);
+    const Image<uint32_t> segment(LabelRig::camera().extent, 1);
+    const std::vector<uint32_t> words(size_t{LabelRig::kCapacity} * gpu::kBlockVoxels, label_word({5, 100}));
+    rig.set(words, std::vector<uint32_t>(LabelRig::kCapacity, 1));
+    const uint32_t votes = update(rig, RigidTransform(1.0), segment, {0, 5}, roots).counters.frame_voxels;
+    const std::vector<uint32_t> expected = rig.words();
+    rig.set(words, std::vector<uint32_t>(LabelRig::kCapacity, 1));
+    uint32_t all = 0;
+    for (uint32_t turn = 0; turn < gpu::kLabelQuads; ++turn) {
+        rig.set(rig.words(), std::vector<uint32_t>(LabelRig::kCapacity, 7 + turn * gpu::kSettledFrames));
+        const uint32_t own =
+            update(rig, RigidTransform(1.0), segment, {0, 5}, roots, 1, gpu::kSettledBlock).counters.frame_voxels;
+        EXPECT_NEAR(own, votes / 4.0, votes / 40.0);
+        all += own;
+    }
+    EXPECT_EQ(all, votes);
+    EXPECT_EQ(rig.words(), expected);
+    for (const uint32_t stamp : rig.stamps()) {
+        EXPECT_TRUE(stamp >= gpu::kSettledBlock || stamp == 7 + 3 * gpu::kSettledFrames) << "free blocks have no turn";
+    }
+    update(rig, RigidTransform(1.0), segment, {0, 6}, roots, 1, gpu::kSettledBlock);
+    size_t contradicted = 0;
+    for (const uint32_t word : rig.words()) contradicted += word >> 16 == 100 ? 1 : 0;
+    EXPECT_GT(contradicted, 0u);
 }
 
 }  // namespace

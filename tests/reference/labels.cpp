@@ -37,18 +37,37 @@ uint32_t pixel_label(uint32_t map_label, uint32_t segment, const std::vector<uin
     return known == 0 ? segment_labels.at(segment) : known;
 }
 
-uint32_t seen_label(const LabelledView& view, glm::dvec3 center_m) {
+namespace {
+
+/// What the pixel that was looked at, counted in strides, says of a point.
+uint32_t label_of_pixel(const LabelledView& view, glm::ivec2 looked_at, glm::dvec3 center_m, double near_m) {
     constexpr double kLeastCosine = 0.1;
     const glm::dvec3 camera_m(view.world_from_camera[3]);
-    const glm::dvec3 at(rigid_inverse(view.world_from_camera) * glm::dvec4(center_m, 1));
-    if (at.z <= 0) return 0;
-    const glm::ivec2 pixel(glm::floor(project(view.camera, at) + 0.5));
+    const glm::ivec2 pixel = looked_at * view.stride;
     if (!view.camera.extent.contains(pixel.x, pixel.y)) return 0;
     const auto x = static_cast<uint32_t>(pixel.x), y = static_cast<uint32_t>(pixel.y);
     const glm::dvec3 point_m(view.position_m.at(x, y)), normal(view.normal.at(x, y));
     if (glm::dot(normal, glm::normalize(camera_m - center_m)) < kLeastCosine) return 0;
-    if (std::abs(glm::dot(normal, center_m - point_m)) > view.voxel_m) return 0;
-    return view.segment_labels.at(view.segment.at(x, y));
+    if (std::abs(glm::dot(normal, center_m - point_m)) > near_m) return 0;
+    const glm::uvec2 place(looked_at);
+    return view.segment_labels.at(view.segment.at(place.x, place.y));
+}
+
+}  // namespace
+
+uint32_t seen_label(const LabelledView& view, glm::dvec3 center_m, const VoxelLabel& known) {
+    const double near_m = view.voxel_m * (known.label == 0 ? 2 : 1);
+    const glm::dvec3 at(rigid_inverse(view.world_from_camera) * glm::dvec4(center_m, 1));
+    if (at.z <= 0) return 0;
+    const glm::dvec2 place = project(view.camera, at) / double(view.stride);
+    const glm::ivec2 nearest(glm::floor(place + 0.5));
+    if (view.stride == 1) return label_of_pixel(view, nearest, center_m, near_m);
+    const glm::ivec2 low(glm::floor(place));
+    const int x = nearest.x == low.x ? low.x + 1 : low.x, y = nearest.y == low.y ? low.y + 1 : low.y;
+    for (const glm::ivec2 pixel : {nearest, glm::ivec2(x, nearest.y), glm::ivec2(nearest.x, y), glm::ivec2(x, y)}) {
+        if (const uint32_t label = label_of_pixel(view, pixel, center_m, near_m)) return label;
+    }
+    return 0;
 }
 
 VoxelLabel voted(VoxelLabel known, uint32_t label) {

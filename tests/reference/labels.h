@@ -46,14 +46,16 @@ struct LabelledView {
     RigidTransform world_from_camera;
     Image<glm::vec4> position_m;
     Image<glm::vec4> normal;
-    Image<uint32_t> segment;               ///< 0: none
+    Image<uint32_t> segment;               ///< of every stride-th pixel in x and y; 0: none
     std::vector<uint32_t> segment_labels;  ///< by segment
     double voxel_m = 0;
+    int stride = 1;
 };
 
-/// The label that a view gives a voxel near the surface: of the pixel which shows its centre, where the surface there
-/// passes within a voxel of it and is not seen at a grazing angle. 0: none.
-uint32_t seen_label(const LabelledView& view, glm::dvec3 center_m);
+/// The label that a view gives a voxel near the surface: of the pixel nearest to where its centre is seen, where the
+/// surface there passes within a voxel of it, or two if it has no label, and is not seen at a grazing angle. Where
+/// there are segments of some pixels only: else of the other three around, beside it, below or above, across. 0: none.
+uint32_t seen_label(const LabelledView& view, glm::dvec3 center_m, const VoxelLabel& known);
 
 /// A voxel's label after a vote for another one, or its own.
 VoxelLabel voted(VoxelLabel known, uint32_t label);

@@ -112,7 +112,7 @@ class Bench {
 
     FrameSegments divided(graph::Frame& frame, const SegmentationInputs& inputs) const {
         return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, camera(),
-                                 {inputs.color_linear, color_camera()});
+                                 {inputs.color_linear, color_camera()}, segmentation_.settings().frame);
     }
 
     /// The model as the depth camera sees it, and the last frame's pictures.
