@@ -16,12 +16,12 @@ namespace patina {
 
 /// Sizes and thresholds of the segmentation of the map.
 struct SegmentationSettings {
-    SegmentSettings frame{.stride_px = 2};  ///< how a frame is divided
-    bool given = false;                     ///< segments are those of RgbdFrame::labels, whose ids are the labels
-    uint32_t capacity_labels = 4096;        ///< label 0 included
-    float inherit_share = 0.3f;             ///< of a segment's pixels that a label must cover to be the segment's
-    uint32_t inherit_pixels = 15;           ///< and how many at least
-    uint32_t new_pixels = 100;              ///< smaller segments get no label of their own
+    SegmentSettings frame;            ///< how a frame is divided
+    bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
+    uint32_t capacity_labels = 4096;  ///< label 0 included
+    float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
+    uint32_t inherit_pixels = 15;     ///< and how many at least
+    uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
     float merge_share = 0.2f;       ///< of a segment's pixels that its second label must cover to be the same object's
     uint32_t merge_frames = 3;      ///< in which two labels were the same, less those in which they were not
     float merge_chroma = 0.03f;     ///< labels whose mean chromaticities differ by more are not merged
