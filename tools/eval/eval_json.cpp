@@ -108,13 +108,16 @@ struct Convert {
         return {{"pairs", error.pairs},
                 {"step_s", error.step_s},
                 {"translation_rmse_m", error.translation_rmse_m},
+                {"translation_median_m", error.translation_median_m},
                 {"translation_max_m", error.translation_max_m},
                 {"rotation_rmse_deg", error.rotation_rmse_deg},
+                {"rotation_median_deg", error.rotation_median_deg},
                 {"rotation_max_deg", error.rotation_max_deg}};
     }
 
     static Json to_json(const TrajectoryErrors& errors) {
         return {{"truth_poses", errors.truth_poses},
+                {"run_poses", errors.run_poses},
                 {"poses", errors.poses},
                 {"ate_rmse_m", errors.ate_rmse_m},
                 {"ate_max_m", errors.ate_max_m},
