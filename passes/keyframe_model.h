@@ -34,7 +34,7 @@ class KeyframeModel {
     /// Forgets all keyframes; the first thing done with it.
     void reset(graph::Frame& frame) const { store_.reset(frame); }
 
-    /// Keeps a frame that was tracked well if it is unlike all keyframes so far.
+    /// Keeps a frame that was tracked well if it is unlike all keyframes so far, or near none of them.
     void add_keep(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color_linear,
                   const RigidTransform& world_from_depth, uint32_t number) const;
 

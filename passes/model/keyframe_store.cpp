@@ -13,12 +13,16 @@ const KeyframeStoreSettings& checked(const KeyframeStoreSettings& settings) {
         throw Error("the keyframe store's capacity is ", settings.capacity, " keyframes, it must be 1 to ",
                     KeyframeStore::kMaxCapacity);
     }
-    if (!(settings.near_m > 0 && settings.far_m > settings.near_m)) {
-        throw Error("keyframes' thresholds of depth lie from ", settings.near_m, " m to ", settings.far_m,
+    if (!(settings.least_depth_m > 0 && settings.most_depth_m > settings.least_depth_m)) {
+        throw Error("keyframes' thresholds of depth lie from ", settings.least_depth_m, " m to ", settings.most_depth_m,
                     " m, which is no range");
     }
     if (!(settings.least_dissimilarity >= 0 && settings.least_dissimilarity <= 1)) {
         throw Error("keyframes' least_dissimilarity is ", settings.least_dissimilarity, ", it must be 0 to 1");
+    }
+    if (!(settings.near_m >= 0 && settings.near_degrees >= 0 && settings.near_degrees <= 180)) {
+        throw Error("keyframes are near within ", settings.near_m, " m and ", settings.near_degrees,
+                    " degrees, which must be at least 0, and at most 180 degrees");
     }
     return settings;
 }
@@ -35,7 +39,8 @@ std::vector<gpu::Fern> make_ferns(const KeyframeStoreSettings& settings) {
         fern.pixel.y = static_cast<uint32_t>(gpu::kSmallHeight * fraction());
         for (glm::length_t c = 0; c < 3; ++c) fern.color[c] = static_cast<float>(0.1 + 0.8 * fraction());
         fern.color.w = 0;
-        fern.depth_m = static_cast<float>(settings.near_m + (settings.far_m - settings.near_m) * fraction());
+        fern.depth_m =
+            static_cast<float>(settings.least_depth_m + (settings.most_depth_m - settings.least_depth_m) * fraction());
         fern.pad0 = 0;
     }
     return ferns;

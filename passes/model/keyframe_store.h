@@ -10,12 +10,15 @@
 namespace patina {
 
 struct KeyframeStoreSettings {
-    uint32_t capacity = 1024;  ///< keyframes; when it is full, further ones are refused and counted
-    uint32_t seed = 1;         ///< of the ferns
-    float near_m = 0.5f;       ///< thresholds of depth lie between these
-    float far_m = 4;
-    /// A frame becomes a keyframe when the share of ferns that differ is above this for every keyframe there is.
-    float least_dissimilarity = 0.2f;
+    uint32_t capacity = 1024;    ///< keyframes; when it is full, further ones are refused and counted
+    uint32_t seed = 1;           ///< of the ferns
+    float least_depth_m = 0.5f;  ///< thresholds of depth lie between these
+    float most_depth_m = 6;
+    /// A frame becomes a keyframe when the share of ferns that differ is above this for every keyframe there is, or
+    /// when none of them is near: then one that looks alike would not be near enough for tracking to start from.
+    float least_dissimilarity = 0.15f;
+    float near_m = 0.3f;
+    float near_degrees = 12;
 };
 
 /// Versions of the store's buffers within one frame.
@@ -29,7 +32,8 @@ struct KeyframeStoreIds {
 /// Randomized ferns (Glocker, Shotton, Criminisi, Izadi, Real-Time RGB-D Camera Relocalization via Randomized Ferns for
 /// Keyframe Encoding, TVCG 2015): pixels of the small picture, and thresholds for each of their values. Fern i takes
 /// the outputs 6 i to 6 i + 5 of std::mt19937(seed), each as a fraction u of 2^32: x = floor(40 u), y = floor(30 u),
-/// red, green and blue 0.1 + 0.8 u of the square root of linear values, depth evenly from near_m to far_m.
+/// red, green and blue 0.1 + 0.8 u of the square root of linear values, depth evenly from least_depth_m to
+/// most_depth_m.
 std::vector<gpu::Fern> make_ferns(const KeyframeStoreSettings& settings);
 
 /// Frames by which a lost camera is found again: their codes and poses, in the order in which they came. Lives as long

@@ -1,5 +1,7 @@
 #include "passes/tracking/keep_keyframe.h"
 
+#include <cmath>
+
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -9,7 +11,8 @@ void add_keep_keyframe(graph::Frame& frame, const KeyframeStore& store, Keyframe
     auto pass = frame.compute("tracking.keep_keyframe", spirv::keep_keyframe);
     pass.read("Code", code).read("Candidate", candidate).read("Matches", matches.matches);
     const KeyframeStoreSettings& settings = store.settings();
-    pass.push(gpu::KeepKeyframeParams{settings.capacity, settings.least_dissimilarity, gpu::kFerns / 2});
+    pass.push(gpu::KeepKeyframeParams{settings.capacity, settings.least_dissimilarity, gpu::kFerns / 4, settings.near_m,
+                                      std::cos(glm::radians(settings.near_degrees))});
     ids.codes = pass.modify("Codes", ids.codes);
     ids.keyframes = pass.modify("Keyframes", ids.keyframes);
     ids.counters = pass.modify("Counters", ids.counters);

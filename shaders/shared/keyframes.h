@@ -89,6 +89,8 @@ struct KeepKeyframeParams {
     uint capacity;
     float least_dissimilarity;  // to every keyframe so far
     uint least_ferns;           // that know the depth
+    float near_m;               // a keyframe is near if it is less than this away,
+    float near_cosine;          // and turned by less than the angle of this cosine
 };
 
 INTEROP_END

@@ -5,7 +5,9 @@
 #include <random>
 
 #include <glm/gtc/packing.hpp>
+#include <glm/gtc/quaternion.hpp>
 
+#include "engine/core/camera.h"
 #include "passes/tracking/encode_frame.h"
 #include "passes/tracking/keep_keyframe.h"
 #include "passes/tracking/match_keyframes.h"
@@ -95,13 +97,15 @@ class Keyframes : public GpuTest {
         return store;
     }
 
-    /// Offers a frame with this code, at a pose whose x is its number; returns the store's counters.
-    gpu::KeyframeCounters offer(const KeyframeStore& store, const Code& code, uint32_t number, bool tracked = true) {
+    /// Offers a frame with this code, at a pose whose x is its number in millimetres; returns the store's counters.
+    gpu::KeyframeCounters offer(const KeyframeStore& store, const Code& code, uint32_t number, bool tracked = true,
+                                const RigidTransform& world_from_camera = RigidTransform(1), float spacing_m = 1e-3f) {
         graph::Frame frame = runner().begin();
         KeyframeStoreIds ids = store.import(frame);
         const auto code_id = frame.upload<uint32_t>("code", std::span(code));
         gpu::KeyframeCandidate candidate{glm::mat4(1), number, tracked ? 1u : 0u, 0, 0};
-        candidate.world_from_camera[3].x = static_cast<float>(number);
+        candidate.world_from_camera = glm::mat4(world_from_camera);
+        candidate.world_from_camera[3].x += spacing_m * static_cast<float>(number);
         const auto candidate_id = frame.upload<gpu::KeyframeCandidate>("candidate", std::span(&candidate, 1));
         const KeyframeMatches matches = add_match_keyframes(frame, store, ids, code_id, 1);
         add_keep_keyframe(frame, store, ids, code_id, matches, candidate_id);
@@ -254,7 +258,7 @@ TEST_F(Keyframes, MatchesComeInOrderWithTheirPoses) {
     EXPECT_EQ(found[0].frame, 150u);
     EXPECT_EQ(found[0].slot, 150u);
     EXPECT_EQ(found[0].dissimilarity, 0);
-    EXPECT_EQ(found[0].world_from_camera[3].x, 150);
+    EXPECT_EQ(found[0].world_from_camera[3].x, 0.15f);
     EXPECT_EQ(found[0].world_from_camera[0].x, 1);
     EXPECT_EQ(found[1].frame, 149u);  // as near as 151, and older
     EXPECT_EQ(found[2].frame, 151u);
@@ -283,14 +287,33 @@ TEST_F(Keyframes, OnlyNewAndWellTrackedFramesAreKept) {
     const KeyframeStore store = made_store({.least_dissimilarity = 0.25f});
     const Code code = code_of_all(kHasBoth);
     EXPECT_EQ(offer(store, code, 0, false).used, 0u);                             // badly tracked
-    EXPECT_EQ(offer(store, changed(code, 257, gpu::kFernHasDepth), 1).used, 0u);  // knows too little
+    EXPECT_EQ(offer(store, changed(code, 385, gpu::kFernHasDepth), 1).used, 0u);  // knows too little
     EXPECT_EQ(offer(store, code, 2).used, 1u);
     EXPECT_EQ(offer(store, changed(code, 128, gpu::kFernDepth), 3).used, 1u);  // a quarter differs, not more
     EXPECT_EQ(offer(store, changed(code, 129, gpu::kFernDepth), 4).used, 2u);
     EXPECT_EQ(offer(store, changed(code, 256, gpu::kFernHasDepth), 5).used, 2u);  // the known half is alike
-    const Code unlike = changed(changed(code, 256, gpu::kFernHasDepth), 512, gpu::kFernDepth);
-    EXPECT_EQ(offer(store, unlike, 6).used, 3u);  // half is known, which is enough
+    const Code unlike = changed(changed(code, 384, gpu::kFernHasDepth), 512, gpu::kFernDepth);
+    EXPECT_EQ(offer(store, unlike, 6).used, 3u);  // a quarter is known, which is enough
     EXPECT_EQ(match(store, code, 1)[0].frame, 2u);
+}
+
+TEST_F(Keyframes, AFrameThatIsNearNoneIsKeptThoughItLooksAlike) {
+    const KeyframeStore store = made_store({.near_m = 0.5f, .near_degrees = 10});
+    const Code code = code_of_all(kHasBoth);
+    const auto turned = [](double degrees) {
+        return RigidTransform(glm::mat4_cast(glm::angleAxis(glm::radians(degrees), glm::dvec3(0.6, 0, 0.8))));
+    };
+    EXPECT_EQ(offer(store, code, 0, true, turned(0)).used, 1u);
+    EXPECT_EQ(offer(store, code, 499, true, turned(9.9)).used, 1u);
+    EXPECT_EQ(offer(store, code, 0, true, turned(10.1)).used, 2u);
+    EXPECT_EQ(offer(store, code, 501).used, 3u);
+    EXPECT_EQ(offer(store, code, 250, true, turned(5)).used, 3u);
+    // The near one may be any of many.
+    const KeyframeStore long_way = made_store({.near_m = 0.5f});
+    for (uint32_t i = 0; i < 200; ++i) EXPECT_EQ(offer(long_way, code, i, true, turned(0), 1).used, i + 1);
+    for (const uint32_t i : {0u, 127u, 128u, 199u}) {
+        EXPECT_EQ(offer(long_way, code, i, true, turned(0), 1).used, 200u);
+    }
 }
 
 TEST_F(Keyframes, AFullStoreRefusesAndKeepsWhatItHas) {
@@ -338,7 +361,7 @@ TEST_F(Keyframes, FernsFollowTheSeedAndStayInTheirRanges) {
     // mt19937(1) begins 1791095845, 4282876139, 3093770124, 4005303368, 491263, 550290313.
     EXPECT_EQ(ferns[0].pixel, glm::uvec2(16, 29));
     EXPECT_NEAR(ferns[0].color.r, 0.1 + 0.8 * 3093770124 / 4294967296, 1e-6);
-    EXPECT_NEAR(ferns[0].depth_m, 0.5 + 3.5 * 550290313 / 4294967296, 1e-6);
+    EXPECT_NEAR(ferns[0].depth_m, 0.5 + 5.5 * 550290313 / 4294967296, 1e-6);
     bool differs = false;
     for (size_t i = 0; i < ferns.size(); ++i) {
         EXPECT_EQ(ferns[i].pixel, again[i].pixel);
@@ -346,7 +369,7 @@ TEST_F(Keyframes, FernsFollowTheSeedAndStayInTheirRanges) {
         differs |= ferns[i].pixel != others[i].pixel;
         EXPECT_LT(ferns[i].pixel.x, gpu::kSmallWidth);
         EXPECT_LT(ferns[i].pixel.y, gpu::kSmallHeight);
-        EXPECT_TRUE(ferns[i].depth_m >= 0.5f && ferns[i].depth_m <= 4);
+        EXPECT_TRUE(ferns[i].depth_m >= 0.5f && ferns[i].depth_m <= 6);
     }
     EXPECT_TRUE(differs);
 }
@@ -355,8 +378,9 @@ TEST_F(Keyframes, RefusesSettingsThatCannotBeMet) {
     const auto message = [](const char* part) { return ThrowsMessage<Error>(HasSubstr(part)); };
     EXPECT_THAT([&] { made_store({.capacity = 0}); }, message("capacity is 0 keyframes"));
     EXPECT_THAT([&] { made_store({.capacity = 20000}); }, message("it must be 1 to 16384"));
-    EXPECT_THAT([&] { made_store({.near_m = 4, .far_m = 1}); }, message("from 4 m to 1 m"));
+    EXPECT_THAT([&] { made_store({.least_depth_m = 4, .most_depth_m = 1}); }, message("from 4 m to 1 m"));
     EXPECT_THAT([&] { made_store({.least_dissimilarity = 1.5f}); }, message("least_dissimilarity is 1.5"));
+    EXPECT_THAT([&] { made_store({.near_degrees = 181}); }, message("0.3 m and 181 degrees"));
     const KeyframeStore store = made_store();
     EXPECT_THAT([&] { match(store, code_of_all(0), 33); }, message("33 keyframes, it must be 1 to 32"));
     graph::Frame frame = runner().begin();
