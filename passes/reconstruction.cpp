@@ -88,6 +88,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
     if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
     if (settings.specular)
         specular_.emplace(device, *settings.specular, settings.segmentation->capacity_labels, settings.network);
+    if (settings.tracking) tracking_.emplace(device, *settings.tracking);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -112,18 +113,18 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     const FusionSettings& fusion = settings_.fusion;
     const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
-    const float far_m = fusion.max_depth_m + values.truncation_m + values.truncation_slope * fusion.max_depth_m;
     if (color_correction_) {
         input.color = color_correction_->add(graph, ids, input.color, frame.color.camera, world_from_color,
-                                             settings_.near_m, far_m);
+                                             settings_.near_m, far_m());
     }
     add_allocate_blocks(graph, map_, ids, input.depth_m, params, fusion.allocation_stride_px);
     if (segmentation_) segmentation_->clear_new_blocks(graph, ids);
-    const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m);
+    const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m());
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
                   fusion.color && !frame.held_out ? std::optional(input.color) : std::nullopt);
-    if (segmentation_ || reflectance_ || settings_.view_every_frame) {
+    if (segmentation_ || reflectance_ || tracking_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
+        if (tracking_) keep_reference(graph, ids, visible, model, frame.depth.camera, frame.world_from_depth);
         const RaycastImages sharp = sharpened(graph, model, frame.depth.camera);
         ObservationInputs observed{sharp.position_m, sharp.normal, input.depth_m, slope, input.color, {}};
         if (segmentation_) observed.labels = segment(graph, ids, visible, model, input, frame);
@@ -188,8 +189,27 @@ void Reconstruction::relight(std::span<const PointLight> lights, glm::vec3 ambie
     runner_.submit(std::move(graph));
 }
 
-void Reconstruction::add(const RgbdFrame& frame) {
+float Reconstruction::far_m() const {
+    const FusionSettings& fusion = settings_.fusion;
+    const float truncation_m = std::max(fusion.truncation_m, 3 * settings_.map.voxel_m);
+    return fusion.max_depth_m + truncation_m + fusion.truncation_slope * fusion.max_depth_m;
+}
+
+bool Reconstruction::add(const RgbdFrame& frame) {
     check(frame);
+    if (!tracking_) {
+        fuse_posed(frame);
+        return true;
+    }
+    const TrackingReport report = track(frame);
+    if (report.state != TrackingState::kTracking) return false;
+    RgbdFrame posed = frame;
+    posed.world_from_depth = report.world_from_depth;
+    fuse_posed(posed);
+    return true;
+}
+
+void Reconstruction::fuse_posed(const RgbdFrame& frame) {
     if (frames_ == 0) {
         graph::Frame graph = runner_.begin();
         const glm::dvec3 center_m(frame.world_from_depth[3]);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,6 +20,7 @@
 #include "passes/specular_model.h"
 #include "passes/surface/mesh.h"
 #include "passes/surface/mesh_reflectance.h"
+#include "passes/tracking_model.h"
 
 namespace patina {
 
@@ -39,6 +41,8 @@ struct ReconstructionSettings {
     /// Specular materials of the segments; empty: those that the reflectance was given. Needs both of the former.
     std::optional<SpecularSettings> specular{};
     std::optional<NetworkDescription> network{};  ///< that estimates specular materials; empty: none
+    /// Finds the frames' poses; empty: they are given.
+    std::optional<TrackingSettings> tracking{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -53,7 +57,9 @@ struct RgbdFrame {
     DepthInput depth;
     ColorInput color;
     RigidTransform color_from_depth{1.0};
-    RigidTransform world_from_depth{1.0};  ///< pose of the depth camera
+    /// Pose of the depth camera. With tracking: of the first frame alone, whose world it chooses.
+    RigidTransform world_from_depth{1.0};
+    FrameTime time{};  ///< for tracking alone
     /// What each pixel of the depth picture belongs to, 0: unknown; empty: no labels are known. Used where the
     /// settings say that segments are given.
     std::span<const uint16_t> labels{};
@@ -62,6 +68,10 @@ struct RgbdFrame {
     float shutter_share = 0;
     bool held_out = false;  ///< its colours are neither fused nor observed, its depth is fused
 };
+
+/// Poses (world_from_depth) at which a frame may have been taken, the likeliest first, found by other means than
+/// tracking.
+using Relocaliser = std::function<std::vector<RigidTransform>(const RgbdFrame&)>;
 
 /// What a camera sees of the model; all pictures have its extent.
 struct ModelView {
@@ -106,9 +116,17 @@ class Reconstruction {
     /// Throws Error for settings that cannot be met, or lack of memory.
     Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings);
 
-    /// Fuses a frame. The first one places the volume around its camera. Throws Error when a picture is not its
-    /// camera's size, or the device was lost.
-    void add(const RgbdFrame& frame);
+    /// Fuses a frame. The first one places the volume around its camera. With tracking its pose is found first, which
+    /// waits for the device. Returns whether the frame was fused: without tracking all are, with it those that track.
+    /// Throws Error when a picture is not its camera's size, or the device was lost.
+    bool add(const RgbdFrame& frame);
+
+    /// Asks `relocaliser` for poses of every frame that tracking lost; the first from which the frame tracks is taken.
+    void set_relocaliser(Relocaliser relocaliser) { relocaliser_ = std::move(relocaliser); }
+
+    /// How the last frame was tracked, and from where it was taken; null where poses are given.
+    const TrackingReport* tracking_report() const { return tracking_ ? &tracking_->last() : nullptr; }
+    const TrackingModel* tracking() const { return tracking_ ? &*tracking_ : nullptr; }
 
     /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
@@ -167,6 +185,15 @@ class Reconstruction {
     graph::Runner& runner() { return runner_; }
 
   private:
+    TrackingReport track(const RgbdFrame& frame);
+    TrackingReport first_report(const RgbdFrame& frame) const;
+    TrackingReport search(const RgbdFrame& frame, const RigidTransform& start);
+    std::optional<TrackingReport> relocalised(const RgbdFrame& frame);
+    void cast_reference(const Intrinsics& camera, const RigidTransform& world_from_depth);
+    void keep_reference(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                        const RaycastImages& model, const Intrinsics& camera, const RigidTransform& world_from_depth);
+    float far_m() const;
+    void fuse_posed(const RgbdFrame& frame);
     VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
     RaycastImages sharpened(graph::Frame& graph, const RaycastImages& model, const Intrinsics& camera) const;
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
@@ -183,6 +210,8 @@ class Reconstruction {
     std::optional<ReflectanceModel> reflectance_;
     std::optional<SegmentationModel> segmentation_;
     std::optional<SpecularModel> specular_;
+    std::optional<TrackingModel> tracking_;
+    Relocaliser relocaliser_;
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
     struct PendingCounts {

@@ -20,7 +20,8 @@ RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame) 
     rgbd.depth.max_metres = info.max_metres;
     rgbd.color.camera = info.color;
     rgbd.color_from_depth = info.color_from_depth;
-    rgbd.world_from_depth = *frame.world_from_camera;
+    rgbd.world_from_depth = frame.world_from_camera.value_or(RigidTransform(1.0));
+    rgbd.time.timestamp_s = frame.timestamp_s;
     return rgbd;
 }
 

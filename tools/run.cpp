@@ -174,12 +174,16 @@ class Run {
         if (const SpecularModel* specular = reconstruction_.specular()) {
             for (const auto& pool : specular->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
         }
+        if (const TrackingModel* tracking = reconstruction_.tracking()) {
+            for (const auto& pool : tracking->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
+        }
         record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
         record.totals = {{"vertices", scene.vertices},
                          {"triangles", scene.triangles},
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
         if (reconstruction_.segmentation()) add_segment_totals(record);
+        record.tracking = fusion_.tracked();
         record.color_gains = gain_ranges();
         record.held_out = held_out_;
         record.warnings = warnings(counters);

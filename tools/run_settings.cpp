@@ -69,6 +69,31 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("observe.max_blur_px", s.reflectance->observe.max_blur_px);
         visit("observe.rest_px", s.reflectance->observe.rest_px);
     }
+    if (s.tracking) {
+        visit("tracking.levels", s.tracking->levels);
+        visit("tracking.finest", s.tracking->finest);
+        visit("tracking.iterations", s.tracking->iterations);
+        visit("tracking.finest_iterations", s.tracking->finest_iterations);
+        visit("tracking.photometric", s.tracking->photometric);
+        visit("tracking.damping", s.tracking->damping);
+        visit("tracking.noise_floor_m", s.tracking->errors.noise_floor_m);
+        visit("tracking.noise_per_m", s.tracking->errors.noise_per_m);
+        visit("tracking.robust_sigmas", s.tracking->errors.robust_sigmas);
+        visit("tracking.gate_m", s.tracking->errors.gate_m);
+        visit("tracking.gate_slope", s.tracking->errors.gate_slope);
+        visit("tracking.shade_sigma", s.tracking->errors.shade_sigma);
+        visit("tracking.robust_shade", s.tracking->errors.robust_shade);
+        visit("tracking.least_pairs", s.tracking->bounds.least_pairs);
+        visit("tracking.weak_share", s.tracking->bounds.weak_share);
+        visit("tracking.lost_share", s.tracking->bounds.lost_share);
+        visit("tracking.weak_sigmas", s.tracking->bounds.weak_sigmas);
+        visit("tracking.lost_sigmas", s.tracking->bounds.lost_sigmas);
+        visit("tracking.held_share", s.tracking->bounds.held_share);
+        visit("tracking.weak_step_m", s.tracking->bounds.weak_step_m);
+        visit("tracking.weak_step_degrees", s.tracking->bounds.weak_step_degrees);
+        visit("tracking.lost_motion_m", s.tracking->bounds.lost_motion_m);
+        visit("tracking.lost_motion_degrees", s.tracking->bounds.lost_motion_degrees);
+    }
     if (s.specular) {
         visit("specular.segments_per_frame", s.specular->segments_per_frame);
         visit("specular.memory", s.specular->memory);
@@ -83,6 +108,7 @@ std::string known_keys() {
     defaults.reflectance.emplace();
     defaults.segmentation.emplace();
     defaults.specular.emplace();
+    defaults.tracking.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
@@ -110,6 +136,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
     if (!settings.segmentation && key.starts_with("segmentation.")) settings.segmentation.emplace();
     if (!settings.gains && key.starts_with("gains.")) settings.gains.emplace();
     if (!settings.specular && key.starts_with("specular.")) settings.specular.emplace();
+    if (!settings.tracking && key.starts_with("tracking.")) settings.tracking.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

@@ -24,10 +24,10 @@ bool is_synthetic(const SequenceOptions& options) { return options.sequence.star
 
 std::unique_ptr<sensor::Source> open_recording(const SequenceOptions& options) {
     auto source = sensor::open_sequence(options.sequence, options.format);
-    if (!source->info().has_poses) {
-        throw Error(
-            "the sequence '", options.sequence,
-            "' has no poses, and tracking the camera is not supported yet: a trajectory.txt with poses is needed");
+    const bool needs_poses = options.poses == PoseMode::kGiven || options.poses == PoseMode::kPrior;
+    if (needs_poses && !source->info().has_poses) {
+        throw Error("the sequence '", options.sequence, "' has no poses, but --poses ",
+                    options.poses == PoseMode::kGiven ? "given" : "prior", " needs them");
     }
     return std::make_unique<sensor::PrefetchSource>(std::move(source));
 }
@@ -57,6 +57,11 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
         settings.segmentation.reset();
     } else if (!settings.segmentation) {
         settings.segmentation.emplace();
+    }
+    if (options.poses == PoseMode::kGiven || (options.poses == PoseMode::kAuto && info.has_poses)) {
+        settings.tracking.reset();
+    } else if (!settings.tracking) {
+        settings.tracking.emplace();
     }
     if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
     set_specular(settings, options);
@@ -97,7 +102,7 @@ void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& a
     bool warned_full = false, warned_observations = false;
     for (uint32_t done = 0; done < info_.frames; ++done) {
         stop_if_interrupted();
-        const auto reading = source_->next();
+        auto reading = source_->next();
         if (!reading) break;
         ledger_.note(*reading);
         if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
@@ -130,8 +135,8 @@ void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& a
     }
 }
 
-void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame) {
-    if (!frame.world_from_camera) {
+void SequenceFusion::fuse(sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame) {
+    if (!frame.world_from_camera && !tracks()) {
         ledger_.skip(frame.index, fmt::format("frame {} has no pose", frame.index));
         return;
     }
@@ -143,12 +148,29 @@ void SequenceFusion::fuse(const sensor::Frame& frame, const std::function<void(c
     }
     if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
     rgbd.held_out = held_out_.wants(frame.index);
-    if (rgbd.held_out) held_out_.keep(frame, reconstruction_->frames());
-    reconstruction_->add(rgbd);
+    const uint32_t order = reconstruction_->frames();
+    if (!add(rgbd, frame)) return;
+    if (rgbd.held_out) held_out_.keep(frame, order);
     ledger_.use(frame.index);
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     after_frame(frame);
+}
+
+bool SequenceFusion::add(RgbdFrame& rgbd, sensor::Frame& frame) {
+    if (!tracks()) return reconstruction_->add(rgbd);
+    if (!first_given_) first_given_ = frame.world_from_camera;
+    rgbd.world_from_depth = first_given_.value_or(RigidTransform(1.0));
+    if (options_.poses == PoseMode::kPrior) rgbd.time.prior = frame.world_from_camera;
+    const bool fused = reconstruction_->add(rgbd);
+    const TrackingReport& report = *reconstruction_->tracking_report();
+    tracked_.push_back({frame.index, report});
+    frame.world_from_camera = report.world_from_depth;
+    if (!fused) {
+        ledger_.skip(frame.index, fmt::format("frame {} was not fused, tracking was {}: {}", frame.index,
+                                              name_of(report.state), report.reason));
+    }
+    return fused;
 }
 
 void SequenceFusion::stop_if_interrupted() {

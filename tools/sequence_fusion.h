@@ -13,6 +13,7 @@
 #include "sensor/ledger.h"
 #include "sensor/source.h"
 #include "sensor/synthetic/synthetic_source.h"
+#include "tools/export/tracking_record.h"
 #include "tools/export/trajectory.h"
 #include "tools/held_out.h"
 #include "tools/interrupt.h"
@@ -26,6 +27,14 @@ enum class GainMode {
     kAuto,  ///< where the recording does not tell the exposure
     kOn,
     kOff
+};
+
+/// Where the frames' poses come from.
+enum class PoseMode {
+    kAuto,   ///< given where the sequence has any, else tracked
+    kGiven,  ///< by the sequence
+    kTrack,  ///< by tracking; of given ones the first alone is used
+    kPrior   ///< by tracking that starts from the given motion from frame to frame
 };
 
 /// What a sequence is reconstructed with.
@@ -45,6 +54,7 @@ struct SequenceOptions {
     std::string specular;
     std::filesystem::path network;  ///< weights; empty: those that ship with the program
     GainMode gains = GainMode::kAuto;
+    PoseMode poses = PoseMode::kAuto;
     uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
     vulkan::DeviceOptions device;
     ReconstructionSettings settings;
@@ -77,10 +87,14 @@ class SequenceFusion {
     std::string gains_text();
     const HeldOut& held_out() const { return held_out_; }
     uint32_t blocks_used();
+    /// How each frame that was read was tracked; empty where poses are given.
+    const std::vector<TrackedFrame>& tracked() const { return tracked_; }
 
   private:
+    bool tracks() const { return settings().tracking.has_value(); }
+    bool add(RgbdFrame& rgbd, sensor::Frame& frame);
     void prepare_reflectance(ReflectanceModel& reflectance);
-    void fuse(const sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame);
+    void fuse(sensor::Frame& frame, const std::function<void(const sensor::Frame&)>& after_frame);
 
     const SequenceOptions& options_;
     const InterruptGuard& interrupt_;
@@ -93,7 +107,9 @@ class SequenceFusion {
     std::optional<Reconstruction> reconstruction_;
     sensor::Ledger ledger_;
     std::vector<TimedPose> poses_;
-    std::vector<uint32_t> used_;  ///< indices of the frames that were fused
+    std::vector<TrackedFrame> tracked_;
+    std::optional<RigidTransform> first_given_;  ///< of the first frame that has a pose
+    std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
     HeldOut held_out_;
 };
 

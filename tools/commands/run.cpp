@@ -25,6 +25,13 @@ void add_run(CLI::App& app) {
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, GainMode>{{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
         ->option_text("auto|on|off");
+    command
+        ->add_option("--poses", run_options.poses,
+                     "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
+                     "by default given where there are any")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, PoseMode>{
+            {"given", PoseMode::kGiven}, {"track", PoseMode::kTrack}, {"prior", PoseMode::kPrior}}))
+        ->option_text("given|track|prior");
     command->add_option("--hold-out", run_options.hold_out,
                         "Keep the colours of every so many-th frame out of the model, and compare them in the end");
     command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")

@@ -167,6 +167,7 @@ std::string report_html(const RunRecord& record, std::span<const ReportPicture> 
     html += report_section("Pictures", report_figures(pictures));
     html += report_section("Lights", light_table(record.lamps));
     html += report_section("Materials", segment_table(record.segments));
+    html += report_section("Tracking", tracking_table(record.tracking));
     html += report_section("GPU time per pass", pass_table(record.passes));
     html += report_section("Device memory", memory_table(record.memory));
     html += report_section("Skipped frames", skipped_table(record.frames.skipped));

@@ -101,6 +101,7 @@ std::string run_json(const RunRecord& record) {
     }
     run["memory"] = memory_json(record.memory);
     run["totals"] = object_of(record.totals);
+    if (!record.tracking.empty()) run["tracking"] = tracking_json(record.tracking);
     if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);
     if (record.held_out) run["held_out"] = held_out_json(*record.held_out);
     run["warnings"] = record.warnings;

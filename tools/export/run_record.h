@@ -12,6 +12,7 @@
 #include "sensor/source.h"
 #include "sensor/truth.h"
 #include "tools/export/picture_score.h"
+#include "tools/export/tracking_record.h"
 
 namespace patina {
 
@@ -95,6 +96,7 @@ struct RunRecord {
     std::optional<ObservationPoolRecord> observation_pool{};  ///< empty without reflectance
     std::vector<MemoryRecord> memory;
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
+    std::vector<TrackedFrame> tracking{};                  ///< each frame that was read; empty where poses were given
     std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none
     std::optional<HeldOutRecord> held_out;  ///< empty where no picture was held out
     std::vector<sensor::PointLight> lamps;  ///< like the segments for report.html: they have files of their own

@@ -1,0 +1,105 @@
+// The part of Reconstruction that finds the poses of frames.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/shader_camera.h"
+#include "passes/fusion/shade_color.h"
+#include "passes/fusion/visible_blocks.h"
+#include "passes/reconstruction.h"
+
+namespace patina {
+
+namespace {
+
+/// How many pixels of a depth picture hold a reading.
+size_t readings_of(const DepthInput& depth) {
+    const auto is_reading = [](auto pixel) { return pixel > 0 && std::isfinite(static_cast<float>(pixel)); };
+    return static_cast<size_t>(std::visit(
+        [&](const auto& pixels) { return std::count_if(pixels.begin(), pixels.end(), is_reading); }, depth.pixels));
+}
+
+}  // namespace
+
+TrackingReport Reconstruction::first_report(const RgbdFrame& frame) const {
+    const size_t readings = readings_of(frame.depth), least = tracking_->settings().bounds.least_pairs;
+    TrackingReport report;
+    report.world_from_depth = frame.world_from_depth;
+    if (readings >= least) {
+        report.state = TrackingState::kTracking;
+    } else {
+        report.reason = text("the first frame has ", readings, " readings, fewer than ", least);
+    }
+    return report;
+}
+
+TrackingReport Reconstruction::search(const RgbdFrame& frame, const RigidTransform& start) {
+    graph::Frame graph = runner_.begin();
+    const InputImages input =
+        add_input(graph, frame.depth, frame.color, make_camera(frame.depth.camera, start), settings_.input);
+    const bool shaded = settings_.fusion.color && tracking_->settings().photometric;
+    const TrackColor color{input.color, frame.color.camera, frame.color_from_depth};
+    const auto pyramid =
+        tracking_->add_pyramid(graph, input.depth_m, frame.depth.camera, shaded ? std::optional(color) : std::nullopt,
+                               settings_.fusion.max_depth_m);
+    const TrackingModel::Search search = tracking_->add_search(graph, pyramid, start);
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    return tracking_->report_of(search);
+}
+
+TrackingReport Reconstruction::track(const RgbdFrame& frame) {
+    if (!tracking_->has_reference()) {
+        const TrackingReport report = first_report(frame);
+        tracking_->accept(report, frame.time, true);
+        return report;
+    }
+    TrackingReport best;
+    bool jumped = false;
+    for (const RigidTransform& start : tracking_->expected(frame.time)) {
+        const TrackingReport report = search(frame, start);
+        if (best.reason.empty() || report.state < best.state) best = report;
+        if (best.state != TrackingState::kLost) break;
+    }
+    if (best.state == TrackingState::kLost && relocaliser_) {
+        if (const auto found = relocalised(frame)) {
+            best = *found;
+            jumped = true;
+        }
+    }
+    tracking_->accept(best, frame.time, jumped);
+    // What is fused brings its own reference.
+    if (best.state == TrackingState::kWeak) cast_reference(frame.depth.camera, best.world_from_depth);
+    return best;
+}
+
+std::optional<TrackingReport> Reconstruction::relocalised(const RgbdFrame& frame) {
+    const RigidTransform before = tracking_->world_from_reference();
+    const std::vector<RigidTransform> candidates = relocaliser_(frame);
+    for (const RigidTransform& candidate : candidates) {
+        cast_reference(frame.depth.camera, candidate);
+        const TrackingReport report = search(frame, candidate);
+        if (report.state == TrackingState::kTracking) return report;
+    }
+    if (!candidates.empty()) cast_reference(frame.depth.camera, before);
+    return std::nullopt;
+}
+
+void Reconstruction::cast_reference(const Intrinsics& camera, const RigidTransform& world_from_depth) {
+    graph::Frame graph = runner_.begin();
+    const VoxelMapIds ids = map_.import(graph);
+    const VisibleBlocks visible =
+        add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_depth), settings_.near_m, far_m());
+    keep_reference(graph, ids, visible, add_raycast(graph, map_, ids, visible, access_), camera, world_from_depth);
+    runner_.submit(std::move(graph));
+}
+
+void Reconstruction::keep_reference(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
+                                    const RaycastImages& model, const Intrinsics& camera,
+                                    const RigidTransform& world_from_depth) {
+    std::optional<graph::ImageId> color;
+    if (settings_.fusion.color && tracking_->settings().photometric)
+        color = add_shade_color(graph, map_, ids, visible, model.position_m);
+    tracking_->add_reference(graph, model, color, camera, world_from_depth);
+}
+
+}  // namespace patina

@@ -1,0 +1,123 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// One iteration's normal equations. Each reading is moved by the pose found so far into the model's view, and paired
+// with the model's pixel there (projective association, Blais and Levine 1995); its distance from the tangent plane
+// (Chen and Medioni 1992) and the difference of shades are linear in a small motion. Each group adds up its pixels
+// always in the same order.
+#include "lib/track_pixels.glsl"
+
+layout(local_size_x = kTrackGroupX, local_size_y = kNormalEquationsGroupY) in;
+layout(binding = 0, r32ui) uniform readonly uimage2D frame_pixels;
+layout(binding = 1, rgba32ui) uniform readonly uimage2D model_pixels;
+layout(std430, binding = 2) readonly buffer State { TrackState state; };
+layout(std430, binding = 3) writeonly buffer Sums { float sums[]; };  // kTrackSums per group
+layout(push_constant) uniform Push { NormalEquationsParams params; };
+
+const uint kInvocations = kTrackGroupX * kNormalEquationsGroupY;
+const float kNearest_m = 0.05f;
+
+shared float partial[kTrackSums][kInvocations + 1u];
+
+float sum[kTrackSums];
+// Copies from the buffer, whose loads software devices do not hoist out of loops.
+vec3 translation_m;
+float gain, center_m, inverse_lever;
+
+// The rotation matrix of a unit quaternion.
+mat3 matrix_of(vec4 q) {
+    const vec3 twice = 2.0 * q.xyz;
+    const vec3 own = q.xyz * twice;
+    const vec3 cross_terms = q.xxy * twice.yzz, with_w = q.w * twice;
+    return mat3(1.0 - own.y - own.z, cross_terms.x + with_w.z, cross_terms.y - with_w.y,  //
+                cross_terms.x - with_w.z, 1.0 - own.x - own.z, cross_terms.z + with_w.x,  //
+                cross_terms.y + with_w.y, cross_terms.z - with_w.x, 1.0 - own.x - own.y);
+}
+
+// Geman and McClure's: 1/4 at 1.
+float robust_weight(float share) {
+    const float inverse = 1.0 / (1.0 + share * share);
+    return inverse * inverse;
+}
+
+// Adds weight (residual + (along, around) . motion)^2 to what is minimised.
+void add_equation(vec3 along, vec3 around, float residual, float weight) {
+    const float row[6] = float[](along.x, along.y, along.z, around.x, around.y, around.z);
+    uint entry = kTrackMatrix;
+    [[unroll]] for (uint i = 0u; i < 6u; ++i) {
+        const float weighted = weight * row[i];
+        [[unroll]] for (uint j = i; j < 6u; ++j) sum[entry + j - i] += weighted * row[j];
+        entry += 6u - i;
+        sum[kTrackRight + i] += weighted * residual;
+    }
+}
+
+void add_pixel(ivec2 pixel, mat3 rotation) {
+    const uint own = imageLoad(frame_pixels, pixel).x;
+    const float z = frame_depth_m(own);
+    const vec3 ray = vec3((vec2(pixel) - params.frame_focal_center_px.zw) / params.frame_focal_center_px.xy, 1.0);
+    const vec3 point = rotation * (ray * z) + translation_m;
+    const float inverse_z = 1.0 / max(point.z, kNearest_m);
+    const vec2 at = point.xy * inverse_z * params.model_focal_center_px.xy + params.model_focal_center_px.zw;
+    const vec2 nearest = floor(at + 0.5);
+    const bool in_view = z > 0.0 && point.z > kNearest_m && all(greaterThanEqual(nearest, vec2(0.0))) &&
+                         all(lessThan(nearest, vec2(params.model_extent)));
+    const ModelPixel model = unpack_model_pixel(imageLoad(model_pixels, ivec2(in_view ? nearest : vec2(0.0))));
+    const vec3 on_model =
+        vec3((nearest - params.model_focal_center_px.zw) / params.model_focal_center_px.xy, 1.0) * model.depth_m;
+    const vec3 apart = point - on_model;
+    const float distance_m = dot(model.normal, apart);
+    const float gate_m = params.gate_m + params.gate_slope * z;
+    const bool paired = in_view && model.depth_m > 0.0 && dot(apart, apart) <= gate_m * gate_m;
+
+    const float sigma_m = params.noise_floor_m + params.noise_per_m * z * z;
+    const float sigmas = distance_m / sigma_m;
+    const float trust = paired ? robust_weight(sigmas / params.robust_sigmas) : 0.0;
+    const float weight = trust / (sigma_m * sigma_m);
+    const vec3 lever = (point - vec3(0.0, 0.0, center_m)) * inverse_lever;
+    add_equation(model.normal, cross(lever, model.normal), distance_m, weight);
+    sum[kTrackReadings] += z > 0.0 ? 1.0 : 0.0;
+    sum[kTrackPairs] += trust;
+    sum[kTrackSquares] += trust * sigmas * sigmas;
+    sum[kTrackWeight] += weight;
+    sum[kTrackDepth] += z;
+
+    if (params.shade_sigma > 0.0) {
+        const float own_shade = frame_shade(own);
+        const float model_shade = model.shade + dot(model.shade_per_px, at - nearest);
+        const float difference = gain * own_shade - model_shade;
+        const bool shaded = model.shade >= 0.0 && frame_has_shade(own);
+        const float shade_trust = shaded ? trust * robust_weight(difference / params.robust_shade) : 0.0;
+        const vec2 per_m = model.shade_per_px * params.model_focal_center_px.xy * inverse_z;
+        const vec3 along = -vec3(per_m, -dot(per_m, point.xy) * inverse_z);
+        add_equation(along, cross(lever, along), difference, shade_trust / (params.shade_sigma * params.shade_sigma));
+        sum[kTrackShades] += shade_trust;
+        sum[kTrackShadeSquares] += shade_trust * difference * difference;
+        sum[kTrackShadeProduct] += shade_trust * own_shade * model_shade;
+        sum[kTrackShadeOwn] += shade_trust * own_shade * own_shade;
+    }
+}
+
+void main() {
+    const mat3 rotation = matrix_of(state.rotation);
+    translation_m = state.translation_m.xyz;
+    gain = state.gain;
+    center_m = state.center_m;
+    inverse_lever = 1.0 / state.lever_m;
+    [[unroll]] for (uint i = 0u; i < kTrackSums; ++i) sum[i] = 0.0;
+    const uvec2 first =
+        uvec2(gl_GlobalInvocationID.x,
+              gl_WorkGroupID.y * kNormalEquationsGroupY * kNormalEquationsRows + gl_LocalInvocationID.y);
+    for (uint row = 0u; row < kNormalEquationsRows; ++row) {
+        const uvec2 pixel = first + uvec2(0u, row * kNormalEquationsGroupY);
+        if (all(lessThan(pixel, params.frame_extent))) add_pixel(ivec2(pixel), rotation);
+    }
+    const uint lane = gl_LocalInvocationIndex;
+    [[unroll]] for (uint i = 0u; i < kTrackSums; ++i) partial[i][lane] = sum[i];
+    barrier();
+    if (lane >= kTrackSums) return;
+    float total = 0.0;
+    for (uint i = 0u; i < kInvocations; ++i) total += partial[lane][i];
+    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    sums[group * kTrackSums + lane] = total;
+}
