@@ -36,11 +36,11 @@ void KeyframeModel::add_keep(graph::Frame& frame, graph::ImageId depth_m, graph:
     KeyframeStore::keep(frame, ids);
 }
 
-graph::Readback KeyframeModel::add_lookup(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color_linear,
-                                          KeyframeTests tests) const {
+graph::Readback KeyframeModel::add_lookup(graph::Frame& frame, graph::ImageId depth_m,
+                                          graph::ImageId color_linear) const {
     const graph::BufferId code = add_encode(frame, depth_m, color_linear);
     return frame.read_back(
-        add_match_keyframes(frame, store_, store_.import(frame), code, settings_.candidates, tests).matches);
+        add_match_keyframes(frame, store_, store_.import(frame), code, settings_.candidates, settings_.tests).matches);
 }
 
 std::vector<KeyframePose> KeyframeModel::candidates_of(const graph::Readback& lookup) {

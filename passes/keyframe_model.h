@@ -11,8 +11,7 @@ namespace patina {
 /// How keyframes are chosen and looked up.
 struct KeyframeSettings {
     KeyframeStoreSettings store;
-    /// What is compared when a frame may become a keyframe. Colours tell more places apart, but not where the camera
-    /// changes its exposure by itself.
+    /// What is compared. Colours tell more places apart, but not where the camera changes its exposure by itself.
     KeyframeTests tests = KeyframeTests::kAll;
     uint32_t candidates = 5;  ///< poses at which a lost camera is looked for; at most gpu::kMostMatches
 };
@@ -39,8 +38,7 @@ class KeyframeModel {
                   const RigidTransform& world_from_depth, uint32_t number) const;
 
     /// Looks a frame up whose camera is lost; candidates_of() tells the result once the graph has finished.
-    graph::Readback add_lookup(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color_linear,
-                               KeyframeTests tests) const;
+    graph::Readback add_lookup(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color_linear) const;
 
     /// Where the frame of a lookup may have been taken, most similar keyframe first; those that have nothing in common
     /// with it (dissimilarity 1) are left out.

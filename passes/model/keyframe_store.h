@@ -17,7 +17,7 @@ struct KeyframeStoreSettings {
     /// A frame becomes a keyframe when the share of ferns that differ is above this for every keyframe there is, or
     /// when none of them is near: then one that looks alike would not be near enough for tracking to start from.
     float least_dissimilarity = 0.15f;
-    float near_m = 0.3f;
+    float near_m = 0.25f;
     float near_degrees = 12;
 };
 

@@ -337,6 +337,21 @@ TEST(Evaluate, TruthMustBeFinite) {
                 throws_error_with("truth/frames/000010.exr: channel ks.G is nan at pixel (9, 12), must be finite"));
 }
 
+TEST(Evaluate, StatesOfTrackedFramesComeFromTheRunsRecord) {
+    const EvalRig rig;
+    EXPECT_FALSE(rig.evaluate().states);
+    const auto write = [&](const char* json) { std::ofstream(rig.run() / "run.json") << json; };
+    write(R"({"totals": {}})");
+    EXPECT_FALSE(rig.evaluate().states);
+    write(R"({"tracking": {"tracking": 30, "weak": 4, "lost": 6, "frames": []}})");
+    const FrameStates states = rig.evaluate().states.value();
+    EXPECT_EQ(states.tracking, 30u);
+    EXPECT_EQ(states.weak, 4u);
+    EXPECT_EQ(states.lost, 6u);
+    write(R"({"tracking": {"tracking": 30, "weak": -4, "lost": 6}})");
+    EXPECT_THAT([&] { rig.evaluate(); }, throws_error_with("run.json: tracking.weak is -4"));
+}
+
 TEST(Evaluate, ADamagedTrajectoryIsAnError) {
     const EvalRig rig;
     const auto expect_error = [&](const char* second_line, const char* message) {

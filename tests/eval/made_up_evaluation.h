@@ -75,6 +75,7 @@ inline eval::Evaluation full_evaluation(size_t objects = 4, uint32_t frames = 40
                                0.5,
                                eval::RelativePoseError{38, 0.033, 0.001, 0.0008, 0.002, 0.01, 0.008, 0.02},
                                eval::RelativePoseError{9, 1.0, 0.004, 0.003, 0.005, 0.06, 0.05, 0.07}};
+    evaluation.states = eval::FrameStates{36, 3, 1};
     evaluation.lights = eval::LightErrors{0.5,
                                           {{{1, -2, 3}, {4, 5, 6}}, {{-1, -2, 3}, {1, 1, 1}}},
                                           {{{9, 9, 9}, {1, 1, 1}}, {{1.02, -2, 3}, {8, 10, 12}}},
@@ -95,6 +96,7 @@ inline eval::Evaluation geometry_only() {
     }
     for (eval::ObjectResult& object : evaluation.objects) object.segmentation.reset();
     evaluation.segmentation.reset();
+    evaluation.states.reset();
     evaluation.lights.reset();
     return evaluation;
 }

@@ -380,7 +380,7 @@ TEST_F(Keyframes, RefusesSettingsThatCannotBeMet) {
     EXPECT_THAT([&] { made_store({.capacity = 20000}); }, message("it must be 1 to 16384"));
     EXPECT_THAT([&] { made_store({.least_depth_m = 4, .most_depth_m = 1}); }, message("from 4 m to 1 m"));
     EXPECT_THAT([&] { made_store({.least_dissimilarity = 1.5f}); }, message("least_dissimilarity is 1.5"));
-    EXPECT_THAT([&] { made_store({.near_degrees = 181}); }, message("0.3 m and 181 degrees"));
+    EXPECT_THAT([&] { made_store({.near_degrees = 181}); }, message("0.25 m and 181 degrees"));
     const KeyframeStore store = made_store();
     EXPECT_THAT([&] { match(store, code_of_all(0), 33); }, message("33 keyframes, it must be 1 to 32"));
     graph::Frame frame = runner().begin();

@@ -126,6 +126,10 @@ struct Convert {
                 {"per_second", or_null(errors.per_second)}};
     }
 
+    static Json to_json(const FrameStates& states) {
+        return {{"tracking", states.tracking}, {"weak", states.weak}, {"lost", states.lost}};
+    }
+
     static Json to_json(const sensor::PointLight& light) {
         return {{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
     }
@@ -200,6 +204,7 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"normal_deg", Convert::or_null(evaluation.normal_deg)},
                        {"segmentation", Convert::or_null(evaluation.segmentation)},
                        {"trajectory", Convert::or_null(evaluation.trajectory)},
+                       {"states", Convert::or_null(evaluation.states)},
                        {"lights", Convert::or_null(evaluation.lights)}};
     std::string text;
     append(text, json, "");

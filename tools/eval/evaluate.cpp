@@ -230,6 +230,7 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     result.run = run.string();
     const std::vector<FramePair> pairs = common_frames(sequence, run, result);
     const std::vector<PosePair> poses = read_poses(sequence, run, result);
+    result.states = read_frame_states(run);
     measure_lights(sequence, run, poses.empty() ? RigidTransform(1.0) : align_worlds(poses), settings.light_radius_m,
                    result);
     Reference reference = reference_of(pairs.front(), poses);

@@ -14,6 +14,7 @@
 #include "engine/core/camera.h"
 #include "engine/core/image.h"
 #include "sensor/truth.h"
+#include "tools/eval/frame_states.h"
 
 namespace patina::eval {
 
@@ -164,7 +165,8 @@ struct Evaluation {
     std::optional<PixelErrors> normal_deg;
     std::optional<SegmentationResult> segmentation;
     std::optional<TrajectoryErrors> trajectory;
-    std::string no_trajectory;  ///< why there is none, in a sentence; empty where there is one
+    std::string no_trajectory;          ///< why there is none, in a sentence; empty where there is one
+    std::optional<FrameStates> states;  ///< of the run's tracking; empty where its poses were given
     std::optional<LightErrors> lights;
 };
 

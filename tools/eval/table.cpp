@@ -208,6 +208,10 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
         add_relative(list, "RPE per frame", trajectory->per_frame);
         add_relative(list, "RPE per second", trajectory->per_second);
     }
+    if (const auto& states = evaluation.states) {
+        list.push_back({"Frames", fmt::format("{} tracking, {} weak, {} lost; only those that track were fused",
+                                              states->tracking, states->weak, states->lost)});
+    }
     if (const auto& segmentation = evaluation.segmentation) {
         list.push_back(
             {"Segmentation",
