@@ -6,6 +6,7 @@
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/visible_blocks.h"
 #include "passes/reconstruction.h"
+#include "passes/tracking/hide_highlights.h"
 
 namespace patina {
 
@@ -144,6 +145,10 @@ void Reconstruction::keep_reference(graph::Frame& graph, const VoxelMapIds& ids,
     std::optional<graph::ImageId> color;
     if (settings_.fusion.color && tracking_->settings().photometric)
         color = add_shade_color(graph, map_, ids, visible, model.position_m);
+    if (color && reflectance_ && tracking_->settings().hide_highlights) {
+        const PredictedImages seen = reflectance_->add_predict(graph, ids, visible, model).images;
+        color = add_hide_highlights(graph, {*color, seen.kd, seen.light, seen.rgb});
+    }
     tracking_->add_reference(graph, model, color, camera, world_from_depth);
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
+#include "shared/tracking.h"
 
 namespace patina {
 

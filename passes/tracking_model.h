@@ -20,6 +20,7 @@ struct TrackingSettings {
     uint32_t iterations = 4;         ///< on each level
     uint32_t finest_iterations = 4;  ///< on the finest
     bool photometric = true;         ///< compares shades too, where the map has colours
+    bool hide_highlights = true;     ///< no shades where the re-rendering is a highlight, where materials are known
     float damping = 0.9f;  ///< of the last motion that is expected to go on; 0: the camera is expected to rest
     TrackErrors errors;
     TrackingBounds bounds;

@@ -75,6 +75,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("tracking.iterations", s.tracking->iterations);
         visit("tracking.finest_iterations", s.tracking->finest_iterations);
         visit("tracking.photometric", s.tracking->photometric);
+        visit("tracking.hide_highlights", s.tracking->hide_highlights);
         visit("tracking.damping", s.tracking->damping);
         visit("tracking.noise_floor_m", s.tracking->errors.noise_floor_m);
         visit("tracking.noise_per_m", s.tracking->errors.noise_per_m);

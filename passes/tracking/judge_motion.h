@@ -3,9 +3,12 @@
 #include <string>
 
 #include "engine/core/camera.h"
-#include "shared/tracking.h"
 
 namespace patina {
+
+namespace gpu {
+struct TrackState;
+}
 
 /// How sure a frame's pose is. Only frames that track are fused.
 enum class TrackingState : uint8_t { kTracking, kWeak, kLost };

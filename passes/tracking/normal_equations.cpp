@@ -1,6 +1,7 @@
 #include "passes/tracking/normal_equations.h"
 
 #include "engine/core/error.h"
+#include "shared/tracking.h"
 #include "spirv/shaders.h"
 
 namespace patina {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "passes/tracking/track_level.h"
-#include "shared/tracking.h"
 
 namespace patina {
 

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
+#include "passes/tracking/no_color.h"
 #include "shared/tracking.h"
 #include "spirv/shaders.h"
 
@@ -34,9 +35,7 @@ TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Int
         params.shaded = 1;
         color_linear = color->color_linear;
     } else {
-        constexpr uint64_t kBlack = 0;
-        color_linear =
-            frame.upload("tracking.no_color", {{1, 1}, vulkan::Format::kRgba16f}, std::as_bytes(std::span(&kBlack, 1)));
+        color_linear = no_color(frame);
     }
     auto pass = frame.compute(kPass, spirv::pack_frame);
     pass.read("depth_m", depth_m).read("color_linear", color_linear).push(params);

@@ -1,6 +1,7 @@
 #include "passes/tracking/pack_model.h"
 
 #include "engine/core/error.h"
+#include "passes/tracking/no_color.h"
 #include "shared/tracking.h"
 #include "spirv/shaders.h"
 
@@ -21,10 +22,10 @@ graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& input
     params.jump_slope = jump.slope;
     params.least_cosine = kLeastCosine;
     params.shaded = inputs.color_linear ? 1 : 0;
+    const graph::ImageId color_linear = inputs.color_linear ? *inputs.color_linear : no_color(frame);
     auto pass = frame.compute("tracking.pack_model", spirv::pack_model);
     pass.read("position_m", inputs.surface.position_m).read("normal", inputs.surface.normal);
-    // Without colours nothing is read from the image that stands for them.
-    pass.read("color_linear", inputs.color_linear.value_or(inputs.surface.normal)).push(params);
+    pass.read("color_linear", color_linear).push(params);
     const graph::ImageId packed = pass.write("packed", target);
     pass.dispatch_covering(extent);
     return packed;

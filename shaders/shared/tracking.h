@@ -8,7 +8,7 @@ INTEROP_BEGIN
 INTEROP_CONST uint kTrackGroupX = 32u;  // of the passes that go over pixels
 INTEROP_CONST uint kTrackGroupY = 4u;
 INTEROP_CONST uint kNormalEquationsGroupY = 2u;  // fewer invocations, each with
-INTEROP_CONST uint kNormalEquationsRows = 8u;    // so many pixels of one column, kNormalEquationsGroupY rows apart
+INTEROP_CONST uint kNormalEquationsRows = 16u;   // so many pixels of one column, kNormalEquationsGroupY rows apart
 INTEROP_CONST uint kSolveMotionGroup = 64u;
 
 // What one group of pixels adds to the normal equations, in this order: the upper triangle of the 6 x 6 matrix row by
@@ -72,6 +72,12 @@ struct PackModelParams {
     float jump_slope;
     float least_cosine;  // between normal and direction to the camera
     uint shaded;
+};
+
+struct HideHighlightsParams {
+    uvec2 extent;
+    float most_share;  // of a re-rendering's luminance that specular reflection may make up
+    uint pad0;
 };
 
 struct HalveParams {

@@ -43,11 +43,9 @@ float robust_weight(float share) {
 // Adds weight (residual + (along, around) . motion)^2 to what is minimised.
 void add_equation(vec3 along, vec3 around, float residual, float weight) {
     const float row[6] = float[](along.x, along.y, along.z, around.x, around.y, around.z);
-    uint entry = kTrackMatrix;
     [[unroll]] for (uint i = 0u; i < 6u; ++i) {
         const float weighted = weight * row[i];
-        [[unroll]] for (uint j = i; j < 6u; ++j) sum[entry + j - i] += weighted * row[j];
-        entry += 6u - i;
+        [[unroll]] for (uint j = i; j < 6u; ++j) sum[kTrackMatrix + i * (11u - i) / 2u + j] += weighted * row[j];
         sum[kTrackRight + i] += weighted * residual;
     }
 }

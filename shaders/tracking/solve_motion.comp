@@ -11,12 +11,14 @@ layout(std430, binding = 0) readonly buffer Sums { float sums[]; };  // kTrackSu
 layout(std430, binding = 1) buffer State { TrackState state; };
 layout(push_constant) uniform Push { SolveMotionParams params; };
 
-const uint kSweeps = 6u;  // each squares what is left beside the diagonal, once that is small
+const uint kRounds =
+    30u;  // six sweeps of five; each sweep squares what is left beside the diagonal, once that is small
+const uint kLast = kRounds & 1u;
 
 shared float total[kTrackSums];
-shared float matrix[6][6];   // its diagonal becomes the eigenvalues
-shared float vectors[6][6];  // column i belongs to eigenvalue i
-shared float motion[6];      // metres along x, y, z; radians around them, times the lever
+shared float matrix[2][6][6];   // before and after a round; in the end [kLast], whose diagonal holds the eigenvalues
+shared float vectors[2][6][6];  // column i of [kLast] belongs to eigenvalue i
+shared float motion[6];         // metres along x, y, z; radians around them, times the lever
 
 // Where the upper triangle keeps row i, column j >= i.
 uint entry_of(uint i, uint j) { return kTrackMatrix + i * (11u - i) / 2u + j; }
@@ -31,48 +33,41 @@ void add_up_groups() {
     barrier();
 }
 
-// Cosine and sine of the rotation that makes the matrix's entry (p, q) zero.
-vec2 rotation_of(uint p, uint q) {
-    const float beside = matrix[p][q];
-    if (beside == 0.0) return vec2(1.0, 0.0);
-    const float theta = (matrix[q][q] - matrix[p][p]) / (2.0 * beside);
-    const float t = (theta < 0.0 ? -1.0 : 1.0) / (abs(theta) + sqrt(theta * theta + 1.0));
-    const float c = inversesqrt(t * t + 1.0);
-    return vec2(c, t * c);
+// With which row and column each is rotated: in five rounds, three pairs each, every one meets every other.
+uint partner_of(uint i, uint round_of_five) {
+    return i == 5u ? round_of_five : i == round_of_five ? 5u : (2u * round_of_five + 5u - i) % 5u;
 }
 
-void rotate(uint p, uint q) {
-    const uint k = gl_LocalInvocationIndex;
-    const vec2 cs = rotation_of(p, q);
-    barrier();
-    if (k < 6u) {
-        const float mp = matrix[k][p], mq = matrix[k][q], vp = vectors[k][p], vq = vectors[k][q];
-        matrix[k][p] = cs.x * mp - cs.y * mq;
-        matrix[k][q] = cs.y * mp + cs.x * mq;
-        vectors[k][p] = cs.x * vp - cs.y * vq;
-        vectors[k][q] = cs.y * vp + cs.x * vq;
-    }
-    barrier();
-    if (k < 6u) {
-        const float mp = matrix[p][k], mq = matrix[q][k];
-        matrix[p][k] = cs.x * mp - cs.y * mq;
-        matrix[q][k] = cs.y * mp + cs.x * mq;
-    }
-    barrier();
+// The shares of its own and of its partner's column that become column i, by the rotation that makes their common entry
+// zero.
+vec2 shares_of(uint now, uint i, uint partner) {
+    const uint p = min(i, partner), q = max(i, partner);
+    const float beside = matrix[now][p][q];
+    const float theta = (matrix[now][q][q] - matrix[now][p][p]) / (beside == 0.0 ? 1.0 : 2.0 * beside);
+    const float t = (theta < 0.0 ? -1.0 : 1.0) / (abs(theta) + sqrt(theta * theta + 1.0));
+    const float c = inversesqrt(t * t + 1.0);
+    return beside == 0.0 ? vec2(1.0, 0.0) : vec2(c, i == p ? -t * c : t * c);
+}
+
+void rotate(uint now, uint i, uint j, uint round_of_five) {
+    const uint pi = partner_of(i, round_of_five), pj = partner_of(j, round_of_five);
+    const vec2 si = shares_of(now, i, pi), sj = shares_of(now, j, pj);
+    const float own = sj.x * matrix[now][i][j] + sj.y * matrix[now][i][pj];
+    const float other = sj.x * matrix[now][pi][j] + sj.y * matrix[now][pi][pj];
+    matrix[1u - now][i][j] = si.x * own + si.y * other;
+    vectors[1u - now][i][j] = sj.x * vectors[now][i][j] + sj.y * vectors[now][i][pj];
 }
 
 void find_eigenvectors() {
-    const uint k = gl_LocalInvocationIndex;
+    const uint k = gl_LocalInvocationIndex, i = k / 6u, j = k % 6u;
     if (k < 36u) {
-        const uint i = k / 6u, j = k % 6u;
-        matrix[i][j] = total[entry_of(min(i, j), max(i, j))] / total[kTrackWeight];
-        vectors[i][j] = i == j ? 1.0 : 0.0;
+        matrix[0][i][j] = total[entry_of(min(i, j), max(i, j))] / total[kTrackWeight];
+        vectors[0][i][j] = i == j ? 1.0 : 0.0;
     }
     barrier();
-    for (uint sweep = 0u; sweep < kSweeps; ++sweep) {
-        for (uint p = 0u; p < 5u; ++p) {
-            for (uint q = p + 1u; q < 6u; ++q) rotate(p, q);
-        }
+    for (uint round = 0u; round < kRounds; ++round) {
+        if (k < 36u) rotate(round & 1u, i, j, round % 5u);
+        barrier();
     }
 }
 
@@ -82,17 +77,18 @@ uint solve() {
     for (uint i = 0u; i < 6u; ++i) motion[i] = 0.0;
     for (uint e = 0u; e < 6u; ++e) {
         float along = 0.0;
-        for (uint i = 0u; i < 6u; ++i) along += vectors[i][e] * total[kTrackRight + i];
-        const bool resisted = matrix[e][e] >= params.held_share;
+        for (uint i = 0u; i < 6u; ++i) along += vectors[kLast][i][e] * total[kTrackRight + i];
+        const bool resisted = matrix[kLast][e][e] >= params.held_share;
         held += resisted ? 0u : 1u;
-        const float step = resisted ? -along / (total[kTrackWeight] * matrix[e][e]) : 0.0;
-        for (uint i = 0u; i < 6u; ++i) motion[i] += step * vectors[i][e];
+        const float step = resisted ? -along / (total[kTrackWeight] * matrix[kLast][e][e]) : 0.0;
+        for (uint i = 0u; i < 6u; ++i) motion[i] += step * vectors[kLast][i][e];
     }
     return held;
 }
 
 void tell_eigenvalues() {
-    float sorted[6] = float[](matrix[0][0], matrix[1][1], matrix[2][2], matrix[3][3], matrix[4][4], matrix[5][5]);
+    float sorted[6];
+    [[unroll]] for (uint i = 0u; i < 6u; ++i) sorted[i] = matrix[kLast][i][i];
     [[unroll]] for (uint pass = 0u; pass < 5u; ++pass) {
         [[unroll]] for (uint i = 0u; i < 5u; ++i) {
             const float low = min(sorted[i], sorted[i + 1u]), high = max(sorted[i], sorted[i + 1u]);

@@ -100,7 +100,16 @@ TEST_F(BadInput, ZeroFrames) {
 
 TEST_F(BadInput, NoPoses) {
     fs::remove(sequence() / "trajectory.txt");
-    EXPECT_THAT(failure_of_run(sequence()), AllOf(HasSubstr("no poses"), HasSubstr("not supported yet")));
+    EXPECT_THAT(failure_of_run(sequence(), {"--poses", "given"}),
+                AllOf(HasSubstr("no poses"), HasSubstr("--poses given needs them")));
+    EXPECT_THAT(failure_of_run(sequence(), {"--poses", "prior"}), HasSubstr("--poses prior needs them"));
+}
+
+TEST_F(BadInput, ALossFromTheFirstFrameOn) {
+    fs::remove(sequence() / "trajectory.txt");
+    // Three tiny pictures hold fewer readings than tracking asks for.
+    EXPECT_THAT(failure_of_run(sequence(), {"--set", "tracking.levels=1", "--set", "tracking.finest=0"}),
+                AllOf(HasSubstr("no frame"), HasSubstr("tracking was lost: the first frame has ")));
 }
 
 TEST_F(BadInput, UnknownScene) {

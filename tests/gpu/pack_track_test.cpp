@@ -58,9 +58,12 @@ constexpr double kDepthStep = 1.0 / 65536, kShadeStep = 1.0 / 2047;
 
 void expect_equal(const Image<TrackReading>& got, const Image<TrackReading>& want, double steps) {
     ASSERT_EQ(got.extent(), want.extent());
-    size_t known = 0;
+    size_t known = 0, disputed = 0;
     for (size_t i = 0; i < got.pixels().size(); ++i) {
         ASSERT_NEAR(got.pixels()[i].depth_m, want.pixels()[i].depth_m, steps * kDepthStep) << i;
+        // Single precision may see a little of a clipped pixel where double precision sees none.
+        if ((got.pixels()[i].shade < 0) != (want.pixels()[i].shade < 0) && ++disputed <= got.pixels().size() / 10000)
+            continue;
         ASSERT_NEAR(got.pixels()[i].shade, want.pixels()[i].shade, steps * kShadeStep) << i;
         known += want.pixels()[i].depth_m > 0 ? 1 : 0;
     }

@@ -55,7 +55,7 @@ class TrackMotionTest : public TrackTest {
         double dimmed = 1;  ///< factor of the frame's colours
         bool colored = false;
         int iterations = 10;
-        TrackErrors errors;
+        TrackErrors errors{};
         float held_share = 0.002f;
     };
 
@@ -132,7 +132,7 @@ TEST_F(TrackMotionTest, ADarkerPictureIsBroughtToTheModelsExposure) {
 
 TEST_F(TrackMotionTest, WithoutPairsThePoseStays) {
     RigidTransform away(1.0);
-    away[3] = glm::dvec4(0, 0, 1, 1);
+    away[3] = glm::dvec4(0, 0, -6, 1);  // everything lies behind the camera
     const gpu::TrackState found = run_search({.scene = corner(), .start = away});
     EXPECT_EQ(found.solutions, 0);
     EXPECT_EQ(reference_from_frame(found)[3], away[3]);
@@ -199,7 +199,7 @@ TEST_F(TrackMotionTest, EquationsAndSolutionAgreeWithTheReference) {
         const TrackLevel packed = pack_model(frame, model, camera, search.world_from_model, true);
         const gpu::TrackState start = state_at(RigidTransform(1.0), 1.8, 0.7, 0.97);
         const auto state = frame.upload<gpu::TrackState>("state", std::span(&start, 1));
-        TrackErrors errors;
+        TrackErrors errors{};
         const NormalEquations equations = add_normal_equations(frame, own, packed, state, errors, 0);
         const graph::Readback read_own = frame.read_back(own.pixels), read_model = frame.read_back(packed.pixels),
                               read_sums = frame.read_back(equations.sums);

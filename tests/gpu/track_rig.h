@@ -8,6 +8,7 @@
 #include "passes/tracking/normal_equations.h"
 #include "passes/tracking/pack_frame.h"
 #include "passes/tracking/pack_model.h"
+#include "shared/tracking.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/analytic_scene.h"
 #include "tests/reference/track.h"

@@ -154,22 +154,26 @@ TEST_F(TrackingTest, WithTheLightOffDepthLeads) {
 TEST_F(TrackingTest, ARelocaliserEndsALoss) {
     Reconstruction reconstruction(device(), settings());
     for (int frame = 0; frame < 5; ++frame) ASSERT_TRUE(add(reconstruction, frame));
-    // Turned by a hand's breadth and a second's way: too far to be found from the last pose.
-    constexpr int kFar = 70;
-    EXPECT_FALSE(add(reconstruction, kFar));
+    // Half a metre aside: farther than a camera moves from frame to frame.
+    const auto far_pose = [](int i) { return reference::look_at({0.5 + 0.01 * i, -0.2, -0.2}, {0.1, 0.3, 2}); };
+    const auto add_far = [&](int i) { return add(reconstruction, shoot(room(), far_pose(i)), 5 + i, pose_at(0)); };
+    const auto far_error_m = [&](int i) {
+        return glm::length(glm::dvec3(reconstruction.tracking_report()->world_from_depth[3] - far_pose(i)[3]));
+    };
+    EXPECT_FALSE(add_far(0));
     EXPECT_EQ(state(reconstruction), TrackingState::kLost);
     int asked = 0;
     reconstruction.set_relocaliser([&](const RgbdFrame&) {
         ++asked;
-        RigidTransform near_by = pose_at(kFar + 1), wrong = pose_at(0);
+        RigidTransform near_by = far_pose(1), wrong = pose_at(0);
         near_by[3] += glm::dvec4(0.01, -0.01, 0.01, 0);
         wrong[3] += glm::dvec4(0, 0, -2, 0);
         return std::vector{wrong, near_by};
     });
-    ASSERT_TRUE(add(reconstruction, kFar + 1)) << reconstruction.tracking_report()->reason;
-    EXPECT_LT(error_m(reconstruction, kFar + 1), kMost_m);
-    ASSERT_TRUE(add(reconstruction, kFar + 2));
-    EXPECT_LT(error_m(reconstruction, kFar + 2), kMost_m);
+    ASSERT_TRUE(add_far(1)) << reconstruction.tracking_report()->reason;
+    EXPECT_LT(far_error_m(1), kMost_m);
+    ASSERT_TRUE(add_far(2)) << reconstruction.tracking_report()->reason;
+    EXPECT_LT(far_error_m(2), kMost_m);
     EXPECT_EQ(asked, 1);
 }
 

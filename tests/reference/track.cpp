@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -65,7 +66,7 @@ Image<TrackReading> pack_frame(const Image<float>& depth_m, const Intrinsics& ca
         const double z = depth_m.at(x, y);
         if (!(z > 0 && z <= max_depth_m)) return;
         const int px = static_cast<int>(x), py = static_cast<int>(y);
-        for (const auto [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
             const double there = pixel_or(depth_m, px + dx, py + dy, 0.0f);
             if (there != 0 && std::abs(there - z) > jump.floor_m + jump.slope * z) return;
         }

@@ -1,3 +1,5 @@
+#include "shared/tracking.h"
+
 #include <cmath>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -77,7 +79,7 @@ TEST(JudgeMotion, AGoodSearchTracks) {
     const TrackingReport report = judged(good_state());
     EXPECT_EQ(report.state, TrackingState::kTracking);
     EXPECT_EQ(report.reason, "");
-    EXPECT_DOUBLE_EQ(report.share, 0.9);
+    EXPECT_NEAR(report.share, 0.9, 1e-6);
 }
 
 TEST(JudgeMotion, EachBoundHasItsStateAndReason) {
