@@ -89,6 +89,7 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
     if (settings.specular)
         specular_.emplace(device, *settings.specular, settings.segmentation->capacity_labels, settings.network);
     if (settings.tracking) tracking_.emplace(device, *settings.tracking);
+    if (settings.keyframes) keyframes_.emplace(device, *settings.keyframes);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -108,6 +109,8 @@ VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const 
     const RigidTransform world_from_color = world_from_color_of(frame);
     const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color);
     InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
+    // With the colours that the camera gave: those of a lost frame cannot be corrected.
+    if (keyframes_) keyframes_->add_keep(graph, input.depth_m, input.color, frame.world_from_depth, frames_);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
 
     const FusionSettings& fusion = settings_.fusion;
@@ -219,6 +222,7 @@ void Reconstruction::fuse_posed(const RgbdFrame& frame) {
         if (reflectance_) reflectance_->reset(graph, center_m);
         if (segmentation_) segmentation_->reset(graph);
         if (specular_) specular_->reset(graph);
+        if (keyframes_) keyframes_->reset(graph);
         runner_.submit(std::move(graph));
     }
     graph::Frame graph = runner_.begin();

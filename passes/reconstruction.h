@@ -14,6 +14,7 @@
 #include "passes/fusion/allocate_blocks.h"
 #include "passes/fusion/raycast.h"
 #include "passes/input/input.h"
+#include "passes/keyframe_model.h"
 #include "passes/model/voxel_map.h"
 #include "passes/reflectance_model.h"
 #include "passes/segmentation_model.h"
@@ -43,6 +44,8 @@ struct ReconstructionSettings {
     std::optional<NetworkDescription> network{};  ///< that estimates specular materials; empty: none
     /// Finds the frames' poses; empty: they are given.
     std::optional<TrackingSettings> tracking{};
+    /// Keyframes of what is fused, by which a camera that tracking lost is found again; empty: none.
+    std::optional<KeyframeSettings> keyframes{};
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -121,8 +124,17 @@ class Reconstruction {
     /// Throws Error when a picture is not its camera's size, or the device was lost.
     bool add(const RgbdFrame& frame);
 
-    /// Asks `relocaliser` for poses of every frame that tracking lost; the first from which the frame tracks is taken.
+    /// Fuses a frame at its given pose although others are tracked; tracking goes on from there.
+    void add_posed(const RgbdFrame& frame);
+
+    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of the keyframes; the first from which
+    /// the frame tracks is taken.
     void set_relocaliser(Relocaliser relocaliser) { relocaliser_ = std::move(relocaliser); }
+
+    /// The keyframes' counters; waits. Zero without keyframes.
+    gpu::KeyframeCounters keyframe_counters();
+    /// Null when the settings have none.
+    const KeyframeModel* keyframes() const { return keyframes_ ? &*keyframes_ : nullptr; }
 
     /// How the last frame was tracked, and from where it was taken; null where poses are given.
     const TrackingReport* tracking_report() const { return tracking_ ? &tracking_->last() : nullptr; }
@@ -189,6 +201,8 @@ class Reconstruction {
     TrackingReport first_report(const RgbdFrame& frame) const;
     TrackingReport search(const RgbdFrame& frame, const RigidTransform& start);
     std::optional<TrackingReport> relocalised(const RgbdFrame& frame);
+    std::vector<RigidTransform> candidates(const RgbdFrame& frame);
+    TrackingReport search_from(const RgbdFrame& frame, const RigidTransform& start);
     void cast_reference(const Intrinsics& camera, const RigidTransform& world_from_depth);
     void keep_reference(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                         const RaycastImages& model, const Intrinsics& camera, const RigidTransform& world_from_depth);
@@ -211,7 +225,9 @@ class Reconstruction {
     std::optional<SegmentationModel> segmentation_;
     std::optional<SpecularModel> specular_;
     std::optional<TrackingModel> tracking_;
+    std::optional<KeyframeModel> keyframes_;
     Relocaliser relocaliser_;
+    uint32_t weak_frames_ = 0;                               ///< the last ones
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
     struct PendingCounts {

@@ -12,6 +12,9 @@ namespace patina {
 
 namespace {
 
+/// A camera that tracks weakly for so many frames may be somewhere else altogether.
+constexpr uint32_t kWeakFrames = 4;
+
 /// How many pixels of a depth picture hold a reading.
 size_t readings_of(const DepthInput& depth) {
     const auto is_reading = [](auto pixel) { return pixel > 0 && std::isfinite(static_cast<float>(pixel)); };
@@ -61,7 +64,8 @@ TrackingReport Reconstruction::track(const RgbdFrame& frame) {
         if (best.reason.empty() || report.state < best.state) best = report;
         if (best.state != TrackingState::kLost) break;
     }
-    if (best.state == TrackingState::kLost && relocaliser_) {
+    weak_frames_ = best.state == TrackingState::kWeak ? weak_frames_ + 1 : 0;
+    if (best.state == TrackingState::kLost || (weak_frames_ > 0 && weak_frames_ % kWeakFrames == 0)) {
         if (const auto found = relocalised(frame)) {
             best = *found;
             jumped = true;
@@ -73,16 +77,57 @@ TrackingReport Reconstruction::track(const RgbdFrame& frame) {
     return best;
 }
 
+std::vector<RigidTransform> Reconstruction::candidates(const RgbdFrame& frame) {
+    if (relocaliser_) return relocaliser_(frame);
+    std::vector<RigidTransform> poses;
+    if (!keyframes_ || frames_ == 0) return poses;
+    graph::Frame graph = runner_.begin();
+    const InputImages input = add_input(graph, frame.depth, frame.color,
+                                        make_camera(frame.depth.camera, RigidTransform(1.0)), settings_.input);
+    const graph::Readback lookup = keyframes_->add_lookup(graph, input.depth_m, input.color);
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    for (const KeyframePose& pose : KeyframeModel::candidates_of(lookup)) poses.push_back(pose.world_from_depth);
+    return poses;
+}
+
+TrackingReport Reconstruction::search_from(const RgbdFrame& frame, const RigidTransform& start) {
+    cast_reference(frame.depth.camera, start);
+    return search(frame, start);
+}
+
 std::optional<TrackingReport> Reconstruction::relocalised(const RgbdFrame& frame) {
     const RigidTransform before = tracking_->world_from_reference();
-    const std::vector<RigidTransform> candidates = relocaliser_(frame);
-    for (const RigidTransform& candidate : candidates) {
-        cast_reference(frame.depth.camera, candidate);
-        const TrackingReport report = search(frame, candidate);
-        if (report.state == TrackingState::kTracking) return report;
+    const std::vector<RigidTransform> starts = candidates(frame);
+    for (const RigidTransform& start : starts) {
+        TrackingReport report = search_from(frame, start);
+        // From afar it may not have settled, or the view from the start showed too little of what the frame does.
+        if (report.state == TrackingState::kWeak) report = search_from(frame, report.world_from_depth);
+        if (report.state == TrackingState::kTracking && report.share >= tracking_->settings().bounds.jump_share)
+            return report;
     }
-    if (!candidates.empty()) cast_reference(frame.depth.camera, before);
+    if (!starts.empty()) cast_reference(frame.depth.camera, before);
     return std::nullopt;
+}
+
+void Reconstruction::add_posed(const RgbdFrame& frame) {
+    check(frame);
+    if (tracking_) {
+        TrackingReport report;
+        report.state = TrackingState::kTracking;
+        report.world_from_depth = frame.world_from_depth;
+        tracking_->accept(report, frame.time, true);
+    }
+    fuse_posed(frame);
+}
+
+gpu::KeyframeCounters Reconstruction::keyframe_counters() {
+    if (!keyframes_ || frames_ == 0) return {};
+    graph::Frame graph = runner_.begin();
+    const graph::Readback read = keyframes_->read_counters(graph);
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    return read.as<gpu::KeyframeCounters>().front();
 }
 
 void Reconstruction::cast_reference(const Intrinsics& camera, const RigidTransform& world_from_depth) {

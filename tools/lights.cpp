@@ -15,6 +15,7 @@
 #include "sensor/synthetic/synthetic_source.h"
 #include "sensor/truth.h"
 #include "tools/interrupt.h"
+#include "tools/localise.h"
 #include "tools/progress.h"
 #include "tools/rgbd_frame.h"
 
@@ -37,6 +38,7 @@ constexpr float kClippedLuminance = 0.98f;
 struct Lighting {
     std::unique_ptr<sensor::Source> source;
     std::optional<double> main_exposure;  ///< exposure_s * gain; empty: the lighting sequence's own
+    FoundPoses poses;                     ///< by frame, where the source has none
 };
 
 double amount(const sensor::Exposure& exposure) { return exposure.exposure_s * exposure.gain; }
@@ -52,20 +54,24 @@ double exposure_of(const fs::path& sequence) {
     throw Error("no frame of '", sequence.string(), "' could be used: ", reason);
 }
 
-Lighting open_recorded(const fs::path& folder) {
-    const fs::path inside = folder / "lighting", beside = fs::absolute(folder).lexically_normal().parent_path();
-    const bool has_inside = fs::is_directory(inside);
+/// The folder of the lighting sequence, and of the main sequence where that is known.
+struct Folders {
+    fs::path lighting;
+    std::string main;
+};
+
+Folders folders_of(const LightsOptions& options) {
+    const fs::path folder = options.sequence, inside = folder / "lighting";
+    const fs::path beside = fs::absolute(folder).lexically_normal().parent_path();
+    if (fs::is_directory(inside)) return {inside, folder.string()};
+    if (folder.filename() == "lighting" && fs::exists(beside / "sequence.json")) return {folder, beside.string()};
+    return {folder, ""};
+}
+
+Lighting open_recorded(const Folders& folders) {
     Lighting lighting;
-    lighting.source = sensor::open_sequence(has_inside ? inside : folder);
-    if (!lighting.source->info().has_poses) {
-        throw Error("the lighting sequence '", (has_inside ? inside : folder).string(),
-                    "' has no poses: a trajectory.txt with poses is needed");
-    }
-    if (has_inside) {
-        lighting.main_exposure = exposure_of(folder);
-    } else if (folder.filename() == "lighting" && fs::exists(beside / "sequence.json")) {
-        lighting.main_exposure = exposure_of(beside);
-    }
+    lighting.source = sensor::open_sequence(folders.lighting);
+    if (!folders.main.empty()) lighting.main_exposure = exposure_of(folders.main);
     lighting.source = std::make_unique<sensor::PrefetchSource>(std::move(lighting.source));
     return lighting;
 }
@@ -75,7 +81,7 @@ Lighting open_synthetic(const std::string& name, vulkan::Device& device) {
     if (!lighting)
         throw Error("the scene '", name, "' has no lighting sequence: it needs a path and lamps with a radius");
     const sensor::SyntheticOptions recording{.frames = lighting->frames, .exposure = lighting->exposure};
-    return {std::make_unique<sensor::SyntheticSource>(device, lighting->scene, recording), amount({})};
+    return {std::make_unique<sensor::SyntheticSource>(device, lighting->scene, recording), amount({}), {}};
 }
 
 /// Calls take(frame) for every frame of the source that can be used.
@@ -91,8 +97,8 @@ void for_each_frame(const LightsOptions& options, sensor::Source& source, const 
         if (!reading) break;
         if (const auto* skipped = std::get_if<sensor::Skipped>(&*reading)) {
             progress.say(fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
-        } else if (const auto& frame = std::get<sensor::Frame>(*reading); frame.world_from_camera) {
-            take(frame);
+        } else {
+            take(std::get<sensor::Frame>(*reading));
         }
         progress.update(done + 1, what);
     }
@@ -101,7 +107,9 @@ void for_each_frame(const LightsOptions& options, sensor::Source& source, const 
 Illumination estimate(const LightsOptions& options, const Lighting& lighting, vulkan::Device& device) {
     const sensor::SequenceInfo& info = lighting.source->info();
     LightEstimation estimation(device, options.settings);
-    for_each_frame(options, *lighting.source, "lamps", [&](const sensor::Frame& frame) {
+    for_each_frame(options, *lighting.source, "lamps", [&](sensor::Frame frame) {
+        if (!lighting.poses.empty()) frame.world_from_camera = lighting.poses.at(frame.index);
+        if (!frame.world_from_camera) return;
         const double own = amount(frame.exposure);
         estimation.add(to_rgbd(info, frame), static_cast<float>(lighting.main_exposure.value_or(own) / own));
     });
@@ -138,6 +146,7 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device) {
     LightEstimation estimation(device, clipped_lamps(options.settings));
     const sensor::SequenceInfo& info = source->info();
     for_each_frame(options, *source, "lights", [&](const sensor::Frame& frame) {
+        if (!frame.world_from_camera) return;
         const RgbdFrame rgbd = to_rgbd(info, frame);
         reconstruction.add(rgbd);
         estimation.add(rgbd, 1);
@@ -146,6 +155,45 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device) {
     for (const FoundLight& lamp : estimation.found()) seen_m.push_back(lamp.position_m);
     const FittedLights fitted = fit_lights(reconstruction, seen_m, options.fitting);
     return {"main sequence", fitted.lamps, fitted.ambient, fitted.misfit, fitted.unexplained};
+}
+
+std::string main_of(const LightsOptions& options, const Folders& folders) {
+    return options.main.empty() ? folders.main : options.main;
+}
+
+/// Whether poses of the lighting sequence, if it has some, are in the world of the reconstruction to come: that is the
+/// main sequence's first camera where this has no poses.
+bool in_main_world(const LightsOptions& options, const Folders& folders, const sensor::Source& lighting) {
+    if (!lighting.info().has_poses) return false;
+    const std::string main = main_of(options, folders);
+    return main.empty() || sensor::open_sequence(main, options.main_format)->info().has_poses;
+}
+
+/// Poses of the frames of a lighting sequence, found in the main sequence's world.
+FoundPoses located(const LightsOptions& options, const Folders& folders, vulkan::Device& device) {
+    const std::string main = main_of(options, folders);
+    if (main.empty()) {
+        throw Error(
+            "the lighting sequence '", folders.lighting.string(),
+            "' has no poses, and no main sequence holds it in whose world they could be found: a trajectory.txt "
+            "with poses is needed");
+    }
+    const InterruptGuard interrupt;
+    const std::unique_ptr<sensor::Source> room =
+        std::make_unique<sensor::PrefetchSource>(sensor::open_sequence(main, options.main_format));
+    const std::unique_ptr<sensor::Source> lighting = sensor::open_sequence(folders.lighting);
+    LocaliseOptions find{options.reconstruction, options.main_frames, options.track, {}};
+    find.on_frame = [&](const char* what, uint32_t done, uint32_t total) {
+        if (interrupt.requested())
+            throw Interrupted("interrupted after ", done, " of ", total, " frames of the ", what);
+    };
+    FoundPoses poses = localise(device, *room, *lighting, find);
+    if (!options.quiet) {
+        const auto count = std::count_if(poses.begin(), poses.end(), [](const auto& pose) { return pose.has_value(); });
+        fmt::print("{} of {} frames of '{}' were found in the room of '{}'\n", count, poses.size(),
+                   folders.lighting.string(), main);
+    }
+    return poses;
 }
 
 void write(const fs::path& file, const Illumination& found) {
@@ -187,8 +235,11 @@ Illumination find_lights(const LightsOptions& options) {
                               (options.from == LightsFrom::kAny && (is_one || has_lighting_sequence(options.sequence)));
     std::optional<vulkan::Device> device;  // outlives the source, which may compute on it
     Lighting lighting;
-    if (low_exposure && !scene) lighting = open_recorded(options.sequence);
+    const Folders folders = scene ? Folders{} : folders_of(options);
+    if (low_exposure && !scene) lighting = open_recorded(folders);
     device.emplace(options.device);
+    if (low_exposure && !scene && !in_main_world(options, folders, *lighting.source))
+        lighting.poses = located(options, folders, *device);
     if (low_exposure && scene) lighting = open_synthetic(*scene, *device);
     const Illumination found = low_exposure ? estimate(options, lighting, *device) : fit(options, *device);
     if (!options.out.empty()) write(options.out, found);

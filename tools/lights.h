@@ -28,6 +28,12 @@ struct LightsOptions {
     uint32_t frames = 0;        ///< at most so many frames of the sequence looked at; 0 takes all
     bool quiet = false;
     LightsFrom from = LightsFrom::kAny;
+    /// In whose world the lamps are wanted where a lighting sequence of another folder has no poses: the main sequence;
+    /// empty: the one that holds the lighting sequence.
+    std::string main;
+    std::string main_format;   ///< empty: recognised
+    uint32_t main_frames = 0;  ///< as `frames`, of the main sequence, when a lighting sequence is found in its room
+    bool track = false;        ///< poses of the main sequence are tracked though it has some
     vulkan::DeviceOptions device;
     LightEstimationSettings settings;
     LightFittingSettings fitting;
@@ -51,9 +57,10 @@ bool has_lighting_sequence(const std::string& sequence);
 
 /// Finds the lamps of a room. In a sequence of low exposure (paper, Section 3.2): in the world and in the pixel values
 /// of the reflectance sequence beside it, the folder that holds lighting/; of one in no such folder (kLightingSequence
-/// alone) intensities are in its own pixel values. In the main sequence: as fit_lights says. Writes lights.json, whole
-/// or not at all. Throws Error when a sequence has no poses, or a file cannot be read or written; Interrupted when the
-/// user stops it.
+/// alone) intensities are in its own pixel values. One without poses is brought into the main sequence's world
+/// (localise.h). In the main sequence: as fit_lights says. Writes lights.json, whole or not at all. Throws Error when a
+/// sequence has no poses and there is no main one, or a file cannot be read or written; Interrupted when the user stops
+/// it.
 Illumination find_lights(const LightsOptions& options);
 
 }  // namespace patina::tools

@@ -177,16 +177,26 @@ class Run {
         if (const TrackingModel* tracking = reconstruction_.tracking()) {
             for (const auto& pool : tracking->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
         }
+        if (const KeyframeModel* model = reconstruction_.keyframes())
+            record.memory.push_back({"keyframes", model->store().bytes(), 0, 0});
         record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
         record.totals = {{"vertices", scene.vertices},
                          {"triangles", scene.triangles},
                          {"degenerate triangles left out", scene.degenerate_triangles},
                          {"blocks removed without surface", counters.deleted_blocks}};
         if (reconstruction_.segmentation()) add_segment_totals(record);
+        const gpu::KeyframeCounters keyframes = reconstruction_.keyframe_counters();
+        if (reconstruction_.keyframes()) record.totals.emplace_back("keyframes", keyframes.used);
         record.tracking = fusion_.tracked();
         record.color_gains = gain_ranges();
         record.held_out = held_out_;
         record.warnings = warnings(counters);
+        if (keyframes.refused > 0) {
+            record.warnings.push_back(
+                fmt::format("the store of keyframes was full: {} were refused, its capacity is {}; raise "
+                            "keyframes.capacity",
+                            keyframes.refused, fusion_.settings().keyframes->store.capacity));
+        }
         for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
             if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
         }

@@ -33,6 +33,10 @@ Illumination lights_of(const SequenceOptions& options) {
     find.from = self ? LightsFrom::kMainSequence : LightsFrom::kLightingSequence;
     find.format = self ? options.format : "";
     find.frames = self ? options.frames : 0;
+    if (!options.sequence.starts_with("synthetic:")) find.main = options.sequence;
+    find.main_format = options.format;
+    find.main_frames = options.frames;
+    find.track = options.poses == PoseMode::kTrack || options.poses == PoseMode::kPrior;
     find.reconstruction = options.settings;
     find.quiet = options.quiet;
     find.device = options.device;

@@ -96,8 +96,19 @@ void for_each_setting(Settings& s, Visit&& visit) {
         visit("tracking.held_share", s.tracking->bounds.held_share);
         visit("tracking.weak_step_m", s.tracking->bounds.weak_step_m);
         visit("tracking.weak_step_degrees", s.tracking->bounds.weak_step_degrees);
+        visit("tracking.jump_share", s.tracking->bounds.jump_share);
         visit("tracking.lost_motion_m", s.tracking->bounds.lost_motion_m);
         visit("tracking.lost_motion_degrees", s.tracking->bounds.lost_motion_degrees);
+    }
+    if (s.keyframes) {
+        visit("keyframes.capacity", s.keyframes->store.capacity);
+        visit("keyframes.seed", s.keyframes->store.seed);
+        visit("keyframes.least_depth_m", s.keyframes->store.least_depth_m);
+        visit("keyframes.most_depth_m", s.keyframes->store.most_depth_m);
+        visit("keyframes.least_dissimilarity", s.keyframes->store.least_dissimilarity);
+        visit("keyframes.near_m", s.keyframes->store.near_m);
+        visit("keyframes.near_degrees", s.keyframes->store.near_degrees);
+        visit("keyframes.candidates", s.keyframes->candidates);
     }
     if (s.specular) {
         visit("specular.segments_per_frame", s.specular->segments_per_frame);
@@ -114,6 +125,7 @@ std::string known_keys() {
     defaults.segmentation.emplace();
     defaults.specular.emplace();
     defaults.tracking.emplace();
+    defaults.keyframes.emplace();
     for_each_setting(defaults,
                      [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
     return keys;
@@ -142,6 +154,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
     if (!settings.gains && key.starts_with("gains.")) settings.gains.emplace();
     if (!settings.specular && key.starts_with("specular.")) settings.specular.emplace();
     if (!settings.tracking && key.starts_with("tracking.")) settings.tracking.emplace();
+    if (!settings.keyframes && key.starts_with("keyframes.")) settings.keyframes.emplace();
     bool known = false;
     for_each_setting(settings, [&](const char* name, auto& setting) {
         if (key != name) return;

@@ -60,8 +60,11 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
     }
     if (options.poses == PoseMode::kGiven || (options.poses == PoseMode::kAuto && info.has_poses)) {
         settings.tracking.reset();
-    } else if (!settings.tracking) {
-        settings.tracking.emplace();
+        settings.keyframes.reset();
+    } else {
+        if (!settings.tracking) settings.tracking.emplace();
+        if (!settings.keyframes) settings.keyframes.emplace();
+        if (settings.gains) settings.keyframes->tests = KeyframeTests::kDepth;
     }
     if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
     set_specular(settings, options);

@@ -27,6 +27,7 @@ struct TrackingBounds {
                                  ///< the pose is held in that direction
     float weak_step_m = 0.002f;  ///< of the last iteration: it has not settled
     float weak_step_degrees = 0.1f;
+    float jump_share = 0.5f;     ///< of a frame's readings that must lie on the model to be found again after a loss
     float lost_motion_m = 0.3f;  ///< from the predicted pose
     float lost_motion_degrees = 20;
 };

@@ -77,7 +77,11 @@ TEST(EvalJson, ReadsBackAsMeasured) {
     }
     EXPECT_EQ(got["depth_mm"]["p90"], 4.75);
     EXPECT_EQ(got["normal_deg"]["median"], 0.5);
+    EXPECT_EQ(got["trajectory"]["run_poses"], 39);
+    EXPECT_EQ(got["states"], (json{{"tracking", 36}, {"weak", 3}, {"lost", 1}}));
+    EXPECT_EQ(got["trajectory"]["per_second"]["rotation_median_deg"], 0.05);
     EXPECT_EQ(got["trajectory"]["per_second"]["rotation_max_deg"], 0.07);
+    EXPECT_EQ(got["trajectory"]["per_frame"]["translation_median_m"], 0.0008);
     EXPECT_EQ(got["segmentation"]["labels"], 2.5);
     EXPECT_EQ(got["lights"]["matches"][0]["intensity_error_after_factor"], (json{0.125, 0, 0}));
     EXPECT_EQ(got["lights"]["run"][1]["position"], (json{1.02, -2, 3}));
@@ -89,7 +93,7 @@ TEST(EvalJson, KeysKeepTheirOrder) {
     EXPECT_THAT(keys_of(got),
                 ElementsAre("format", "version", "sequence", "run", "width", "height", "frames", "truth_frames",
                             "run_frames", "seen_frames", "seen_share", "objects", "object_means", "depth_mm",
-                            "normal_deg", "segmentation", "trajectory", "lights"));
+                            "normal_deg", "segmentation", "trajectory", "states", "lights"));
     EXPECT_THAT(keys_of(got["objects"][0]["quantities"]),
                 ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb"));
 }

@@ -36,6 +36,8 @@ Evaluation small_evaluation() {
     evaluation.objects[1].quantities[Quantity::kKs].reset();
     evaluation.objects[0].quantities[Quantity::kAlpha]->mean.filled->psnr_db = std::numeric_limits<double>::infinity();
     evaluation.trajectory.reset();
+    evaluation.no_trajectory = "truth and run do not both have one";
+    evaluation.states.reset();
     evaluation.segmentation.reset();
     evaluation.lights->invented.clear();
     return evaluation;
@@ -76,6 +78,22 @@ Lights          1 of 2 matched within 0.50 m; 1 missed, 0 invented; the run's in
 Note: Segmentation was not measured: the run's frames hold no labels.
 Note: The trajectory was not compared: truth and run do not both have one.
 )");
+}
+
+TEST(EvalText, TellsOfTheTrajectory) {
+    Evaluation evaluation = full_evaluation();
+    EXPECT_THAT(
+        eval_text(evaluation),
+        HasSubstr("\nTrajectory      ATE RMSE 12.50 mm, at most 30.00 mm; 500.00 mm without alignment; 39 of 40 poses"
+                  "\nRPE per frame   RMSE 1.00 mm, 0.010 deg; median 0.80 mm, 0.008 deg; at most 2.00 mm, 0.020 "
+                  "deg; 38 x 0.033 s"
+                  "\nRPE per second  RMSE 4.00 mm, 0.060 deg; median 3.00 mm, 0.050 deg; at most 5.00 mm, 0.070 "
+                  "deg; 9 x 1.000 s"
+                  "\nFrames          36 tracking, 3 weak, 1 lost; only those that track were fused\n"));
+    EXPECT_THAT(eval_text(evaluation), testing::Not(HasSubstr("truth has none")));
+    evaluation.trajectory->run_poses = 41;
+    EXPECT_THAT(eval_text(evaluation),
+                HasSubstr("\nNote: 2 of the run's 41 poses are at times for which truth has none.\n"));
 }
 
 TEST(EvalText, FitsATerminal) {

@@ -257,6 +257,20 @@ TEST(Evaluate, WhatTheRunLacksIsAbsent) {
     EXPECT_FALSE(result.objects[0].segmentation);
     EXPECT_FALSE(result.lights);
     EXPECT_FALSE(result.trajectory);
+    EXPECT_EQ(result.no_trajectory, "truth and run do not both have one");
+}
+
+TEST(Evaluate, TwoPosesAreTooFewButAllElseIsMeasured) {
+    const EvalRig rig;
+    const std::vector<sensor::StampedPose> poses = EvalRig::trajectory();
+    sensor::write_trajectory(rig.run() / "trajectory.txt", std::span(poses).first(2));
+    const Evaluation result = rig.evaluate();
+    EXPECT_FALSE(result.trajectory);
+    EXPECT_THAT(result.no_trajectory, testing::EndsWith(" have 2 poses in common, and 3 are needed"));
+    expect_perfect(floor_in(result, Quantity::kRgb));
+    EXPECT_TRUE(result.lights);
+    sensor::write_trajectory(rig.run() / "trajectory.txt", std::span(poses).first(3));
+    EXPECT_EQ(rig.evaluate().trajectory.value().poses, 3u);
 }
 
 TEST(Evaluate, OnlyCommonFramesCount) {
@@ -321,6 +335,32 @@ TEST(Evaluate, TruthMustBeFinite) {
     test::write_frame(rig.sequence() / "truth" / "frames" / "000010.exr", broken);
     EXPECT_THAT([&] { rig.evaluate(); },
                 throws_error_with("truth/frames/000010.exr: channel ks.G is nan at pixel (9, 12), must be finite"));
+}
+
+TEST(Evaluate, StatesOfTrackedFramesComeFromTheRunsRecord) {
+    const EvalRig rig;
+    EXPECT_FALSE(rig.evaluate().states);
+    const auto write = [&](const char* json) { std::ofstream(rig.run() / "run.json") << json; };
+    write(R"({"totals": {}})");
+    EXPECT_FALSE(rig.evaluate().states);
+    write(R"({"tracking": {"tracking": 30, "weak": 4, "lost": 6, "frames": []}})");
+    const FrameStates states = rig.evaluate().states.value();
+    EXPECT_EQ(states.tracking, 30u);
+    EXPECT_EQ(states.weak, 4u);
+    EXPECT_EQ(states.lost, 6u);
+    write(R"({"tracking": {"tracking": 30, "weak": -4, "lost": 6}})");
+    EXPECT_THAT([&] { rig.evaluate(); }, throws_error_with("run.json: tracking.weak is -4"));
+}
+
+TEST(Evaluate, ADamagedTrajectoryIsAnError) {
+    const EvalRig rig;
+    const auto expect_error = [&](const char* second_line, const char* message) {
+        std::ofstream(rig.run() / "trajectory.txt") << "0 0 0 0 0 0 0 1\n" << second_line << "\n";
+        EXPECT_THAT([&] { rig.evaluate(); }, throws_error_with(message));
+    };
+    expect_error("0.03333 0 0 0 0 0", "trajectory.txt:2 has 6 columns");
+    expect_error("0.03333 nan 0 0 0 0 0 1", "trajectory.txt:2: column 2 is nan, must be finite");
+    expect_error("nan 0 0 0 0 0 0 1", "trajectory.txt:2: column 1 is nan, must be finite");
 }
 
 TEST(Evaluate, ATrajectoryOfAnotherTimeIsAnError) {

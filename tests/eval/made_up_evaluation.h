@@ -66,13 +66,16 @@ inline eval::Evaluation full_evaluation(size_t objects = 4, uint32_t frames = 40
     evaluation.depth_mm = eval::PixelErrors{5000, 0.984375, 1.5, 2.25, 4.75, 3.125};
     evaluation.normal_deg = eval::PixelErrors{5000, 0.984375, 0.5, 1.25, 2.75, 1.625};
     evaluation.segmentation = eval::SegmentationResult{0.875, 0.9375, 2.5, 0.03125};
-    evaluation.trajectory = eval::TrajectoryErrors{40,
-                                                   39,
-                                                   0.0125,
-                                                   0.03,
-                                                   0.5,
-                                                   eval::RelativePoseError{38, 0.033, 0.001, 0.002, 0.01, 0.02},
-                                                   eval::RelativePoseError{9, 1.0, 0.004, 0.005, 0.06, 0.07}};
+    evaluation.trajectory =
+        eval::TrajectoryErrors{40,
+                               39,
+                               39,
+                               0.0125,
+                               0.03,
+                               0.5,
+                               eval::RelativePoseError{38, 0.033, 0.001, 0.0008, 0.002, 0.01, 0.008, 0.02},
+                               eval::RelativePoseError{9, 1.0, 0.004, 0.003, 0.005, 0.06, 0.05, 0.07}};
+    evaluation.states = eval::FrameStates{36, 3, 1};
     evaluation.lights = eval::LightErrors{0.5,
                                           {{{1, -2, 3}, {4, 5, 6}}, {{-1, -2, 3}, {1, 1, 1}}},
                                           {{{9, 9, 9}, {1, 1, 1}}, {{1.02, -2, 3}, {8, 10, 12}}},
@@ -93,6 +96,7 @@ inline eval::Evaluation geometry_only() {
     }
     for (eval::ObjectResult& object : evaluation.objects) object.segmentation.reset();
     evaluation.segmentation.reset();
+    evaluation.states.reset();
     evaluation.lights.reset();
     return evaluation;
 }

@@ -40,7 +40,7 @@ std::vector<StampedPose> changed(Change change) {
 
 TrajectoryErrors errors_of(const std::vector<StampedPose>& run) {
     const std::vector<StampedPose> truth = winding_path();
-    return trajectory_errors(pair_poses(truth, run, 0.02), truth.size());
+    return trajectory_errors(pair_poses(truth, run, 0.02), truth.size(), run.size());
 }
 
 TEST(Trajectory, TheTruePosesHaveNoError) {
@@ -87,7 +87,7 @@ TEST(Trajectory, DriftPerFrameIsTheRelativePoseError) {
         truth.push_back({t, moved({0, 0, t})});
         run.push_back({t, moved({0, 0, 1.02 * t})});
     }
-    const TrajectoryErrors errors = trajectory_errors(pair_poses(truth, run, 0.02), truth.size());
+    const TrajectoryErrors errors = trajectory_errors(pair_poses(truth, run, 0.02), truth.size(), run.size());
     EXPECT_EQ(errors.per_frame->pairs, 39u);
     EXPECT_NEAR(errors.per_frame->step_s, 0.1, 1e-12);
     EXPECT_NEAR(errors.per_frame->translation_rmse_m, 0.002, 1e-12);
@@ -104,11 +104,21 @@ TEST(Trajectory, TurningSlowlyIsRotationError) {
         truth[i].timestamp_s = run[i].timestamp_s = 0.1 * static_cast<double>(i);
         run[i].world_from_camera = turning(i);
     }
-    const TrajectoryErrors errors = trajectory_errors(pair_poses(truth, run, 0.02), truth.size());
+    const TrajectoryErrors errors = trajectory_errors(pair_poses(truth, run, 0.02), truth.size(), run.size());
     EXPECT_NEAR(errors.per_frame->rotation_rmse_deg, 0.05, 1e-9);
     EXPECT_NEAR(errors.per_second->rotation_rmse_deg, 0.5, 1e-9);
     EXPECT_NEAR(errors.per_second->rotation_max_deg, 0.5, 1e-9);
     EXPECT_EQ(errors.ate_rmse_m, 0);
+}
+
+TEST(Trajectory, OneWrongPoseLeavesTheMedianAlone) {
+    const TrajectoryErrors errors = errors_of(changed([](size_t i) { return moved({0, i == 20 ? 0.5 : 0, 0}); }));
+    EXPECT_NEAR(errors.per_frame->translation_median_m, 0, 1e-12);
+    EXPECT_NEAR(errors.per_frame->translation_max_m, 0.5, 1e-12);
+    EXPECT_NEAR(errors.per_frame->translation_rmse_m, 0.5 * std::sqrt(2.0 / 39), 1e-12);
+    const auto drifting = [](size_t i) { return moved({0, 0.01 * static_cast<double>(i * i), 0}); };
+    // Steps of 0.01 (2 i + 1), i from 0 to 38, as the path's rotations leave lengths alone.
+    EXPECT_NEAR(errors_of(changed(drifting)).per_frame->translation_median_m, 0.01 * 39, 1e-12);
 }
 
 TEST(Trajectory, ALostFrameMakesALongerStep) {
@@ -123,8 +133,8 @@ TEST(Trajectory, ALostFrameMakesALongerStep) {
 
 TEST(Trajectory, ShortOnesHaveNoRelativeError) {
     const std::vector<StampedPose> one = winding_path(1), five = winding_path(5);
-    EXPECT_FALSE(trajectory_errors(pair_poses(one, one, 0.02), 1).per_frame);
-    const TrajectoryErrors errors = trajectory_errors(pair_poses(five, five, 0.02), 5);
+    EXPECT_FALSE(trajectory_errors(pair_poses(one, one, 0.02), 1, 1).per_frame);
+    const TrajectoryErrors errors = trajectory_errors(pair_poses(five, five, 0.02), 5, 5);
     EXPECT_TRUE(errors.per_frame);
     EXPECT_FALSE(errors.per_second);
 }

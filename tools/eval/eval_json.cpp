@@ -108,19 +108,26 @@ struct Convert {
         return {{"pairs", error.pairs},
                 {"step_s", error.step_s},
                 {"translation_rmse_m", error.translation_rmse_m},
+                {"translation_median_m", error.translation_median_m},
                 {"translation_max_m", error.translation_max_m},
                 {"rotation_rmse_deg", error.rotation_rmse_deg},
+                {"rotation_median_deg", error.rotation_median_deg},
                 {"rotation_max_deg", error.rotation_max_deg}};
     }
 
     static Json to_json(const TrajectoryErrors& errors) {
         return {{"truth_poses", errors.truth_poses},
+                {"run_poses", errors.run_poses},
                 {"poses", errors.poses},
                 {"ate_rmse_m", errors.ate_rmse_m},
                 {"ate_max_m", errors.ate_max_m},
                 {"unaligned_rmse_m", errors.unaligned_rmse_m},
                 {"per_frame", or_null(errors.per_frame)},
                 {"per_second", or_null(errors.per_second)}};
+    }
+
+    static Json to_json(const FrameStates& states) {
+        return {{"tracking", states.tracking}, {"weak", states.weak}, {"lost", states.lost}};
     }
 
     static Json to_json(const sensor::PointLight& light) {
@@ -197,6 +204,7 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"normal_deg", Convert::or_null(evaluation.normal_deg)},
                        {"segmentation", Convert::or_null(evaluation.segmentation)},
                        {"trajectory", Convert::or_null(evaluation.trajectory)},
+                       {"states", Convert::or_null(evaluation.states)},
                        {"lights", Convert::or_null(evaluation.lights)}};
     std::string text;
     append(text, json, "");

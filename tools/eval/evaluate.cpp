@@ -69,16 +69,25 @@ std::map<uint32_t, fs::path> truth_files(std::span<const FramePair> pairs) {
     return files;
 }
 
-/// The trajectories of sequence and run; empty where one of them has none.
+/// The poses that sequence and run have in common, compared where they are enough; empty where one of them has none.
 std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "trajectory.txt", run_file = run / "trajectory.txt";
-    if (!fs::exists(truth_file) || !fs::exists(run_file)) return {};
+    if (!fs::exists(truth_file) || !fs::exists(run_file)) {
+        result.no_trajectory = "truth and run do not both have one";
+        return {};
+    }
     const std::vector<sensor::StampedPose> truth = sensor::read_trajectory(truth_file);
-    std::vector<PosePair> pairs = pair_poses(truth, sensor::read_trajectory(run_file), kPoseLimit_s);
+    const std::vector<sensor::StampedPose> of_run = sensor::read_trajectory(run_file);
+    std::vector<PosePair> pairs = pair_poses(truth, of_run, kPoseLimit_s);
     if (pairs.empty()) {
         throw Error(run_file.string(), " has no pose within ", kPoseLimit_s, " s of one of ", truth_file.string());
     }
-    result.trajectory = trajectory_errors(pairs, truth.size());
+    if (pairs.size() < kFewestPoses) {
+        result.no_trajectory = text(run_file.string(), " and ", truth_file.string(), " have ", pairs.size(),
+                                    " poses in common, and ", kFewestPoses, " are needed");
+    } else {
+        result.trajectory = trajectory_errors(pairs, truth.size(), of_run.size());
+    }
     return pairs;
 }
 
@@ -221,6 +230,7 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     result.run = run.string();
     const std::vector<FramePair> pairs = common_frames(sequence, run, result);
     const std::vector<PosePair> poses = read_poses(sequence, run, result);
+    result.states = read_frame_states(run);
     measure_lights(sequence, run, poses.empty() ? RigidTransform(1.0) : align_worlds(poses), settings.light_radius_m,
                    result);
     Reference reference = reference_of(pairs.front(), poses);

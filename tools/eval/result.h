@@ -14,6 +14,7 @@
 #include "engine/core/camera.h"
 #include "engine/core/image.h"
 #include "sensor/truth.h"
+#include "tools/eval/frame_states.h"
 
 namespace patina::eval {
 
@@ -111,13 +112,16 @@ struct RelativePoseError {
     size_t pairs = 0;
     double step_s = 0;  ///< mean time between the poses of a pair
     double translation_rmse_m = 0;
+    double translation_median_m = 0;
     double translation_max_m = 0;
     double rotation_rmse_deg = 0;
+    double rotation_median_deg = 0;
     double rotation_max_deg = 0;
 };
 
 struct TrajectoryErrors {
     size_t truth_poses = 0;
+    size_t run_poses = 0;
     size_t poses = 0;       ///< of the run that have a true one at their time
     double ate_rmse_m = 0;  ///< absolute trajectory error after rigid alignment
     double ate_max_m = 0;   ///< likewise
@@ -161,11 +165,16 @@ struct Evaluation {
     std::optional<PixelErrors> normal_deg;
     std::optional<SegmentationResult> segmentation;
     std::optional<TrajectoryErrors> trajectory;
+    std::string no_trajectory;          ///< why there is none, in a sentence; empty where there is one
+    std::optional<FrameStates> states;  ///< of the run's tracking; empty where its poses were given
     std::optional<LightErrors> lights;
 };
 
 /// An object is left out of frames in which its region has fewer pixels.
 inline constexpr size_t kSmallestRegion = 64;
+
+/// With fewer common poses no rotation follows from positions, and the trajectories are not compared.
+inline constexpr size_t kFewestPoses = 3;
 
 /// What an infinite PSNR counts in a mean of finite ones.
 inline constexpr double kPsnrCap_db = 100;

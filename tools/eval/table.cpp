@@ -87,9 +87,12 @@ void add_pixel_errors(std::vector<Finding>& list, const char* name, const std::o
 void add_relative(std::vector<Finding>& list, const char* name, const std::optional<RelativePoseError>& error) {
     if (!error) return;
     list.push_back(
-        {name, fmt::format("RMSE {:.2f} mm and {:.3f} deg, at most {:.2f} mm and {:.3f} deg; {} pairs of {:.3f} s",
-                           1e3 * error->translation_rmse_m, error->rotation_rmse_deg, 1e3 * error->translation_max_m,
-                           error->rotation_max_deg, error->pairs, error->step_s)});
+        {name,
+         fmt::format("RMSE {:.2f} mm, {:.3f} deg; median {:.2f} mm, {:.3f} deg; at most {:.2f} mm, {:.3f} deg; {} x "
+                     "{:.3f} s",
+                     1e3 * error->translation_rmse_m, error->rotation_rmse_deg, 1e3 * error->translation_median_m,
+                     error->rotation_median_deg, 1e3 * error->translation_max_m, error->rotation_max_deg, error->pairs,
+                     error->step_s)});
 }
 
 std::string three(glm::dvec3 v, int decimals) {
@@ -158,6 +161,11 @@ bool has_unfilled(const Evaluation& evaluation) {
     return false;
 }
 
+/// Of the run's, where the trajectories were compared.
+size_t poses_without_truth(const Evaluation& evaluation) {
+    return evaluation.trajectory ? evaluation.trajectory->run_poses - evaluation.trajectory->poses : 0;
+}
+
 std::vector<std::string> absences(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {"No object of the truth is seen in the evaluated frames."};
     std::vector<std::string> missing, list;
@@ -178,7 +186,11 @@ std::vector<std::string> absences(const Evaluation& evaluation) {
     note(evaluation.depth_mm.has_value(), "Depth was not compared: truth and run do not both have it.");
     note(evaluation.normal_deg.has_value(), "Normals were not compared: truth and run do not both have them.");
     note(evaluation.segmentation.has_value(), "Segmentation was not measured: the run's frames hold no labels.");
-    note(evaluation.trajectory.has_value(), "The trajectory was not compared: truth and run do not both have one.");
+    if (!evaluation.trajectory) list.push_back("The trajectory was not compared: " + evaluation.no_trajectory + ".");
+    if (const size_t unknown = poses_without_truth(evaluation); unknown > 0) {
+        list.push_back(fmt::format("{} of the run's {} poses are at times for which truth has none.", unknown,
+                                   evaluation.trajectory->run_poses));
+    }
     note(evaluation.lights.has_value(), "Lights were not compared: truth and run do not both have a lights.json.");
     return list;
 }
@@ -195,6 +207,10 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
                          trajectory->poses, trajectory->truth_poses)});
         add_relative(list, "RPE per frame", trajectory->per_frame);
         add_relative(list, "RPE per second", trajectory->per_second);
+    }
+    if (const auto& states = evaluation.states) {
+        list.push_back({"Frames", fmt::format("{} tracking, {} weak, {} lost; only those that track were fused",
+                                              states->tracking, states->weak, states->lost)});
     }
     if (const auto& segmentation = evaluation.segmentation) {
         list.push_back(

@@ -53,14 +53,22 @@ RigidTransform with_centres(const glm::dmat3& rotation, std::span<const PosePair
     return transform;
 }
 
-/// Root mean square and maximum of errors.
+/// Root mean square, median and maximum of errors.
 struct Spread {
     double rmse = 0;
+    double median = 0;
     double max = 0;
 };
 
+/// Of an even number of values the mean of the middle two.
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
 Spread spread_of(const std::vector<double>& errors) {
     Spread spread;
+    spread.median = median_of(errors);
     for (const double error : errors) {
         spread.rmse += error * error;
         spread.max = std::max(spread.max, error);
@@ -102,8 +110,10 @@ std::optional<RelativePoseError> relative_error(std::span<const PosePair> poses,
     error.step_s /= static_cast<double>(steps.size());
     const Spread translation = spread_of(translations_m), rotation = spread_of(rotations_deg);
     error.translation_rmse_m = translation.rmse;
+    error.translation_median_m = translation.median;
     error.translation_max_m = translation.max;
     error.rotation_rmse_deg = rotation.rmse;
+    error.rotation_median_deg = rotation.median;
     error.rotation_max_deg = rotation.max;
     return error;
 }
@@ -163,10 +173,11 @@ RigidTransform align_worlds(std::span<const PosePair> pairs) {
     return with_centres(nearest_rotation(sum), pairs);
 }
 
-TrajectoryErrors trajectory_errors(std::span<const PosePair> pairs, size_t truth_poses) {
-    PATINA_ASSERT(!pairs.empty(), "truth poses ", truth_poses);
+TrajectoryErrors trajectory_errors(std::span<const PosePair> pairs, size_t truth_poses, size_t run_poses) {
+    PATINA_ASSERT(!pairs.empty(), "truth poses ", truth_poses, ", run poses ", run_poses);
     TrajectoryErrors errors;
     errors.truth_poses = truth_poses;
+    errors.run_poses = run_poses;
     errors.poses = pairs.size();
     const Spread aligned = position_errors(pairs, align_positions(pairs));
     errors.ate_rmse_m = aligned.rmse;

@@ -30,7 +30,7 @@ RigidTransform align_positions(std::span<const PosePair> pairs);
 /// camera that rests or moves along a line. The rotation is that nearest to the mean of all pairs'.
 RigidTransform align_worlds(std::span<const PosePair> pairs);
 
-/// ATE and RPE of the pairs, at least one; times rise. `truth_poses` is copied.
-TrajectoryErrors trajectory_errors(std::span<const PosePair> pairs, size_t truth_poses);
+/// ATE and RPE of the pairs, at least one; times rise. `truth_poses` and `run_poses` are copied.
+TrajectoryErrors trajectory_errors(std::span<const PosePair> pairs, size_t truth_poses, size_t run_poses);
 
 }  // namespace patina::eval
