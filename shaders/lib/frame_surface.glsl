@@ -20,8 +20,8 @@ int reach_px(FrameSurfaceParams params, float z) {
     return int(clamp(round(params.reach_px_m / z), params.min_reach_px, params.max_reach_px));
 }
 
-// The step along a diagonal that is about as long as `reach` along an axis; none where every step is a longer one.
-int diagonal_px(int reach) { return reach > 1 ? int(round(0.7 * float(reach))) : 0; }
+// The step along a diagonal that is about as long as `reach` along an axis.
+int diagonal_px(int reach) { return int(round(0.7 * float(reach))); }
 
 float depth_sigma_m(FrameSurfaceParams params, float z) { return params.noise_floor_m + params.noise_per_m * z * z; }
 

@@ -26,7 +26,7 @@ int reach_px(const Intrinsics& camera, const SurfaceRules& rules, double z) {
     return static_cast<int>(std::clamp<double>(wanted, rules.min_reach_px, rules.max_reach_px));
 }
 
-int diagonal_px(int reach) { return reach == 1 ? 0 : static_cast<int>(std::lround(0.7 * reach)); }
+int diagonal_px(int reach) { return static_cast<int>(std::lround(0.7 * reach)); }
 
 double jump_limit_m(const Intrinsics& camera, const SurfaceRules& rules, double z, int apart) {
     return rules.jump_m + apart * z * std::tan(rules.steepest_degrees * std::numbers::pi / 180) / camera.fx;
