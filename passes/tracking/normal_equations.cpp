@@ -48,6 +48,7 @@ NormalEquations add_normal_equations(graph::Frame& frame, const TrackLevel& own,
         frame.compute(text("tracking.normal_equations_", own.camera.extent.width, "x", own.camera.extent.height),
                       spirv::normal_equations);
     pass.read("frame_pixels", own.pixels).read("model_pixels", model.pixels).read("State", state).push(params);
+    pass.specialise("kShaded", errors.shade_sigma > 0 ? 1 : 0);
     NormalEquations equations;
     equations.groups = groups_x * groups_y;
     equations.sums = pass.create("Sums", uint64_t{equations.groups} * gpu::kTrackSums * sizeof(float));

@@ -8,7 +8,7 @@ INTEROP_BEGIN
 INTEROP_CONST uint kTrackGroupX = 32u;  // of the passes that go over pixels
 INTEROP_CONST uint kTrackGroupY = 4u;
 INTEROP_CONST uint kNormalEquationsGroupY = 2u;  // fewer invocations, each with
-INTEROP_CONST uint kNormalEquationsRows = 16u;   // so many pixels of one column, kNormalEquationsGroupY rows apart
+INTEROP_CONST uint kNormalEquationsRows = 64u;   // so many pixels of one column, kNormalEquationsGroupY rows apart
 INTEROP_CONST uint kSolveMotionGroup = 64u;
 
 // What one group of pixels adds to the normal equations, in this order: the upper triangle of the 6 x 6 matrix row by

@@ -14,12 +14,21 @@ layout(std430, binding = 2) readonly buffer State { TrackState state; };
 layout(std430, binding = 3) writeonly buffer Sums { float sums[]; };  // kTrackSums per group
 layout(push_constant) uniform Push { NormalEquationsParams params; };
 
+layout(constant_id = 0) const bool kShaded = true;  // shades are compared
+
+// So many pixels are written out one after the other: inside a loop software devices mask each sum's every change.
+const uint kUnrolled = 8u;
 const uint kInvocations = kTrackGroupX * kNormalEquationsGroupY;
 const float kNearest_m = 0.05f;
 
 shared float partial[kTrackSums][kInvocations + 1u];
 
-float sum[kTrackSums];
+// The sums, one by one: software devices keep an array in memory. The upper triangle, of motion along (t) and around
+// (r) the axes, by rows: t times t, t times r, r times r; then the right side.
+vec3 tx_t, tx_r, ty_r, tz_r, rx_r, t_right, r_right;
+vec2 ty_t, ry_r;
+float tz_t, rz_r;
+float readings, pairs, squares, weights, depths, shades, shade_squares, shade_product, shade_own;
 // Copies from the buffer, whose loads software devices do not hoist out of loops.
 vec3 translation_m;
 float gain, center_m, inverse_lever;
@@ -42,14 +51,21 @@ float robust_weight(float share) {
 
 // Adds weight (residual + (along, around) . motion)^2 to what is minimised.
 void add_equation(vec3 along, vec3 around, float residual, float weight) {
-    const float row[6] = float[](along.x, along.y, along.z, around.x, around.y, around.z);
-    [[unroll]] for (uint i = 0u; i < 6u; ++i) {
-        const float weighted = weight * row[i];
-        [[unroll]] for (uint j = i; j < 6u; ++j) sum[kTrackMatrix + i * (11u - i) / 2u + j] += weighted * row[j];
-        sum[kTrackRight + i] += weighted * residual;
-    }
+    const vec3 t = weight * along, r = weight * around;
+    tx_t += t.x * along;
+    ty_t += t.y * along.yz;
+    tz_t += t.z * along.z;
+    tx_r += t.x * around;
+    ty_r += t.y * around;
+    tz_r += t.z * around;
+    rx_r += r.x * around;
+    ry_r += r.y * around.yz;
+    rz_r += r.z * around.z;
+    t_right += residual * t;
+    r_right += residual * r;
 }
 
+// Without branches. Outside the image zero is read, which is no reading.
 void add_pixel(ivec2 pixel, mat3 rotation) {
     const uint own = imageLoad(frame_pixels, pixel).x;
     const float z = frame_depth_m(own);
@@ -74,13 +90,13 @@ void add_pixel(ivec2 pixel, mat3 rotation) {
     const float weight = trust / (sigma_m * sigma_m);
     const vec3 lever = (point - vec3(0.0, 0.0, center_m)) * inverse_lever;
     add_equation(model.normal, cross(lever, model.normal), distance_m, weight);
-    sum[kTrackReadings] += z > 0.0 ? 1.0 : 0.0;
-    sum[kTrackPairs] += trust;
-    sum[kTrackSquares] += trust * sigmas * sigmas;
-    sum[kTrackWeight] += weight;
-    sum[kTrackDepth] += z;
+    readings += z > 0.0 ? 1.0 : 0.0;
+    pairs += trust;
+    squares += trust * sigmas * sigmas;
+    weights += weight;
+    depths += z;
 
-    if (params.shade_sigma > 0.0) {
+    if (kShaded) {
         const float own_shade = frame_shade(own);
         const float model_shade = model.shade + dot(model.shade_per_px, at - nearest);
         const float difference = gain * own_shade - model_shade;
@@ -89,11 +105,21 @@ void add_pixel(ivec2 pixel, mat3 rotation) {
         const vec2 per_m = model.shade_per_px * params.model_focal_center_px.xy * inverse_z;
         const vec3 along = -vec3(per_m, -dot(per_m, point.xy) * inverse_z);
         add_equation(along, cross(lever, along), difference, shade_trust / (params.shade_sigma * params.shade_sigma));
-        sum[kTrackShades] += shade_trust;
-        sum[kTrackShadeSquares] += shade_trust * difference * difference;
-        sum[kTrackShadeProduct] += shade_trust * own_shade * model_shade;
-        sum[kTrackShadeOwn] += shade_trust * own_shade * own_shade;
+        shades += shade_trust;
+        shade_squares += shade_trust * difference * difference;
+        shade_product += shade_trust * own_shade * model_shade;
+        shade_own += shade_trust * own_shade * own_shade;
     }
+}
+
+void put(uint i, float sum) { partial[i][gl_LocalInvocationIndex] = sum; }
+void put(uint i, vec2 sum) {
+    put(i, sum.x);
+    put(i + 1u, sum.y);
+}
+void put(uint i, vec3 sum) {
+    put(i, sum.xy);
+    put(i + 2u, sum.z);
 }
 
 void main() {
@@ -102,16 +128,38 @@ void main() {
     gain = state.gain;
     center_m = state.center_m;
     inverse_lever = 1.0 / state.lever_m;
-    [[unroll]] for (uint i = 0u; i < kTrackSums; ++i) sum[i] = 0.0;
+    tx_t = tx_r = ty_r = tz_r = rx_r = t_right = r_right = vec3(0.0);
+    ty_t = ry_r = vec2(0.0);
+    tz_t = rz_r = 0.0;
+    readings = pairs = squares = weights = depths = shades = shade_squares = shade_product = shade_own = 0.0;
     const uvec2 first =
         uvec2(gl_GlobalInvocationID.x,
               gl_WorkGroupID.y * kNormalEquationsGroupY * kNormalEquationsRows + gl_LocalInvocationID.y);
-    for (uint row = 0u; row < kNormalEquationsRows; ++row) {
-        const uvec2 pixel = first + uvec2(0u, row * kNormalEquationsGroupY);
-        if (all(lessThan(pixel, params.frame_extent))) add_pixel(ivec2(pixel), rotation);
+    for (uint row = 0u; row < kNormalEquationsRows; row += kUnrolled) {
+        [[unroll]] for (uint i = 0u; i < kUnrolled; ++i)
+            add_pixel(ivec2(first + uvec2(0u, (row + i) * kNormalEquationsGroupY)), rotation);
     }
     const uint lane = gl_LocalInvocationIndex;
-    [[unroll]] for (uint i = 0u; i < kTrackSums; ++i) partial[i][lane] = sum[i];
+    put(kTrackMatrix, tx_t);
+    put(kTrackMatrix + 3u, tx_r);
+    put(kTrackMatrix + 6u, ty_t);
+    put(kTrackMatrix + 8u, ty_r);
+    put(kTrackMatrix + 11u, tz_t);
+    put(kTrackMatrix + 12u, tz_r);
+    put(kTrackMatrix + 15u, rx_r);
+    put(kTrackMatrix + 18u, ry_r);
+    put(kTrackMatrix + 20u, rz_r);
+    put(kTrackRight, t_right);
+    put(kTrackRight + 3u, r_right);
+    put(kTrackReadings, readings);
+    put(kTrackPairs, pairs);
+    put(kTrackSquares, squares);
+    put(kTrackWeight, weights);
+    put(kTrackDepth, depths);
+    put(kTrackShades, shades);
+    put(kTrackShadeSquares, shade_squares);
+    put(kTrackShadeProduct, shade_product);
+    put(kTrackShadeOwn, shade_own);
     barrier();
     if (lane >= kTrackSums) return;
     float total = 0.0;

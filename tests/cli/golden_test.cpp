@@ -56,6 +56,23 @@ TEST_F(Golden, TwoRunsGiveTheSameBytes) {
     EXPECT_EQ(without_times(record_of(beside("first"))), without_times(record_of(beside("second"))));
 }
 
+TEST_F(Golden, TwoTrackedRunsGiveTheSameBytes) {
+    const auto tracked = [&](const char* name) {
+        const Outcome outcome = patina({"run", "synthetic:cubes", "--out", beside(name), "--quiet", "--frames", "4",
+                                        "--lighting", "none", "--poses", "track"});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return files_in(beside(name));
+    };
+    const auto first = tracked("first"), second = tracked("second");
+    for (const char* name : {"scene.glb", "trajectory.txt"}) EXPECT_TRUE(first.at(name) == second.at(name)) << name;
+    const nlohmann::json record = record_of(beside("first"));
+    EXPECT_EQ(without_times(record), without_times(record_of(beside("second"))));
+    EXPECT_EQ(record["tracking"]["tracking"], 4);
+    EXPECT_EQ(record["tracking"]["frames"].size(), 4u);
+    EXPECT_EQ(record["tracking"]["frames"][3]["state"], "tracking");
+    EXPECT_THAT(first.at("report.html"), ::testing::HasSubstr("Tracking"));
+}
+
 /// Median of |view - truth| over the pixels that both have, and the share of the true ones that the view has.
 void expect_close(const Image<float>& view_m, const Image<uint16_t>& truth_mm) {
     ASSERT_EQ(view_m.extent(), truth_mm.extent());
