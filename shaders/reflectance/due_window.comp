@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists what is due of the records in a window of the table that moves on with every update. A window of the table,
-// which is in the order of hashes, holds the same voxels in every run, as record ids would not. What throws a shadow on a
-// record may have changed, so that a share of the window is marched again; it shrinks with the number of records that
+// which is in the order of hashes, holds the same voxels in every run, as record ids would not. What throws a shadow on
+// a record may have changed, so that a share of the window is marched again; it shrinks with the number of records that
 // changed in this frame, since little changed then.
 #include "lib/observations.glsl"
 #include "lib/record_hash.glsl"
