@@ -58,8 +58,9 @@ void LabelRig::set_random(std::mt19937& random, uint32_t empty_of_8) {
     std::vector<uint32_t> words(size_t{kCapacity} * gpu::kBlockVoxels);
     for (uint32_t& word : words) {
         if (random() % 8 < empty_of_8) continue;
+        const uint32_t most = random() % 2 == 0 ? 4 : 255;  // half of them fall to one or two votes
         word = label_word(
-            {1 + static_cast<uint32_t>(random() % (kLabels - 1)), 1 + static_cast<uint32_t>(random() % 255)});
+            {1 + static_cast<uint32_t>(random() % (kLabels - 1)), 1 + static_cast<uint32_t>(random() % most)});
     }
     set(words, std::vector<uint32_t>(kCapacity, 1));
 }

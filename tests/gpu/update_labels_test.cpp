@@ -108,11 +108,11 @@ TEST_P(UpdateLabelsAtStride, AgreesWithTheReference) {
         }
     }
     EXPECT_GT(voted, 5000u);
-    EXPECT_GT(flipped, 10u);
+    EXPECT_GT(flipped, 100u);
     // Single precision decides otherwise where a centre is between two pixels, or just within a voxel.
     EXPECT_LE(differ, voted / 500);
     EXPECT_NEAR(got.counters.frame_voxels, voted, voted / 500.0);
-    EXPECT_NEAR(got.counters.frame_flips, flipped, 3);
+    EXPECT_NEAR(got.counters.frame_flips, flipped, voted / 500.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Strides, UpdateLabelsAtStride, ::testing::Values(1u, 2u, 3u));

@@ -216,15 +216,16 @@ class Validation(unittest.TestCase):
 
 
 class Training(WithFolder):
-    def options(self, work, total):
+    def options(self, work, total, precision="f32"):
         return types.SimpleNamespace(
             data=self.folder, shards=2, validation=examples.shard_path(self.folder, 3), work=self.path(work),
             export=None, examples=total, batch=4, least_samples=2, rate=3e-3, seed=1, map="parabolic", lambda_d=0.1,
-            lambda_l=0.3, average=0.5, checkpoint_every=5, validate_every=5, threads=1)
+            lambda_l=0.3, average=0.5, checkpoint_every=5, validate_every=5, threads=1,
+            precision=precision)
 
-    def trained(self, work, interrupt=None):
+    def trained(self, work, interrupt=None, precision="f32"):
         os.makedirs(self.path(work), exist_ok=True)
-        training = train.Training(self.options(work, 120))
+        training = train.Training(self.options(work, 120, precision))
         training.resume()
         stop_at = interrupt or training.steps()
         batches = iter(training.batches)
@@ -246,9 +247,11 @@ class Training(WithFolder):
             self.assertTrue(torch.equal(values, parts.mean[name]), name)
 
     def test_it_learns(self):
-        training = self.trained("learns")
         fresh = train.Training(self.options("fresh", 120))
-        self.assertLess(training.loss_of(training.estimates()), 0.5 * fresh.loss_of(fresh.estimates()))
+        for precision in ("f32", "bf16"):
+            with self.subTest(precision):
+                training = self.trained(f"learns in {precision}", precision=precision)
+                self.assertLess(training.loss_of(training.estimates()), 0.5 * fresh.loss_of(fresh.estimates()))
 
     def test_exports_what_its_own_check_asks_for(self):
         training = self.trained("exports")
