@@ -48,7 +48,7 @@ class TrackingModel {
         graph::Readback state;  ///< gpu::TrackState
     };
 
-    /// The frame's pyramid, the finest level first.
+    /// The levels of the frame that are compared, the finest first.
     std::vector<TrackLevel> add_pyramid(graph::Frame& frame, graph::ImageId depth_m, const Intrinsics& camera,
                                         const std::optional<TrackColor>& color, float max_depth_m) const;
 
@@ -80,7 +80,7 @@ class TrackingModel {
         vulkan::ImageRef pixels;  ///< rgba32ui
         Intrinsics camera;
     };
-    std::vector<ReferenceLevel> reference_;  ///< the finest first
+    std::vector<ReferenceLevel> reference_;  ///< of the levels that are compared, the finest first
     RigidTransform world_from_reference_{1.0};
     MotionModel motion_;
     TrackingReport last_;

@@ -17,12 +17,21 @@ void check_extent(const graph::Frame& frame, const char* pass, graph::ImageId im
     }
 }
 
+Intrinsics checked_half(const char* pass, const Intrinsics& camera) {
+    const Intrinsics half = halved(camera);
+    if (half.extent.area() == 0)
+        throw Error("the pass '", pass, "' cannot halve an image of ", camera.extent, " pixels");
+    return half;
+}
+
 }  // namespace
 
 TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Intrinsics& camera,
-                          const std::optional<TrackColor>& color, float max_depth_m, const TrackJump& jump) {
+                          const std::optional<TrackColor>& color, float max_depth_m, bool half, const TrackJump& jump) {
     constexpr const char* kPass = "tracking.pack_frame";
     check_extent(frame, kPass, depth_m, camera);
+    Intrinsics result = half ? checked_half(kPass, camera) : camera;
+    result.distortion = {};
     gpu::PackFrameParams params{};
     params.focal_center_px = glm::vec4(camera.fx, camera.fy, camera.cx, camera.cy);
     params.jump_m = jump.floor_m;
@@ -39,19 +48,16 @@ TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Int
     }
     auto pass = frame.compute(kPass, spirv::pack_frame);
     pass.read("depth_m", depth_m).read("color_linear", color_linear).push(params);
-    const graph::ImageId packed = pass.create("packed", {camera.extent, vulkan::Format::kR32u});
-    pass.dispatch_covering(camera.extent);
-    Intrinsics pinhole = camera;
-    pinhole.distortion = {};
-    return {packed, pinhole};
+    pass.specialise("kSide", half ? 2 : 1);
+    const graph::ImageId packed = pass.create("packed", {result.extent, vulkan::Format::kR32u});
+    pass.dispatch_covering(result.extent);
+    return {packed, result};
 }
 
 TrackLevel add_halve_frame(graph::Frame& frame, const TrackLevel& fine, const TrackJump& jump) {
-    const Intrinsics camera = halved(fine.camera);
-    if (camera.extent.area() == 0) {
-        throw Error("the pass 'tracking.halve_frame' cannot halve an image of ", fine.camera.extent, " pixels");
-    }
-    auto pass = frame.compute("tracking.halve_frame", spirv::halve_frame);
+    constexpr const char* kPass = "tracking.halve_frame";
+    const Intrinsics camera = checked_half(kPass, fine.camera);
+    auto pass = frame.compute(kPass, spirv::halve_frame);
     pass.read("fine", fine.pixels);
     pass.push(gpu::HalveParams{{camera.extent.width, camera.extent.height}, jump.floor_m, 2 * jump.slope});
     const graph::ImageId coarse = pass.create("coarse", {camera.extent, vulkan::Format::kR32u});

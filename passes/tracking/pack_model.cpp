@@ -1,5 +1,7 @@
 #include "passes/tracking/pack_model.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "passes/tracking/no_color.h"
 #include "shared/tracking.h"
@@ -13,10 +15,18 @@ constexpr float kLeastCosine = 0.17f;  // 80 degrees; beyond, a pixel's depth sa
 
 }  // namespace
 
-graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, graph::ImageId target,
-                              const TrackJump& jump) {
-    const Extent2D extent = frame.common_extent({inputs.surface.position_m, inputs.surface.normal, target});
+graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, uint32_t stride,
+                              graph::ImageId target, const TrackJump& jump) {
+    const Extent2D whole = frame.common_extent({inputs.surface.position_m, inputs.surface.normal});
+    const Extent2D extent = frame.shape(target).extent;
+    if (extent != Extent2D{whole.width / stride, whole.height / stride} || extent.area() == 0) {
+        throw Error("the pass 'tracking.pack_model' got an image of ", whole, " pixels and one of ", extent,
+                    " for every ", stride, ". of them");
+    }
     gpu::PackModelParams params{};
+    params.extent = {extent.width, extent.height};
+    params.stride = static_cast<int>(stride);
+    params.reach = std::max(params.stride / 2, 1);
     params.camera = inputs.camera;
     params.jump_m = jump.floor_m;
     params.jump_slope = jump.slope;

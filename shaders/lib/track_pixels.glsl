@@ -2,7 +2,6 @@
 #ifndef PATINA_LIB_TRACK_PIXELS_GLSL
 #define PATINA_LIB_TRACK_PIXELS_GLSL
 #include "lib/luminance.glsl"
-#include "lib/octahedral.glsl"
 #include "shared/tracking.h"
 
 const float kMostShade = float(kNoShade - 1u) / kShadeUnits;
@@ -19,21 +18,30 @@ float frame_depth_m(uint pixel) { return float(pixel & kMostDepthUnits) * (1.0 /
 bool frame_has_shade(uint pixel) { return pixel >> 20 != kNoShade; }
 float frame_shade(uint pixel) { return float(pixel >> 20) * (1.0 / kShadeUnits); }
 
-// A pixel of the model in 128 bits: depth, 0 where there is none; normal in camera coordinates, octahedral; how the
-// shade changes per pixel in x and y; shade, below 0 where it or its change is not known.
+// A pixel of the model in 128 bits: depth, 0 where there is none; then 16 bits each: normal in camera coordinates;
+// shade, below 0 where it or its change is not known; how the shade changes per pixel in x and y. Three coordinates of
+// the normal, as an octahedral one takes a square root to unpack.
 struct ModelPixel {
     float depth_m;
     vec3 normal;
     vec2 shade_per_px;
     float shade;
 };
+uint low_and_high(ivec2 parts) { return (uint(parts.x) & 0xffffu) | uint(parts.y) << 16; }
+float low_part(uint word) { return float(int(word << 16) >> 16); }
+float high_part(uint word) { return float(int(word) >> 16); }
+
 uvec4 pack_model_pixel(ModelPixel pixel) {
-    return uvec4(floatBitsToUint(pixel.depth_m), packSnorm2x16(to_octahedral(pixel.normal)),
-                 packSnorm2x16(pixel.shade_per_px), floatBitsToUint(pixel.shade));
+    const ivec3 normal = ivec3(round(clamp(pixel.normal, -1.0, 1.0) * 32767.0));
+    const float shade = pixel.shade < 0.0 ? -1.0 : round(min(pixel.shade, kMostShade) * kModelShadeUnits);
+    const ivec2 change = ivec2(round(clamp(pixel.shade_per_px, -1.0, 1.0) * 32767.0));
+    return uvec4(floatBitsToUint(pixel.depth_m), low_and_high(normal.xy), low_and_high(ivec2(normal.z, shade)),
+                 low_and_high(change));
 }
 ModelPixel unpack_model_pixel(uvec4 packed) {
-    return ModelPixel(uintBitsToFloat(packed.x), from_octahedral(unpackSnorm2x16(packed.y)), unpackSnorm2x16(packed.z),
-                      uintBitsToFloat(packed.w));
+    const vec3 normal = vec3(low_part(packed.y), high_part(packed.y), low_part(packed.z)) * (1.0 / 32767.0);
+    const vec2 change = vec2(low_part(packed.w), high_part(packed.w)) * (1.0 / 32767.0);
+    return ModelPixel(uintBitsToFloat(packed.x), normal, change, high_part(packed.z) * (1.0 / kModelShadeUnits));
 }
 
 #endif

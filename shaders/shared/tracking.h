@@ -7,9 +7,10 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kTrackGroupX = 32u;  // of the passes that go over pixels
 INTEROP_CONST uint kTrackGroupY = 4u;
-INTEROP_CONST uint kNormalEquationsGroupY = 2u;  // fewer invocations, each with
-INTEROP_CONST uint kNormalEquationsRows = 64u;   // so many pixels of one column, kNormalEquationsGroupY rows apart
-INTEROP_CONST uint kSolveMotionGroup = 64u;
+INTEROP_CONST uint kNormalEquationsGroupY = 2u;     // fewer invocations, each with
+INTEROP_CONST uint kNormalEquationsMostRows = 64u;  // up to so many pixels of one column, kNormalEquationsGroupY rows
+INTEROP_CONST uint kNormalEquationsUnrolled = 8u;   // apart; a multiple of this
+INTEROP_CONST uint kSolveMotionGroup = 40u;         // an invocation for each entry of the matrix and each sum
 
 // What one group of pixels adds to the normal equations, in this order: the upper triangle of the 6 x 6 matrix row by
 // row, the right side, then the sums below.
@@ -31,7 +32,8 @@ INTEROP_CONST uint kTrackSums = 36u;
 INTEROP_CONST float kDepthUnitsPerMetre = 65536.0f;
 INTEROP_CONST uint kMostDepthUnits = 0xfffffu;  // 16 m
 INTEROP_CONST float kShadeUnits = 2047.0f;
-INTEROP_CONST uint kNoShade = 0xfffu;  // not seen, or clipped
+INTEROP_CONST uint kNoShade = 0xfffu;             // not seen, or clipped
+INTEROP_CONST float kModelShadeUnits = 16383.0f;  // of a pixel of the model, below 0 where there is none
 
 // The state of the search. The model was cast into a camera "reference"; the frame's camera is sought relative to it.
 struct TrackState {
@@ -72,6 +74,9 @@ struct PackModelParams {
     float jump_slope;
     float least_cosine;  // between normal and direction to the camera
     uint shaded;
+    uvec2 extent;  // of the result
+    int stride;    // the result's pixel p is the one at stride * p + stride / 2
+    int reach;     // shades are compared so many pixels to each side
 };
 
 struct HideHighlightsParams {
@@ -99,7 +104,7 @@ struct NormalEquationsParams {
     float robust_sigmas;  // a pair so many sigmas apart has a quarter of its weight
     float shade_sigma;    // of a difference of shade; 0: shades are not compared
     float robust_shade;   // a difference so large has a quarter of its weight
-    uint pad0;
+    uint rows;            // pixels of an invocation: a multiple of kNormalEquationsUnrolled
 };
 
 struct SolveMotionParams {

@@ -27,7 +27,8 @@ void main() {
     }
     const bool known = nearest > 0.0 && farthest - nearest <= params.jump_m + params.jump_slope * nearest &&
                        dot(mean.normal, mean.normal) > 8.0;
-    ModelPixel none = ModelPixel(0.0, vec3(0.0, 0.0, -1.0), vec2(0.0), -1.0);
+    const ModelPixel none = ModelPixel(0.0, vec3(0.0, 0.0, -1.0), vec2(0.0), -1.0);
+    mean.normal = normalize(mean.normal);
     if (least_shade < 0.0) {
         mean.shade = -1.0;
         mean.shade_per_px = vec2(0.0);

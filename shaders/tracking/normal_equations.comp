@@ -16,8 +16,6 @@ layout(push_constant) uniform Push { NormalEquationsParams params; };
 
 layout(constant_id = 0) const bool kShaded = true;  // shades are compared
 
-// So many pixels are written out one after the other: inside a loop software devices mask each sum's every change.
-const uint kUnrolled = 8u;
 const uint kInvocations = kTrackGroupX * kNormalEquationsGroupY;
 const float kNearest_m = 0.05f;
 
@@ -29,9 +27,10 @@ vec3 tx_t, tx_r, ty_r, tz_r, rx_r, t_right, r_right;
 vec2 ty_t, ry_r;
 float tz_t, rz_r;
 float readings, pairs, squares, weights, depths, shades, shade_squares, shade_product, shade_own;
-// Copies from the buffer, whose loads software devices do not hoist out of loops.
-vec3 translation_m;
-float gain, center_m, inverse_lever;
+// What all pixels of the invocation's column share; software devices do not hoist it out of loops.
+vec3 translation_m, column_ray, row_ray;  // a pixel's ray in the model's view: column_ray + row row_ray
+vec2 inverse_model_focal;
+float gain, center_m, inverse_lever, inverse_robust_sigmas, inverse_robust_shade, shade_weight;
 
 // The rotation matrix of a unit quaternion.
 mat3 matrix_of(vec4 q) {
@@ -66,28 +65,26 @@ void add_equation(vec3 along, vec3 around, float residual, float weight) {
 }
 
 // Without branches. Outside the image zero is read, which is no reading.
-void add_pixel(ivec2 pixel, mat3 rotation) {
+void add_pixel(ivec2 pixel) {
     const uint own = imageLoad(frame_pixels, pixel).x;
     const float z = frame_depth_m(own);
-    const vec3 ray = vec3((vec2(pixel) - params.frame_focal_center_px.zw) / params.frame_focal_center_px.xy, 1.0);
-    const vec3 point = rotation * (ray * z) + translation_m;
+    const vec3 point = z * (column_ray + float(pixel.y) * row_ray) + translation_m;
     const float inverse_z = 1.0 / max(point.z, kNearest_m);
     const vec2 at = point.xy * inverse_z * params.model_focal_center_px.xy + params.model_focal_center_px.zw;
     const vec2 nearest = floor(at + 0.5);
     const bool in_view = z > 0.0 && point.z > kNearest_m && all(greaterThanEqual(nearest, vec2(0.0))) &&
                          all(lessThan(nearest, vec2(params.model_extent)));
     const ModelPixel model = unpack_model_pixel(imageLoad(model_pixels, ivec2(in_view ? nearest : vec2(0.0))));
-    const vec3 on_model =
-        vec3((nearest - params.model_focal_center_px.zw) / params.model_focal_center_px.xy, 1.0) * model.depth_m;
-    const vec3 apart = point - on_model;
+    const vec2 model_ray = (nearest - params.model_focal_center_px.zw) * inverse_model_focal;
+    const vec3 apart = point - vec3(model_ray, 1.0) * model.depth_m;
     const float distance_m = dot(model.normal, apart);
     const float gate_m = params.gate_m + params.gate_slope * z;
     const bool paired = in_view && model.depth_m > 0.0 && dot(apart, apart) <= gate_m * gate_m;
 
-    const float sigma_m = params.noise_floor_m + params.noise_per_m * z * z;
-    const float sigmas = distance_m / sigma_m;
-    const float trust = paired ? robust_weight(sigmas / params.robust_sigmas) : 0.0;
-    const float weight = trust / (sigma_m * sigma_m);
+    const float inverse_sigma = 1.0 / (params.noise_floor_m + params.noise_per_m * z * z);
+    const float sigmas = distance_m * inverse_sigma;
+    const float trust = paired ? robust_weight(sigmas * inverse_robust_sigmas) : 0.0;
+    const float weight = trust * inverse_sigma * inverse_sigma;
     const vec3 lever = (point - vec3(0.0, 0.0, center_m)) * inverse_lever;
     add_equation(model.normal, cross(lever, model.normal), distance_m, weight);
     readings += z > 0.0 ? 1.0 : 0.0;
@@ -101,10 +98,10 @@ void add_pixel(ivec2 pixel, mat3 rotation) {
         const float model_shade = model.shade + dot(model.shade_per_px, at - nearest);
         const float difference = gain * own_shade - model_shade;
         const bool shaded = model.shade >= 0.0 && frame_has_shade(own);
-        const float shade_trust = shaded ? trust * robust_weight(difference / params.robust_shade) : 0.0;
+        const float shade_trust = shaded ? trust * robust_weight(difference * inverse_robust_shade) : 0.0;
         const vec2 per_m = model.shade_per_px * params.model_focal_center_px.xy * inverse_z;
         const vec3 along = -vec3(per_m, -dot(per_m, point.xy) * inverse_z);
-        add_equation(along, cross(lever, along), difference, shade_trust / (params.shade_sigma * params.shade_sigma));
+        add_equation(along, cross(lever, along), difference, shade_trust * shade_weight);
         shades += shade_trust;
         shade_squares += shade_trust * difference * difference;
         shade_product += shade_trust * own_shade * model_shade;
@@ -122,22 +119,33 @@ void put(uint i, vec3 sum) {
     put(i + 2u, sum.z);
 }
 
-void main() {
+void begin_column(uint x) {
     const mat3 rotation = matrix_of(state.rotation);
+    const vec4 camera = params.frame_focal_center_px;
+    row_ray = rotation[1] / camera.y;
+    column_ray = rotation * vec3((float(x) - camera.z) / camera.x, -camera.w / camera.y, 1.0);
     translation_m = state.translation_m.xyz;
+    inverse_model_focal = 1.0 / params.model_focal_center_px.xy;
     gain = state.gain;
     center_m = state.center_m;
     inverse_lever = 1.0 / state.lever_m;
+    inverse_robust_sigmas = 1.0 / params.robust_sigmas;
+    inverse_robust_shade = 1.0 / params.robust_shade;
+    shade_weight = 1.0 / (params.shade_sigma * params.shade_sigma);
+}
+
+void main() {
+    begin_column(gl_GlobalInvocationID.x);
     tx_t = tx_r = ty_r = tz_r = rx_r = t_right = r_right = vec3(0.0);
     ty_t = ry_r = vec2(0.0);
     tz_t = rz_r = 0.0;
     readings = pairs = squares = weights = depths = shades = shade_squares = shade_product = shade_own = 0.0;
-    const uvec2 first =
-        uvec2(gl_GlobalInvocationID.x,
-              gl_WorkGroupID.y * kNormalEquationsGroupY * kNormalEquationsRows + gl_LocalInvocationID.y);
-    for (uint row = 0u; row < kNormalEquationsRows; row += kUnrolled) {
-        [[unroll]] for (uint i = 0u; i < kUnrolled; ++i)
-            add_pixel(ivec2(first + uvec2(0u, (row + i) * kNormalEquationsGroupY)), rotation);
+    const uvec2 first = uvec2(gl_GlobalInvocationID.x,
+                              gl_WorkGroupID.y * kNormalEquationsGroupY * params.rows + gl_LocalInvocationID.y);
+    // Written out one after the other: inside a loop software devices mask each sum's every change.
+    for (uint row = 0u; row < params.rows; row += kNormalEquationsUnrolled) {
+        [[unroll]] for (uint i = 0u; i < kNormalEquationsUnrolled; ++i)
+            add_pixel(ivec2(first + uvec2(0u, (row + i) * kNormalEquationsGroupY)));
     }
     const uint lane = gl_LocalInvocationIndex;
     put(kTrackMatrix, tx_t);

@@ -11,8 +11,8 @@ layout(std430, binding = 0) readonly buffer Sums { float sums[]; };  // kTrackSu
 layout(std430, binding = 1) buffer State { TrackState state; };
 layout(push_constant) uniform Push { SolveMotionParams params; };
 
-const uint kRounds =
-    30u;  // six sweeps of five; each sweep squares what is left beside the diagonal, once that is small
+// Four sweeps of five; each sweep squares what is left beside the diagonal, once that is small.
+const uint kRounds = 20u;
 const uint kLast = kRounds & 1u;
 
 shared float total[kTrackSums];

@@ -49,21 +49,22 @@ graph::ImageId TrackTest::upload_halves(graph::Frame& frame, const Image<glm::ve
 }
 
 TrackLevel TrackTest::pack_frame(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                                 const std::optional<reference::TrackPicture>& picture) {
+                                 const std::optional<reference::TrackPicture>& picture, bool half) {
     std::optional<TrackColor> color;
     if (picture) color = {upload_halves(frame, picture->linear), picture->camera, picture->color_from_depth};
-    return add_pack_frame(frame, upload_floats(frame, seen.depth_m), camera, color, 6);
+    return add_pack_frame(frame, upload_floats(frame, seen.depth_m), camera, color, 6, half);
 }
 
 TrackLevel TrackTest::pack_model(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                                 const RigidTransform& world_from_camera, bool colored) {
+                                 const RigidTransform& world_from_camera, bool colored, uint32_t stride) {
     const RaycastImages surface{frame.upload("position", {camera.extent, vulkan::Format::kRgba32f},
                                              std::as_bytes(std::span(seen.position_m.pixels()))),
                                 upload_halves(frame, seen.normal)};
     std::optional<graph::ImageId> color;
     if (colored) color = upload_halves(frame, seen.color);
-    const auto target = frame.create_image("model", {camera.extent, vulkan::Format::kRgba32u});
-    return {add_pack_model(frame, {surface, color, make_camera(camera, world_from_camera)}, target), camera};
+    const Intrinsics sparse = strided(camera, stride);
+    const auto target = frame.create_image("model", {sparse.extent, vulkan::Format::kRgba32u});
+    return {add_pack_model(frame, {surface, color, make_camera(camera, world_from_camera)}, stride, target), sparse};
 }
 
 Image<reference::TrackReading> TrackTest::readings(const std::vector<uint32_t>& words, Extent2D extent) {
@@ -76,16 +77,15 @@ Image<reference::TrackReading> TrackTest::readings(const std::vector<uint32_t>& 
 }
 
 Image<reference::TrackSurface> TrackTest::surfaces(const std::vector<uint32_t>& words, Extent2D extent) {
-    const auto snorm = [](uint32_t bits) { return std::max(static_cast<int16_t>(bits & 0xffff) / 32767.0, -1.0); };
-    const auto real = [](uint32_t bits) { return static_cast<double>(glm::uintBitsToFloat(bits)); };
+    const auto part = [](uint32_t bits, double units) { return static_cast<int16_t>(bits & 0xffff) / units; };
     Image<reference::TrackSurface> image(extent);
     for (size_t i = 0; i < extent.area(); ++i) {
         const uint32_t* const word = &words[4 * i];
-        const glm::dvec2 fold(snorm(word[1]), snorm(word[1] >> 16));
-        const double z = 1 - std::abs(fold.x) - std::abs(fold.y), back = std::max(-z, 0.0);
-        const glm::dvec3 normal(fold.x - std::copysign(back, fold.x), fold.y - std::copysign(back, fold.y), z);
-        image.pixels()[i] = {
-            real(word[0]), glm::normalize(normal), {snorm(word[2]), snorm(word[2] >> 16)}, real(word[3])};
+        const glm::dvec3 normal(part(word[1], 32767), part(word[1] >> 16, 32767), part(word[2], 32767));
+        image.pixels()[i] = {glm::uintBitsToFloat(word[0]),
+                             normal,
+                             {part(word[3], 32767), part(word[3] >> 16, 32767)},
+                             part(word[2] >> 16, 16383)};
     }
     return image;
 }

@@ -44,9 +44,9 @@ class TrackTest : public GpuTest {
     graph::ImageId upload_floats(graph::Frame& frame, const Image<float>& image);
     graph::ImageId upload_halves(graph::Frame& frame, const Image<glm::vec4>& image);
     TrackLevel pack_frame(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                          const std::optional<reference::TrackPicture>& picture);
+                          const std::optional<reference::TrackPicture>& picture, bool half = false);
     TrackLevel pack_model(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                          const RigidTransform& world_from_camera, bool colored);
+                          const RigidTransform& world_from_camera, bool colored, uint32_t stride = 1);
 
     static Image<reference::TrackReading> readings(const std::vector<uint32_t>& words, Extent2D extent);
     static Image<reference::TrackSurface> surfaces(const std::vector<uint32_t>& words, Extent2D extent);
