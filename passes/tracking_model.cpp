@@ -45,10 +45,11 @@ TrackingModel::TrackingModel(vulkan::Device& device, const TrackingSettings& set
     : device_(device), settings_(checked(settings)), motion_(settings.damping) {}
 
 void TrackingModel::make_reference(const Intrinsics& camera) {
-    Intrinsics level = strided(camera, 1u << settings_.finest);
+    Intrinsics level = first_level() > 0 ? halved(camera) : camera;
+    level.distortion = {};
     if (!reference_.empty() && reference_.front().camera.extent == level.extent) return;
     reference_.clear();
-    for (uint32_t i = settings_.finest; i < settings_.levels; ++i, level = halved(level)) {
+    for (uint32_t i = first_level(); i < settings_.levels; ++i, level = halved(level)) {
         if (level.extent.area() == 0) {
             throw Error("tracking.levels is ", settings_.levels, ", a depth picture of ", camera.extent,
                         " pixels has only ", i);
@@ -66,11 +67,9 @@ void TrackingModel::add_reference(graph::Frame& frame, const RaycastImages& surf
     make_reference(camera);
     world_from_reference_ = world_from_camera;
     const TrackModelInputs inputs{surface, color_linear, make_camera(camera, world_from_camera)};
-    // The finest level samples the model, which is smooth; means make the coarser ones, whose pairs lie farther apart.
-    graph::ImageId pixels =
-        add_pack_model(frame, inputs, 1u << settings_.finest, frame.import(reference_.front().pixels));
+    graph::ImageId pixels = add_pack_model(frame, inputs, frame.import(reference_.front().pixels));
     for (size_t i = 1; i < reference_.size(); ++i) {
-        frame.keep(pixels);
+        if (first_level() + i > settings_.finest) frame.keep(pixels);
         pixels = add_halve_model(frame, pixels, frame.import(reference_[i].pixels));
     }
     frame.keep(pixels);
@@ -79,11 +78,8 @@ void TrackingModel::add_reference(graph::Frame& frame, const RaycastImages& surf
 std::vector<TrackLevel> TrackingModel::add_pyramid(graph::Frame& frame, graph::ImageId depth_m,
                                                    const Intrinsics& camera, const std::optional<TrackColor>& color,
                                                    float max_depth_m) const {
-    const bool half = settings_.finest > 0;
-    TrackLevel finest = add_pack_frame(frame, depth_m, camera, color, max_depth_m, half);
-    for (uint32_t level = half ? 1 : 0; level < settings_.finest; ++level) finest = add_halve_frame(frame, finest);
-    std::vector<TrackLevel> levels{finest};
-    while (levels.size() < settings_.levels - settings_.finest) levels.push_back(add_halve_frame(frame, levels.back()));
+    std::vector<TrackLevel> levels{add_pack_frame(frame, depth_m, camera, color, max_depth_m, first_level() > 0)};
+    while (first_level() + levels.size() < settings_.levels) levels.push_back(add_halve_frame(frame, levels.back()));
     return levels;
 }
 
@@ -95,14 +91,15 @@ TrackingModel::Search TrackingModel::add_search(graph::Frame& frame, const std::
     graph::BufferId state = frame.upload<gpu::TrackState>("tracking.state", std::span(&initial, 1));
     TrackErrors errors = settings_.errors;
     if (!settings_.photometric) errors.shade_sigma = 0;
-    for (auto coarser = static_cast<uint32_t>(reference_.size()); coarser-- > 0;) {
-        const TrackLevel model{frame.import(reference_[coarser].pixels), reference_[coarser].camera};
+    for (uint32_t level = settings_.levels; level-- > settings_.finest;) {
+        const size_t i = level - first_level();
+        const uint32_t coarser = level - settings_.finest;
+        const TrackLevel model{frame.import(reference_[i].pixels), reference_[i].camera};
         // Coarser levels have fewer pixels; that all of them have enough is judged in the end.
         const float least_pairs = static_cast<float>(settings_.bounds.least_pairs >> (2 * coarser));
         const uint32_t iterations = coarser == 0 ? settings_.finest_iterations : settings_.iterations;
-        for (uint32_t i = 0; i < iterations; ++i) {
-            const NormalEquations equations =
-                add_normal_equations(frame, pyramid[coarser], model, state, errors, coarser);
+        for (uint32_t step = 0; step < iterations; ++step) {
+            const NormalEquations equations = add_normal_equations(frame, pyramid[i], model, state, errors, coarser);
             state = add_solve_motion(frame, equations, state, settings_.bounds.held_share, least_pairs);
         }
     }

@@ -48,7 +48,7 @@ class TrackingModel {
         graph::Readback state;  ///< gpu::TrackState
     };
 
-    /// The levels of the frame that are compared, the finest first.
+    /// The frame's pyramid, the finest level that is made first.
     std::vector<TrackLevel> add_pyramid(graph::Frame& frame, graph::ImageId depth_m, const Intrinsics& camera,
                                         const std::optional<TrackColor>& color, float max_depth_m) const;
 
@@ -72,6 +72,8 @@ class TrackingModel {
     std::vector<VoxelMap::PoolBytes> memory() const;
 
   private:
+    /// The finest level that is made: the camera's own pixels, where these are compared, or half as many each way.
+    uint32_t first_level() const { return settings_.finest > 0 ? 1 : 0; }
     void make_reference(const Intrinsics& camera);
 
     vulkan::Device& device_;
@@ -80,7 +82,7 @@ class TrackingModel {
         vulkan::ImageRef pixels;  ///< rgba32ui
         Intrinsics camera;
     };
-    std::vector<ReferenceLevel> reference_;  ///< of the levels that are compared, the finest first
+    std::vector<ReferenceLevel> reference_;  ///< from first_level() on
     RigidTransform world_from_reference_{1.0};
     MotionModel motion_;
     TrackingReport last_;

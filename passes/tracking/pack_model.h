@@ -15,12 +15,12 @@ struct TrackModelInputs {
     gpu::Camera camera;                          ///< that saw both
 };
 
-/// Packs one level of the model for tracking into `target`, W / stride x H / stride rgba32ui, as the camera
-/// strided(camera, stride) sees it: depth, normal in camera coordinates, shade and how the shade changes per pixel of
-/// the level. Surfaces seen at more than 80 degrees are left out; without colours there are no shades. Returns the
-/// written version. Throws Error when images are of other extents.
-graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, uint32_t stride,
-                              graph::ImageId target, const TrackJump& jump = {});
+/// Packs the model for tracking into `target`, W x H rgba32ui: depth, normal in camera coordinates, shade and how the
+/// shade changes per pixel. Surfaces seen at more than 80 degrees are left out; without colours there are no shades.
+/// Into a target of W / 2 x H / 2 go the means that add_halve_model takes. Returns the written version. Throws Error
+/// when images are of other extents.
+graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, graph::ImageId target,
+                              const TrackJump& jump = {});
 
 /// The next coarser level into `target`, half as wide and high: means of 2 x 2 pixels, nothing where one of them has
 /// nothing or they lie on different surfaces. Returns the written version. Throws Error when `target` is of another

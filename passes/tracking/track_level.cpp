@@ -12,15 +12,4 @@ Intrinsics halved(const Intrinsics& camera) {
     return half;
 }
 
-Intrinsics strided(const Intrinsics& camera, uint32_t stride) {
-    const double each = stride, first = stride / 2;
-    Intrinsics sparse;
-    sparse.extent = {camera.extent.width / stride, camera.extent.height / stride};
-    sparse.fx = camera.fx / each;
-    sparse.fy = camera.fy / each;
-    sparse.cx = (camera.cx - first) / each;
-    sparse.cy = (camera.cy - first) / each;
-    return sparse;
-}
-
 }  // namespace patina

@@ -23,7 +23,4 @@ struct TrackJump {
 /// The camera of the next coarser level, whose pixels are 2 x 2 of `camera`'s; an odd last row or column is left out.
 Intrinsics halved(const Intrinsics& camera);
 
-/// The camera whose pixel p is the pixel stride p + stride / 2 (rounded down) of `camera`.
-Intrinsics strided(const Intrinsics& camera, uint32_t stride);
-
 }  // namespace patina

@@ -43,5 +43,36 @@ ModelPixel unpack_model_pixel(uvec4 packed) {
     const vec2 change = vec2(low_part(packed.w), high_part(packed.w)) * (1.0 / 32767.0);
     return ModelPixel(uintBitsToFloat(packed.x), normal, change, high_part(packed.z) * (1.0 / kModelShadeUnits));
 }
+ModelPixel no_model_pixel() { return ModelPixel(0.0, vec3(0.0, 0.0, -1.0), vec2(0.0), -1.0); }
+
+// The mean of 2 x 2 pixels of one surface.
+struct ModelMean {
+    ModelPixel mean;  // the normal is the sum of four
+    float nearest_m;
+    float farthest_m;
+    float least_shade;
+};
+ModelMean begin_mean() { return ModelMean(ModelPixel(0.0, vec3(0.0), vec2(0.0), 0.0), 1e9, 0.0, 1e9); }
+void add_to_mean(inout ModelMean sums, ModelPixel part) {
+    sums.nearest_m = min(sums.nearest_m, part.depth_m);
+    sums.farthest_m = max(sums.farthest_m, part.depth_m);
+    sums.least_shade = min(sums.least_shade, part.shade);
+    sums.mean.depth_m += 0.25 * part.depth_m;
+    sums.mean.normal += part.normal;
+    // Twice the mean: a pixel is twice as wide.
+    sums.mean.shade_per_px += 0.5 * part.shade_per_px;
+    sums.mean.shade += 0.25 * part.shade;
+}
+// None where a pixel has nothing, or they lie on different surfaces.
+ModelPixel end_mean(ModelMean sums, float jump_m, float jump_slope) {
+    const bool known = sums.nearest_m > 0.0 &&
+                       sums.farthest_m - sums.nearest_m <= jump_m + jump_slope * sums.nearest_m &&
+                       dot(sums.mean.normal, sums.mean.normal) > 8.0;
+    ModelPixel mean = sums.mean;
+    mean.normal = normalize(mean.normal);
+    mean.shade = sums.least_shade < 0.0 ? -1.0 : mean.shade;
+    mean.shade_per_px = sums.least_shade < 0.0 ? vec2(0.0) : mean.shade_per_px;
+    return known ? mean : no_model_pixel();
+}
 
 #endif

@@ -74,9 +74,6 @@ struct PackModelParams {
     float jump_slope;
     float least_cosine;  // between normal and direction to the camera
     uint shaded;
-    uvec2 extent;  // of the result
-    int stride;    // the result's pixel p is the one at stride * p + stride / 2
-    int reach;     // shades are compared so many pixels to each side
 };
 
 struct HideHighlightsParams {

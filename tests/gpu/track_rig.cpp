@@ -56,15 +56,15 @@ TrackLevel TrackTest::pack_frame(graph::Frame& frame, const SeenScene& seen, con
 }
 
 TrackLevel TrackTest::pack_model(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                                 const RigidTransform& world_from_camera, bool colored, uint32_t stride) {
+                                 const RigidTransform& world_from_camera, bool colored, bool half) {
     const RaycastImages surface{frame.upload("position", {camera.extent, vulkan::Format::kRgba32f},
                                              std::as_bytes(std::span(seen.position_m.pixels()))),
                                 upload_halves(frame, seen.normal)};
     std::optional<graph::ImageId> color;
     if (colored) color = upload_halves(frame, seen.color);
-    const Intrinsics sparse = strided(camera, stride);
-    const auto target = frame.create_image("model", {sparse.extent, vulkan::Format::kRgba32u});
-    return {add_pack_model(frame, {surface, color, make_camera(camera, world_from_camera)}, stride, target), sparse};
+    const Intrinsics level = half ? halved(camera) : camera;
+    const auto target = frame.create_image("model", {level.extent, vulkan::Format::kRgba32u});
+    return {add_pack_model(frame, {surface, color, make_camera(camera, world_from_camera)}, target), level};
 }
 
 Image<reference::TrackReading> TrackTest::readings(const std::vector<uint32_t>& words, Extent2D extent) {

@@ -46,7 +46,7 @@ class TrackTest : public GpuTest {
     TrackLevel pack_frame(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
                           const std::optional<reference::TrackPicture>& picture, bool half = false);
     TrackLevel pack_model(graph::Frame& frame, const SeenScene& seen, const Intrinsics& camera,
-                          const RigidTransform& world_from_camera, bool colored, uint32_t stride = 1);
+                          const RigidTransform& world_from_camera, bool colored, bool half = false);
 
     static Image<reference::TrackReading> readings(const std::vector<uint32_t>& words, Extent2D extent);
     static Image<reference::TrackSurface> surfaces(const std::vector<uint32_t>& words, Extent2D extent);

@@ -105,30 +105,28 @@ Image<TrackReading> halve_frame(const Image<TrackReading>& fine, const TrackJump
 
 Image<TrackSurface> pack_model(const Image<glm::vec4>& position_m, const Image<glm::vec4>& normal,
                                const std::optional<Image<glm::vec4>>& color, const Intrinsics& camera,
-                               const RigidTransform& world_from_camera, uint32_t stride, const TrackJump& jump) {
+                               const RigidTransform& world_from_camera, const TrackJump& jump) {
     const glm::dmat3 camera_from_world(rigid_inverse(world_from_camera));
-    const int reach = stride < 4 ? 1 : static_cast<int>(stride / 2);
-    Image<TrackSurface> packed(Extent2D{position_m.extent().width / stride, position_m.extent().height / stride});
-    for_each_pixel(packed.extent(), [&](uint32_t packed_x, uint32_t packed_y) {
-        const uint32_t x = packed_x * stride + stride / 2, y = packed_y * stride + stride / 2;
+    Image<TrackSurface> packed(position_m.extent());
+    for_each_pixel(position_m.extent(), [&](uint32_t x, uint32_t y) {
         const double z = position_m.at(x, y).w;
         const glm::dvec3 n = camera_from_world * glm::dvec3(normal.at(x, y)), ray = ray_of(camera, x, y);
         if (!(z > 0) || -glm::dot(n, ray) < kLeastCosine * glm::length(ray)) return;
-        TrackSurface& surface = packed.at(packed_x, packed_y);
+        TrackSurface& surface = packed.at(x, y);
         surface.depth_m = z;
         surface.normal = n;
         if (!color) return;
         const auto shade_at = [&](int dx, int dy) {
-            const int px = static_cast<int>(x) + dx * reach, py = static_cast<int>(y) + dy * reach;
+            const int px = static_cast<int>(x) + dx, py = static_cast<int>(y) + dy;
             const glm::vec4 seen = pixel_or(*color, px, py, glm::vec4(0));
             const double there = pixel_or(position_m, px, py, glm::vec4(0)).w;
-            const bool known = seen.a > 0 && std::abs(there - z) <= jump.floor_m + reach * jump.slope * z;
+            const bool known = seen.a > 0 && std::abs(there - z) <= jump.floor_m + jump.slope * z;
             return known ? shade_of(glm::dvec3(seen)) : -1;
         };
         const double left = shade_at(-1, 0), right = shade_at(1, 0), up = shade_at(0, -1), down = shade_at(0, 1);
         if (std::min({left, right, up, down, shade_at(0, 0)}) < 0) return;
         surface.shade = shade_at(0, 0);
-        surface.shade_per_px = glm::dvec2(right - left, down - up) * (stride / (2.0 * reach));
+        surface.shade_per_px = glm::dvec2(right - left, down - up) / 2.0;
     });
     return packed;
 }

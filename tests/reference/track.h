@@ -44,7 +44,7 @@ Image<TrackReading> halve_frame(const Image<TrackReading>& fine, const TrackJump
 /// What add_pack_model computes from world positions (w: depth), world normals and colours (a = 0: none).
 Image<TrackSurface> pack_model(const Image<glm::vec4>& position_m, const Image<glm::vec4>& normal,
                                const std::optional<Image<glm::vec4>>& color, const Intrinsics& camera,
-                               const RigidTransform& world_from_camera, uint32_t stride, const TrackJump& jump = {});
+                               const RigidTransform& world_from_camera, const TrackJump& jump = {});
 Image<TrackSurface> halve_model(const Image<TrackSurface>& fine, const TrackJump& jump = {});
 
 /// How frame and model are compared; as passes/tracking/normal_equations.h says.
