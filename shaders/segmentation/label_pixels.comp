@@ -5,7 +5,7 @@
 // the frame says nothing; else what its segment got.
 #include "shared/segments.h"
 
-layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;
+layout(local_size_x = kLabelGroup) in;
 layout(constant_id = 0) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of
 layout(binding = 0, r32ui) uniform readonly uimage2D segment;
 layout(binding = 1, r32ui) uniform readonly uimage2D map_label;

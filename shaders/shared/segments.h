@@ -16,8 +16,9 @@ INTEROP_CONST uint kSweepParts = kSweepFrames / kSweepEvery;
 INTEROP_CONST float kChromaSteps = 1023.0f;
 INTEROP_CONST uint kMostChromaSamples = 1u << 20;  // then the sums are halved
 
-INTEROP_CONST uint kLabelGroupX = 32u;  // of passes over pixels
-INTEROP_CONST uint kLabelGroupY = 4u;
+INTEROP_CONST uint kLabelGroup = 128u;  // of a row: software devices take a group of several rows a quarter longer
+INTEROP_CONST uint kStripGroupX = 32u;  // of strips
+INTEROP_CONST uint kStripGroupY = 4u;
 INTEROP_CONST uint kSampleStride = 2u;        // of the pixels, in x and y, whose labels the map is asked for
 INTEROP_CONST uint kAskGroup = 32u;           // invocations, each of which asks for a column of
 INTEROP_CONST uint kAskRows = 8u;             // so many labels
