@@ -8,7 +8,7 @@ layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };  // count, then block ids
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std430, binding = 2) buffer Stamps { uint stamps[]; };  // as LabelMapIds::stamps
-layout(std430, binding = 3) buffer Due { uint due[]; };        // count, then block ids | kBlockFlags
+layout(std430, binding = 3) buffer Due { uint due[]; };        // count, then block ids | kSettledBlock
 layout(std430, binding = 4) buffer Arguments { uint arguments[]; };
 layout(push_constant) uniform Push { ListDueBlocksParams params; };
 
@@ -16,11 +16,11 @@ void main() {
     if (gl_GlobalInvocationID.x >= visible[0]) return;
     const uint block = visible[1u + gl_GlobalInvocationID.x];
     const uint known = stamps[block];
-    const uint frames = (known & kBlockFlags) == kSettledBlock ? kSettledFrames : kUpdateFrames;
+    const uint frames = known >= kSettledBlock ? kSettledFrames : kUpdateFrames;
     if (known != 0u && hash_of_key(block_keys[block]) % frames != params.stamp % frames) return;
     stamps[block] = params.stamp;
     const uint item = atomicAdd(due[0], 1u);
-    due[1u + item] = block | (known & kBlockFlags);
+    due[1u + item] = block | (known & kSettledBlock);
     const uint group = item / kUpdateBlocks;
     if (item % kUpdateBlocks != 0u) return;
     atomicMax(arguments[0], min(group + 1u, kGroupsPerRow));

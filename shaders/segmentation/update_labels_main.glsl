@@ -11,7 +11,7 @@
 
 layout(constant_id = 1) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of
 layout(local_size_x = kUpdateLabelsGroup) in;
-layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids | kBlockFlags
+layout(std430, binding = 0) readonly buffer Due { uint due[]; };  // count, then block ids | kSettledBlock
 layout(std430, binding = 1) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(binding = 3, rgba32f) uniform readonly image2D position_m;
@@ -95,9 +95,8 @@ uint near_surface(uvec4 voxels) {
     return near;
 }
 
-uint block_of(uint item) { return item & ~kBlockFlags; }
+uint block_of(uint item) { return item & ~kSettledBlock; }
 bool is_settled(uint item) { return (item & kSettledBlock) != 0u; }
-bool was_empty(uint item) { return (item & kEmptyBlock) != 0u; }
 
 // Lists the voxels of one of the blocks that are near the surface. An invocation looks at four along x at a time. Of a
 // block that has settled it looks at every fourth four, others in every turn, which lie in all layers of x, y and z.
@@ -106,8 +105,7 @@ void list_near(uint slot) {
     const bool settled = is_settled(items[slot]);
     const uint first_quad = index_in_chunk(view.grid.chunk_shift, block) * (kBlockVoxels / 4u);
     const uint lane = gl_LocalInvocationIndex;
-    const uint turn = stamps[block] / (was_empty(items[slot]) ? kUpdateFrames : kSettledFrames);
-    const uint chosen = settled ? 4u * lane + (turn + lane / 4u) % 4u : lane;
+    const uint chosen = settled ? 4u * lane + (stamps[block] / kSettledFrames + lane / 4u) % 4u : lane;
     uint near = 0u;  // four bits a quad
     for (uint i = 0u; i < (settled ? 1u : kLabelQuads); ++i) {
         uvec4 voxels;
@@ -149,10 +147,8 @@ void update_voxel(uint entry, inout uint votes, inout uint flips) {
 // What becomes of the block, after all its listed voxels were voted on.
 void settle(uint slot) {
     const uint item = items[slot];
-    const bool whole = !is_settled(item) || was_empty(item);
-    atomicAdd(looked_at, whole ? kLabelQuads : 1u);
-    const bool empty = whole && block_listed[slot] == 0u;
-    if (unsettled[slot] == 0u) stamps[block_of(item)] |= empty ? kBlockFlags : kSettledBlock;
+    atomicAdd(looked_at, is_settled(item) ? 1u : kLabelQuads);
+    if ((is_settled(item) || block_listed[slot] > 0u) && unsettled[slot] == 0u) stamps[block_of(item)] |= kSettledBlock;
 }
 
 void main() {

@@ -111,17 +111,6 @@ TEST_F(ListDueBlocks, BlocksThatHaveSettledHaveALongerTurn) {
     EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));
 }
 
-TEST_F(ListDueBlocks, BlocksThatWereEmptyHaveTheirUsualTurn) {
-    const std::vector<uint32_t> visible = visible_blocks(), stamps(kBlocks, 3), empty(kBlocks, 3 | gpu::kBlockFlags);
-    for (uint32_t stamp = 20; stamp < 20 + gpu::kUpdateFrames; ++stamp) {
-        std::vector<uint32_t> expected = list(visible, stamps, stamp).blocks, got = list(visible, empty, stamp).blocks;
-        for (uint32_t& block : expected) block |= gpu::kBlockFlags;
-        std::sort(expected.begin(), expected.end());
-        std::sort(got.begin(), got.end());
-        EXPECT_EQ(got, expected);
-    }
-}
-
 TEST_F(ListDueBlocks, NothingInViewIsAnEmptyList) {
     const Listed got = list({}, std::vector<uint32_t>(kBlocks), 20);
     EXPECT_TRUE(got.blocks.empty());
