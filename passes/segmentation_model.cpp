@@ -103,7 +103,7 @@ graph::ImageId SegmentationModel::add(graph::Frame& frame, const VoxelMapIds& vo
     // In these frames add_records() begins it anew.
     if (!samples_are_due(frame_index, settings_.sample_every)) frame.keep(materials.kd);
     const DueBlocks due = add_list_due_blocks(frame, map_, voxels, labels, surface.blocks, values.stamp);
-    add_update_labels(frame, map_, voxels, labels, table, surface, due, seen, assigned);
+    add_update_labels(frame, map_, voxels, labels, table, surface, due, seen, assigned, access_);
     if (values.stamp % gpu::kSweepEvery == kSweepTurn) add_sweep_labels(frame, map_, voxels, labels, table, uniforms);
     LabelMap::keep(frame, labels);
     SegmentTable::keep(frame, table);

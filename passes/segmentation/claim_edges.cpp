@@ -21,7 +21,8 @@ ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, grap
         pass.create("claimed", {extent, vulkan::Format::kR32u}),
         {pass.modify("Contacts", zeros("segmentation.contacts", gpu::kContactSlots * sizeof(gpu::Contact))),
          pass.modify("ContactCount", zeros("segmentation.contact_count", sizeof(uint32_t)))}};
-    pass.dispatch_covering(extent);
+    pass.dispatch((extent.width + gpu::kClaimGroup - 1) / gpu::kClaimGroup,
+                  (extent.height + gpu::kClaimRows - 1) / gpu::kClaimRows);
     return out;
 }
 

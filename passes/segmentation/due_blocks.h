@@ -8,7 +8,7 @@ namespace patina {
 struct DueBlocks {
     graph::BufferId
         list;  ///< u32: count, then block ids in no order, | gpu::kSettledBlock if their labels have settled
-    graph::BufferId arguments;  ///< dispatch of one group per listed block, in rows of gpu::kGroupsPerRow
+    graph::BufferId arguments;  ///< dispatch of a group per gpu::kUpdateBlocks of them, in rows of gpu::kGroupsPerRow
 };
 
 }  // namespace patina

@@ -17,7 +17,7 @@ graph::ImageId add_label_pixels(graph::Frame& frame, const FrameSegments& segmen
     pass.read("Parents", parents).read("SegmentLabels", segment_labels);
     const graph::ImageId label = pass.create("label", {extent, vulkan::Format::kR32u});
     pass.specialise("kSegmentStride", segments.stride);
-    pass.dispatch_covering(extent);
+    pass.dispatch_covering(sampled_extent(extent, gpu::kSampleStride));
     return label;
 }
 

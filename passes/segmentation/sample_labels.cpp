@@ -26,7 +26,8 @@ graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const
     pass.read("Words", labels.words).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
     pass.specialise("kStride", stride);
     const graph::ImageId label = pass.create("map_label", {extent, vulkan::Format::kR32u});
-    pass.dispatch_covering(extent);
+    pass.dispatch((extent.width + gpu::kAskGroup - 1) / gpu::kAskGroup,
+                  (extent.height + gpu::kAskRows - 1) / gpu::kAskRows);
     return label;
 }
 

@@ -7,11 +7,12 @@ namespace patina {
 
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                        SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
-                       const FrameSegments& segments, graph::BufferId segment_labels) {
+                       const FrameSegments& segments, graph::BufferId segment_labels, MapAccess access) {
     const Extent2D extent = frame.common_extent({surface.position_m, surface.normal});
     check_sampled("segmentation.update_labels", "segments", extent, frame.shape(segments.segment).extent,
                   segments.stride);
-    auto pass = frame.compute("segmentation.update_labels", spirv::update_labels);
+    const bool texel = access == MapAccess::kTexel;
+    auto pass = frame.compute("segmentation.update_labels", texel ? spirv::update_labels_texel : spirv::update_labels);
     pass.read("Due", due.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
     pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
     pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);

@@ -2,6 +2,7 @@
 
 #include "engine/graph/frame.h"
 #include "passes/model/label_map.h"
+#include "passes/model/map_access.h"
 #include "passes/model/segment_table.h"
 #include "passes/model/voxel_map.h"
 #include "passes/segmentation/due_blocks.h"
@@ -15,9 +16,10 @@ namespace patina {
 /// replaces its label. A voxel without one takes that of a surface within two voxels, as beside silhouettes noise
 /// leaves gaps. A block has settled (LabelMapIds::stamps) when all its voxels near the surface have a confidence of
 /// gpu::kSettledConfidence, and none was contradicted; of one that has, a quarter of the voxels has its turn. Counts
-/// voxels and flips in gpu::SegmentCounters. Throws Error when images do not fit each other.
+/// voxels and flips in gpu::SegmentCounters. Throws Error when images do not fit each other, and when `access` is
+/// MapAccess::kTexel and the map too large for it.
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                        SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
-                       const FrameSegments& segments, graph::BufferId segment_labels);
+                       const FrameSegments& segments, graph::BufferId segment_labels, MapAccess access);
 
 }  // namespace patina

@@ -6,7 +6,7 @@
 #include "shared/convert_color.h"
 
 layout(constant_id = 0) const int kStride = 1;  // of the pixels in x and y
-layout(local_size_x = 32, local_size_y = 4) in;
+layout(local_size_x = 128) in;                  // of one row: software devices take a group of several rows longer
 layout(binding = 0, rgba32f) uniform readonly image2D model_position_m;  // w: depth, 0 where nothing was hit
 layout(binding = 1, r32f) uniform readonly image2D reading_m;
 layout(binding = 2, rgba16f) uniform readonly image2D color_linear;

@@ -1,5 +1,7 @@
 // Gives pixels without a component, such as edges, to the one nearby whose tangent plane they lie on; and collects the
-// colours on both sides of those that lie on two planes, as the crease between two components does.
+// colours on both sides of those that lie on two planes, as the crease between two components does. A group lists the
+// pixels of its tile that have none before it looks at them: software devices run a branch whether a pixel takes it or
+// not, and a loop's body at least once in all vectors of a group.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -8,7 +10,7 @@
 #include "lib/voxel_map.glsl"
 #include "shared/contacts.h"
 
-layout(local_size_x = 32, local_size_y = 4) in;
+layout(local_size_x = kClaimGroup) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
 layout(binding = 1, r32ui) uniform readonly uimage2D normal;
 layout(binding = 2, r32ui) uniform readonly uimage2D chroma;
@@ -51,55 +53,87 @@ void add_contact(uint a, uint a_chroma, uint b, uint b_chroma) {
     atomicAdd(contacts[slot].high_g, high_chroma >> 12 & 0xfffu);
 }
 
-void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(params.extent)))) return;
-    uint own = large(imageLoad(component, pixel).x);
-    const float z = imageLoad(depth_m, pixel).x;
-    const bool wanting = own == 0u && z > 0.0;
+shared uint listed;
+shared uint list[kClaimGroup * kClaimRows];  // x and y << 16 of pixels without a component, in any order
 
-    // The nearest component in each direction. No branch: software devices leave the loop as soon as no pixel of a
-    // vector needs it.
+// An invocation goes down a column of the tile. What has a component keeps it, where there is nothing none is needed.
+void list_wanting(ivec2 corner) {
+    const int x = corner.x + int(gl_LocalInvocationIndex);
+    uint wanting = 0u;
+    [[unroll]] for (int i = 0; i < int(kClaimRows); ++i) {
+        const ivec2 pixel = ivec2(x, corner.y + i);
+        // Beyond the image loads are zero.
+        const uint own = large(imageLoad(component, pixel).x);
+        const bool wants = own == 0u && imageLoad(depth_m, pixel).x > 0.0;
+        wanting |= uint(wants) << i;
+        if (!wants && all(lessThan(pixel, ivec2(params.extent)))) imageStore(claimed, pixel, uvec4(own));
+    }
+    uint place = wanting == 0u ? 0u : atomicAdd(listed, uint(bitCount(wanting)));
+    for (uint bits = wanting; bits != 0u; bits &= bits - 1u) {
+        list[place++] = uint(x) | uint(corner.y + findLSB(bits)) << 16;
+    }
+}
+
+// The nearest component in each direction, 0 where there is none near enough or it is too small; `apart`: how far.
+uvec4 nearest_components(ivec2 pixel, out ivec4 apart) {
     uvec4 found = uvec4(0u);
-    ivec4 apart = ivec4(0);
-    for (int step = 1; wanting && any(equal(found, uvec4(0u))) && step <= params.claim_reach_px; ++step) {
+    apart = ivec4(0);
+    for (int step = 1; any(equal(found, uvec4(0u))) && step <= params.claim_reach_px; ++step) {
         [[unroll]] for (int i = 0; i < 4; ++i) {
-            // Beyond the image loads are zero.
             const uint there = imageLoad(component, pixel + step * kDirections[i]).x;
             apart[i] = found[i] == 0u ? step : apart[i];
             found[i] = found[i] == 0u ? there : found[i];
         }
     }
-    if (any(notEqual(found, uvec4(0u)))) {
-        [[unroll]] for (int i = 0; i < 4; ++i) found[i] = large(found[i]);
-        const vec3 point_m = surface_point_m(params, pixel, z);
-        const float limit_m = params.claim_m + params.claim_sigmas * depth_sigma_m(params, z);
-        const uint color = imageLoad(chroma, pixel).x;
-        float least = 1e9;
-        uvec4 colors = uvec4(0u);  // of the components on whose plane the pixel lies
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-            const ivec2 place = clamped(pixel + apart[i] * kDirections[i]);
-            const vec3 there_m = surface_point_m(params, place, imageLoad(depth_m, place).x);
-            const uint there = imageLoad(chroma, place).x;
-            // Above 0 where the pixel lies behind the plane, as over a convex fold.
-            const float behind_m = dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x));
-            const float distance_m = abs(behind_m);
-            const vec2 differing = abs(unpack_chroma(there) - unpack_chroma(color));
-            const bool colored = there != 0u && color != 0u;
-            const float cost = distance_m + (colored ? kChromaWeightM * max(differing.x, differing.y) : 0.0);
-            const bool on_plane = found[i] != 0u && distance_m < limit_m;
-            colors[i] = on_plane ? there : 0u;
-            const bool same_hue = colored && hue_change(unpack_chroma(there), unpack_chroma(color)) < params.cut_chroma;
-            const bool folded =
-                found[i] != 0u && behind_m > 0.0 && same_hue && abs(there_m.z - z) <= jump_limit_m(params, z, apart[i]);
-            const float paid = on_plane ? cost : folded ? kFoldCostM + cost : 1e9;
-            own = paid < least ? found[i] : own;
-            least = min(least, paid);
-        }
-        [[unroll]] for (int i = 0; i < 4; i += 2) {
-            if (found[i] != found[i + 1] && colors[i] != 0u && colors[i + 1] != 0u)
-                add_contact(found[i], colors[i], found[i + 1], colors[i + 1]);
-        }
+    [[unroll]] for (int i = 0; i < 4; ++i) found[i] = large(found[i]);
+    return found;
+}
+
+// The component that a pixel joins, 0 if none.
+uint claimed_by(ivec2 pixel, uvec4 found, ivec4 apart) {
+    const float z = imageLoad(depth_m, pixel).x;
+    const vec3 point_m = surface_point_m(params, pixel, z);
+    const float limit_m = params.claim_m + params.claim_sigmas * depth_sigma_m(params, z);
+    const uint color = imageLoad(chroma, pixel).x;
+    uint own = 0u;
+    float least = 1e9;
+    uvec4 colors = uvec4(0u);  // of the components on whose plane the pixel lies
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 place = clamped(pixel + apart[i] * kDirections[i]);
+        const vec3 there_m = surface_point_m(params, place, imageLoad(depth_m, place).x);
+        const uint there = imageLoad(chroma, place).x;
+        // Above 0 where the pixel lies behind the plane, as over a convex fold.
+        const float behind_m = dot(there_m - point_m, unpack_normal(imageLoad(normal, place).x));
+        const float distance_m = abs(behind_m);
+        const vec2 differing = abs(unpack_chroma(there) - unpack_chroma(color));
+        const bool colored = there != 0u && color != 0u;
+        const float cost = distance_m + (colored ? kChromaWeightM * max(differing.x, differing.y) : 0.0);
+        const bool on_plane = found[i] != 0u && distance_m < limit_m;
+        colors[i] = on_plane ? there : 0u;
+        const bool same_hue = colored && hue_change(unpack_chroma(there), unpack_chroma(color)) < params.cut_chroma;
+        const bool folded =
+            found[i] != 0u && behind_m > 0.0 && same_hue && abs(there_m.z - z) <= jump_limit_m(params, z, apart[i]);
+        const float paid = on_plane ? cost : folded ? kFoldCostM + cost : 1e9;
+        own = paid < least ? found[i] : own;
+        least = min(least, paid);
     }
-    imageStore(claimed, pixel, uvec4(own));
+    [[unroll]] for (int i = 0; i < 4; i += 2) {
+        if (found[i] != found[i + 1] && colors[i] != 0u && colors[i + 1] != 0u)
+            add_contact(found[i], colors[i], found[i + 1], colors[i + 1]);
+    }
+    return own;
+}
+
+void main() {
+    if (gl_LocalInvocationIndex == 0u) listed = 0u;
+    barrier();
+    list_wanting(ivec2(gl_WorkGroupID.xy * uvec2(kClaimGroup, kClaimRows)));
+    barrier();
+    const uint count = listed;
+    for (uint i = gl_LocalInvocationIndex; i < count; i += kClaimGroup) {
+        const ivec2 pixel = ivec2(list[i] & 0xffffu, list[i] >> 16);
+        ivec4 apart;
+        const uvec4 found = nearest_components(pixel, apart);
+        imageStore(claimed, pixel, uvec4(claimed_by(pixel, found, apart)));
+    }
 }

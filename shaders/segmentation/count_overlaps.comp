@@ -7,7 +7,7 @@
 #include "lib/voxel_map.glsl"
 #include "shared/segments.h"
 
-layout(local_size_x = kLabelGroupX, local_size_y = kLabelGroupY) in;
+layout(local_size_x = kStripGroupX, local_size_y = kStripGroupY) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D segment;
 layout(binding = 1, r32ui) uniform readonly uimage2D map_label;
 layout(binding = 2, rgba32f) uniform readonly image2D position_m;

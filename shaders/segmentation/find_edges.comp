@@ -4,7 +4,7 @@
 #include "lib/chroma.glsl"
 #include "lib/frame_surface.glsl"
 
-layout(local_size_x = 32, local_size_y = 4) in;
+layout(local_size_x = 128) in;  // of one row: software devices take a group of several rows longer
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
 layout(binding = 1, r32ui) uniform readonly uimage2D normal;
 layout(binding = 2, r32ui) uniform readonly uimage2D chroma;

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Sampling of labels with the map in storage buffers, as every device can bind them.
 #include "shared/voxel_map.h"
 layout(std430, binding = 4) readonly buffer ViewGrid { uint view_grid[]; };

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Of the map's blocks, those whose keys have their turn in this frame: replaces labels by their roots, and counts the
 // voxels of each. A group looks at kSweepGroup block ids.
 #include "lib/voxel_chunks.glsl"
@@ -25,11 +26,15 @@ void sweep_quad(uint block, uint quad) {
 #define STORE_WORDS(C) words[C].quads[quad] = after
     WITH_CHUNK(grid.chunk_shift, block, LOAD_WORDS)
     if (before == uvec4(0u)) return;
-    uvec4 after;
-    for (int i = 0; i < 4; ++i) {
-        const uint root = imageLoad(Parents, int(voxel_label(before[i]))).x;
-        after[i] = root == kNoLabel ? 0u : (before[i] & ~0xffffu) | root;
-        if (root != kNoLabel) atomicAdd(labels[root].tally, 1u);
+    uvec4 roots;
+    [[unroll]] for (int i = 0; i < 4; ++i) roots[i] = imageLoad(Parents, int(voxel_label(before[i]))).x;
+    const uvec4 after = mix((before & ~0xffffu) | roots, uvec4(0u), equal(roots, uvec4(kNoLabel)));
+    // Neighbours mostly have one label: they are counted together.
+    const bvec4 is_new = bvec4(true, roots.y != roots.x, roots.z != roots.y && roots.z != roots.x,
+                               roots.w != roots.z && roots.w != roots.y && roots.w != roots.x);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const uvec4 same = uvec4(equal(roots, uvec4(roots[i])));
+        if (is_new[i] && roots[i] != kNoLabel) atomicAdd(labels[roots[i]].tally, same.x + same.y + same.z + same.w);
     }
     if (after != before) {
         WITH_CHUNK(grid.chunk_shift, block, STORE_WORDS)

@@ -6,6 +6,8 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kContactSlots = 2048u;  // of the hash table, a power of two
 INTEROP_CONST uint kMostContacts = kContactSlots / 4u * 3u;
+INTEROP_CONST uint kClaimGroup = 32u;  // invocations, each of which looks at a column of
+INTEROP_CONST uint kClaimRows = 16u;   // so many pixels
 INTEROP_CONST uint kJoinFoldsGroup = 128u;
 INTEROP_CONST float kContactChroma = 4095.0f;  // steps of a chromaticity
 
