@@ -153,8 +153,9 @@ void synthesise(vulkan::Device& device, const SynthOptions& options) {
     const sensor::Scene scene = scene_of(options);
     const auto lighting = options.lighting ? sensor::lighting_sequence(scene) : std::nullopt;
     sensor::SyntheticSource source(device, scene, {.frames = options.frames, .truth_every = options.truth_every});
-    sensor::SequenceWriter writer(options.out, source.info(), linear_color_of(scene));
+    // Before the first folder and until the last is gone, so that an interruption leaves none.
     Watch watch(options, options.frames + (lighting ? lighting->frames : 0));
+    sensor::SequenceWriter writer(options.out, source.info(), linear_color_of(scene));
     record(source, writer, options.truth_every > 0, watch, scene.name);
     if (lighting) {
         sensor::SyntheticSource dark(device, lighting->scene,
