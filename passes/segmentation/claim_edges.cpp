@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/core/divided_up.h"
 #include "shared/contacts.h"
 #include "spirv/shaders.h"
 
@@ -21,8 +22,7 @@ ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, grap
         pass.create("claimed", {extent, vulkan::Format::kR32u}),
         {pass.modify("Contacts", zeros("segmentation.contacts", gpu::kContactSlots * sizeof(gpu::Contact))),
          pass.modify("ContactCount", zeros("segmentation.contact_count", sizeof(uint32_t)))}};
-    pass.dispatch((extent.width + gpu::kClaimGroup - 1) / gpu::kClaimGroup,
-                  (extent.height + gpu::kClaimRows - 1) / gpu::kClaimRows);
+    pass.dispatch(divided_up(extent.width, gpu::kClaimGroup), divided_up(extent.height, gpu::kClaimRows));
     return out;
 }
 

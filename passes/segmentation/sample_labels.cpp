@@ -1,5 +1,6 @@
 #include "passes/segmentation/sample_labels.h"
 
+#include "engine/core/divided_up.h"
 #include "engine/core/error.h"
 #include "shared/segments.h"
 #include "spirv/shaders.h"
@@ -26,8 +27,7 @@ graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const
     pass.read("Words", labels.words).read("Parents", parents).specialise("kVoxelChunks", map.chunks());
     pass.specialise("kStride", stride);
     const graph::ImageId label = pass.create("map_label", {extent, vulkan::Format::kR32u});
-    pass.dispatch((extent.width + gpu::kAskGroup - 1) / gpu::kAskGroup,
-                  (extent.height + gpu::kAskRows - 1) / gpu::kAskRows);
+    pass.dispatch(divided_up(extent.width, gpu::kAskGroup), divided_up(extent.height, gpu::kAskRows));
     return label;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/divided_up.h"
 #include "engine/core/error.h"
 #include "shared/network.h"
 #include "spirv/shaders.h"
@@ -29,8 +30,6 @@ struct Step {
     gpu::BatchWork work{};
     uint64_t output_quads = 0;  ///< per segment
 };
-
-uint32_t divided_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
 // Measured on lavapipe: fewer pixels load each weight more often; more gain nothing, as their code outgrows the caches.
 constexpr uint32_t kWidestTile = 16, kPixelsPerTile = 32, kMostImagesPerTile = 8;

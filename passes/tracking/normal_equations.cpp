@@ -1,5 +1,6 @@
 #include "passes/tracking/normal_equations.h"
 
+#include "engine/core/divided_up.h"
 #include "engine/core/error.h"
 #include "shared/tracking.h"
 #include "spirv/shaders.h"
@@ -20,12 +21,10 @@ void check(const TrackErrors& errors) {
 
 glm::vec4 focal_center_px(const Intrinsics& camera) { return {camera.fx, camera.fy, camera.cx, camera.cy}; }
 
-uint32_t groups_of(uint32_t size, uint32_t each) { return (size + each - 1) / each; }
-
 /// Rows of an invocation, so that as few groups as may be cover the height, and little more than it.
 uint32_t rows_of(uint32_t height) {
-    const uint32_t groups = groups_of(height, gpu::kNormalEquationsGroupY * gpu::kNormalEquationsMostRows);
-    return groups_of(height, groups * gpu::kNormalEquationsGroupY * gpu::kNormalEquationsUnrolled) *
+    const uint32_t groups = divided_up(height, gpu::kNormalEquationsGroupY * gpu::kNormalEquationsMostRows);
+    return divided_up(height, groups * gpu::kNormalEquationsGroupY * gpu::kNormalEquationsUnrolled) *
            gpu::kNormalEquationsUnrolled;
 }
 
@@ -48,8 +47,8 @@ NormalEquations add_normal_equations(graph::Frame& frame, const TrackLevel& own,
     params.shade_sigma = errors.shade_sigma;
     params.robust_shade = errors.robust_shade;
     params.rows = rows_of(own.camera.extent.height);
-    const uint32_t groups_x = groups_of(own.camera.extent.width, gpu::kTrackGroupX);
-    const uint32_t groups_y = groups_of(own.camera.extent.height, gpu::kNormalEquationsGroupY * params.rows);
+    const uint32_t groups_x = divided_up(own.camera.extent.width, gpu::kTrackGroupX);
+    const uint32_t groups_y = divided_up(own.camera.extent.height, gpu::kNormalEquationsGroupY * params.rows);
     // By size, so that profiles tell levels apart.
     auto pass =
         frame.compute(text("tracking.normal_equations_", own.camera.extent.width, "x", own.camera.extent.height),
