@@ -13,6 +13,8 @@
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/sharpen_normals.h"
 #include "passes/fusion/visible_blocks.h"
+#include "passes/input/convert_color.h"
+#include "passes/input/convert_depth.h"
 #include "passes/sample_mesh.h"
 #include "passes/shading/restore_detail.h"
 #include "passes/surface/extract_surface.h"
@@ -104,11 +106,12 @@ void Reconstruction::check(const RgbdFrame& frame) const {
     if (!(defect < 1e-3)) throw Error("the pose of frame ", frames_, " is not rigid: its rotation is off by ", defect);
 }
 
-VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame) {
+VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame,
+                                   const InputPictures& pictures) {
     const gpu::Camera depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
     const RigidTransform world_from_color = world_from_color_of(frame);
     const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color);
-    InputImages input = add_input(graph, frame.depth, frame.color, depth_camera, settings_.input);
+    InputImages input = add_input(graph, pictures, depth_camera, settings_.input);
     // With the colours that the camera gave: those of a lost frame cannot be corrected.
     if (keyframes_) keyframes_->add_keep(graph, input.depth_m, input.color, frame.world_from_depth, frames_);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
@@ -180,6 +183,7 @@ void Reconstruction::observe(graph::Frame& graph, const VoxelMapIds& ids, Observ
 
 void Reconstruction::refine_all() {
     if (!reflectance_ || frames_ == 0) return;
+    fuse_waiting();
     graph::Frame graph = runner_.begin();
     reflectance_->refine_all(graph, map_.import(graph));
     runner_.submit(std::move(graph));
@@ -205,29 +209,59 @@ bool Reconstruction::add(const RgbdFrame& frame) {
         fuse_posed(frame);
         return true;
     }
-    const TrackingReport report = track(frame);
+    const bool first = !tracking_->has_reference();
+    const TrackingReport report = first ? start_tracking(frame) : track(frame);
     if (report.state != TrackingState::kTracking) return false;
     RgbdFrame posed = frame;
     posed.world_from_depth = report.world_from_depth;
-    fuse_posed(posed);
+    if (first) {
+        fuse_posed(posed);
+        return true;
+    }
+    // The caller's pixels are gone when the frame has its turn.
+    posed.depth.pixels = {};
+    posed.color.pixels = {};
+    waiting_.emplace(Waiting{posed, {frame.labels.begin(), frame.labels.end()}});
     return true;
 }
 
-void Reconstruction::fuse_posed(const RgbdFrame& frame) {
-    if (frames_ == 0) {
-        graph::Frame graph = runner_.begin();
-        const glm::dvec3 center_m(frame.world_from_depth[3]);
-        map_.reset(graph, center_m);
-        if (color_correction_) color_correction_->reset(graph);
-        if (reflectance_) reflectance_->reset(graph, center_m);
-        if (segmentation_) segmentation_->reset(graph);
-        if (specular_) specular_->reset(graph);
-        if (keyframes_) keyframes_->reset(graph);
-        runner_.submit(std::move(graph));
-    }
+void Reconstruction::start_map(const RgbdFrame& frame) {
     graph::Frame graph = runner_.begin();
+    const glm::dvec3 center_m(frame.world_from_depth[3]);
+    map_.reset(graph, center_m);
+    if (color_correction_) color_correction_->reset(graph);
+    if (reflectance_) reflectance_->reset(graph, center_m);
+    if (segmentation_) segmentation_->reset(graph);
+    if (specular_) specular_->reset(graph);
+    if (keyframes_) keyframes_->reset(graph);
+    runner_.submit(std::move(graph));
+}
+
+void Reconstruction::fuse_posed(const RgbdFrame& frame) {
+    if (frames_ == 0) start_map(frame);
+    graph::Frame graph = runner_.begin();
+    fuse(graph, frame, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)});
+    runner_.submit(std::move(graph));
+    take_counts();
+}
+
+void Reconstruction::fuse_waiting() {
+    if (!waiting_) return;
+    graph::Frame graph = runner_.begin();
+    fuse_waiting(graph);
+    runner_.submit(std::move(graph));
+    take_counts();
+}
+
+void Reconstruction::fuse_waiting(graph::Frame& graph) {
+    waiting_->frame.labels = waiting_->labels;
+    fuse(graph, waiting_->frame, tracking_->pictures().import(graph));
+    waiting_.reset();
+}
+
+void Reconstruction::fuse(graph::Frame& graph, const RgbdFrame& frame, const InputPictures& pictures) {
     VoxelMapIds ids = map_.import(graph);
-    const VisibleBlocks visible = fuse(graph, ids, frame);
+    const VisibleBlocks visible = fuse(graph, ids, frame, pictures);
     VoxelMap::keep(graph, ids);
     PendingCounts& pending = pending_counts_.emplace_back(
         PendingCounts{graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}, {}, {}});
@@ -237,13 +271,17 @@ void Reconstruction::fuse_posed(const RgbdFrame& frame) {
         pending.observed_blocks = graph.read_back(observed.block_counters);
         pending.observed_records = graph.read_back(observed.record_counters);
     }
-    runner_.submit(std::move(graph));
     world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
-    take_counts();
+}
+
+void Reconstruction::wait() {
+    fuse_waiting();
+    runner_.wait();
 }
 
 PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    fuse_waiting();
     graph::Frame graph = runner_.begin();
     const VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, make_camera(camera, world_from_camera),
@@ -271,6 +309,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
 
 Mesh Reconstruction::extract_surface() {
     if (frames_ == 0) return {};
+    fuse_waiting();
     return patina::extract_surface(runner_, map_);
 }
 

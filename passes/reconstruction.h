@@ -119,9 +119,11 @@ class Reconstruction {
     /// Throws Error for settings that cannot be met, or lack of memory.
     Reconstruction(vulkan::Device& device, const ReconstructionSettings& settings);
 
-    /// Fuses a frame. The first one places the volume around its camera. With tracking its pose is found first, which
-    /// waits for the device. Returns whether the frame was fused: without tracking all are, with it those that track.
-    /// Throws Error when a picture is not its camera's size, or the device was lost.
+    /// Fuses a frame. The first one places the volume around its camera. With tracking its pose is found first: one
+    /// graph fuses the frame before, casts the model and searches, and its end is waited for; the frame itself, whose
+    /// pictures stay on the device, is fused by the next one's graph, or as soon as anything is asked of the model.
+    /// Returns whether the frame is fused: without tracking all are, with it those that track. Throws Error when a
+    /// picture is not its camera's size, or the device was lost.
     bool add(const RgbdFrame& frame);
 
     /// Fuses a frame at its given pose although others are tracked; tracking goes on from there.
@@ -143,8 +145,8 @@ class Reconstruction {
     /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
-    /// Waits for the device.
-    void wait() { runner_.wait(); }
+    /// Fuses what waits to be, and waits for the device.
+    void wait();
 
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
@@ -183,7 +185,7 @@ class Reconstruction {
     void relight(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
 
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
-    /// any time.
+    /// any time, with tracking after wait().
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
 
     /// The colour gains of the frames so far (ColorCorrection::gains); empty where the settings estimate none.
@@ -191,15 +193,18 @@ class Reconstruction {
         return color_correction_ ? std::span(color_correction_->gains()) : std::span<const gpu::ColorGains>();
     }
 
-    uint32_t frames() const { return frames_; }
+    uint32_t frames() const { return frames_ + (waiting_ ? 1 : 0); }
     const ReconstructionSettings& settings() const { return settings_; }
     const VoxelMap& map() const { return map_; }
     graph::Runner& runner() { return runner_; }
 
   private:
+    TrackingReport start_tracking(const RgbdFrame& frame);
     TrackingReport track(const RgbdFrame& frame);
-    TrackingReport first_report(const RgbdFrame& frame) const;
-    TrackingReport search(const RgbdFrame& frame, const RigidTransform& start);
+    TrackingReport best_search(const RgbdFrame& frame);
+    TrackingReport search(graph::Frame graph, const InputPictures& pictures, const RgbdFrame& frame,
+                          const RigidTransform& start);
+    TrackingReport search_again(const RgbdFrame& frame, const RigidTransform& start);
     std::optional<TrackingReport> relocalised(const RgbdFrame& frame);
     std::vector<RigidTransform> candidates(const RgbdFrame& frame);
     TrackingReport search_from(const RgbdFrame& frame, const RigidTransform& start);
@@ -207,8 +212,12 @@ class Reconstruction {
     void keep_reference(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                         const RaycastImages& model, const Intrinsics& camera, const RigidTransform& world_from_depth);
     float far_m() const;
+    void start_map(const RgbdFrame& frame);
     void fuse_posed(const RgbdFrame& frame);
-    VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame);
+    void fuse_waiting();
+    void fuse_waiting(graph::Frame& graph);
+    void fuse(graph::Frame& graph, const RgbdFrame& frame, const InputPictures& pictures);
+    VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame, const InputPictures& pictures);
     RaycastImages sharpened(graph::Frame& graph, const RaycastImages& model, const Intrinsics& camera) const;
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                            const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
@@ -227,6 +236,11 @@ class Reconstruction {
     std::optional<TrackingModel> tracking_;
     std::optional<KeyframeModel> keyframes_;
     Relocaliser relocaliser_;
+    struct Waiting {
+        RgbdFrame frame;  ///< with its pose; its pictures are in tracking_->pictures()
+        std::vector<uint16_t> labels;
+    };
+    std::optional<Waiting> waiting_;                         ///< to be fused
     uint32_t weak_frames_ = 0;                               ///< the last ones
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;

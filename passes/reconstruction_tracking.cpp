@@ -24,7 +24,7 @@ size_t readings_of(const DepthInput& depth) {
 
 }  // namespace
 
-TrackingReport Reconstruction::first_report(const RgbdFrame& frame) const {
+TrackingReport Reconstruction::start_tracking(const RgbdFrame& frame) {
     const size_t readings = readings_of(frame.depth), least = tracking_->settings().bounds.least_pairs;
     TrackingReport report;
     report.world_from_depth = frame.world_from_depth;
@@ -33,37 +33,48 @@ TrackingReport Reconstruction::first_report(const RgbdFrame& frame) const {
     } else {
         report.reason = text("the first frame has ", readings, " readings, fewer than ", least);
     }
+    tracking_->accept(report, frame.time, true);
     return report;
 }
 
-TrackingReport Reconstruction::search(const RgbdFrame& frame, const RigidTransform& start) {
-    graph::Frame graph = runner_.begin();
-    const InputImages input =
-        add_input(graph, frame.depth, frame.color, make_camera(frame.depth.camera, start), settings_.input);
+TrackingReport Reconstruction::search(graph::Frame graph, const InputPictures& pictures, const RgbdFrame& frame,
+                                      const RigidTransform& start) {
     const bool shaded = settings_.fusion.color && tracking_->settings().photometric;
-    const TrackColor color{input.color, frame.color.camera, frame.color_from_depth};
+    const TrackColor color{pictures.color, frame.color.camera, frame.color_from_depth};
     const auto pyramid =
-        tracking_->add_pyramid(graph, input.depth_m, frame.depth.camera, shaded ? std::optional(color) : std::nullopt,
-                               settings_.fusion.max_depth_m);
+        tracking_->add_pyramid(graph, pictures.depth_m, frame.depth.camera,
+                               shaded ? std::optional(color) : std::nullopt, settings_.fusion.max_depth_m);
     const TrackingModel::Search search = tracking_->add_search(graph, pyramid, start);
     runner_.submit(std::move(graph));
     runner_.wait();
     return tracking_->report_of(search);
 }
 
+/// From one more start, with the pictures of the frame's first search.
+TrackingReport Reconstruction::search_again(const RgbdFrame& frame, const RigidTransform& start) {
+    graph::Frame graph = runner_.begin();
+    const InputPictures pictures = tracking_->pictures().import(graph);
+    return search(std::move(graph), pictures, frame, start);
+}
+
+/// From where the motion so far leads to; the frame before is fused in the first search's graph.
+TrackingReport Reconstruction::best_search(const RgbdFrame& frame) {
+    const std::vector<RigidTransform> starts = tracking_->expected(frame.time);
+    graph::Frame graph = runner_.begin();
+    if (waiting_) fuse_waiting(graph);
+    const InputPictures pictures = tracking_->pictures().add(graph, frame.depth, frame.color);
+    TrackingReport best = search(std::move(graph), pictures, frame, starts.front());
+    take_counts();
+    for (size_t i = 1; i < starts.size() && best.state == TrackingState::kLost; ++i) {
+        const TrackingReport report = search_again(frame, starts[i]);
+        if (report.state < best.state) best = report;
+    }
+    return best;
+}
+
 TrackingReport Reconstruction::track(const RgbdFrame& frame) {
-    if (!tracking_->has_reference()) {
-        const TrackingReport report = first_report(frame);
-        tracking_->accept(report, frame.time, true);
-        return report;
-    }
-    TrackingReport best;
+    TrackingReport best = best_search(frame);
     bool jumped = false;
-    for (const RigidTransform& start : tracking_->expected(frame.time)) {
-        const TrackingReport report = search(frame, start);
-        if (best.reason.empty() || report.state < best.state) best = report;
-        if (best.state != TrackingState::kLost) break;
-    }
     weak_frames_ = best.state == TrackingState::kWeak ? weak_frames_ + 1 : 0;
     if (best.state == TrackingState::kLost || (weak_frames_ > 0 && weak_frames_ % kWeakFrames == 0)) {
         if (const auto found = relocalised(frame)) {
@@ -82,9 +93,8 @@ std::vector<RigidTransform> Reconstruction::candidates(const RgbdFrame& frame) {
     std::vector<RigidTransform> poses;
     if (!keyframes_ || frames_ == 0) return poses;
     graph::Frame graph = runner_.begin();
-    const InputImages input = add_input(graph, frame.depth, frame.color,
-                                        make_camera(frame.depth.camera, RigidTransform(1.0)), settings_.input);
-    const graph::Readback lookup = keyframes_->add_lookup(graph, input.depth_m, input.color);
+    const InputPictures pictures = tracking_->pictures().import(graph);
+    const graph::Readback lookup = keyframes_->add_lookup(graph, pictures.depth_m, pictures.color);
     runner_.submit(std::move(graph));
     runner_.wait();
     for (const KeyframePose& pose : KeyframeModel::candidates_of(lookup)) poses.push_back(pose.world_from_depth);
@@ -93,7 +103,7 @@ std::vector<RigidTransform> Reconstruction::candidates(const RgbdFrame& frame) {
 
 TrackingReport Reconstruction::search_from(const RgbdFrame& frame, const RigidTransform& start) {
     cast_reference(frame.depth.camera, start);
-    return search(frame, start);
+    return search_again(frame, start);
 }
 
 std::optional<TrackingReport> Reconstruction::relocalised(const RgbdFrame& frame) {
@@ -112,6 +122,7 @@ std::optional<TrackingReport> Reconstruction::relocalised(const RgbdFrame& frame
 
 void Reconstruction::add_posed(const RgbdFrame& frame) {
     check(frame);
+    fuse_waiting();
     if (tracking_) {
         TrackingReport report;
         report.state = TrackingState::kTracking;
@@ -123,6 +134,7 @@ void Reconstruction::add_posed(const RgbdFrame& frame) {
 
 gpu::KeyframeCounters Reconstruction::keyframe_counters() {
     if (!keyframes_ || frames_ == 0) return {};
+    fuse_waiting();
     graph::Frame graph = runner_.begin();
     const graph::Readback read = keyframes_->read_counters(graph);
     runner_.submit(std::move(graph));

@@ -42,7 +42,7 @@ gpu::TrackState initial_state(const RigidTransform& reference_from_frame, float 
 }  // namespace
 
 TrackingModel::TrackingModel(vulkan::Device& device, const TrackingSettings& settings)
-    : device_(device), settings_(checked(settings)), motion_(settings.damping) {}
+    : device_(device), settings_(checked(settings)), pictures_(device), motion_(settings.damping) {}
 
 void TrackingModel::make_reference(const Intrinsics& camera) {
     Intrinsics level = first_level() > 0 ? halved(camera) : camera;
@@ -138,7 +138,7 @@ std::vector<VoxelMap::PoolBytes> TrackingModel::memory() const {
     uint64_t bytes = 0;
     for (const ReferenceLevel& level : reference_)
         bytes += level.camera.extent.area() * bytes_per_pixel(vulkan::Format::kRgba32u);
-    return {{"tracking reference", bytes}};
+    return {{"tracking reference", bytes}, {"tracked frame", pictures_.bytes()}};
 }
 
 }  // namespace patina

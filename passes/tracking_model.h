@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "passes/input/kept_input.h"
 #include "passes/model/map_access.h"
 #include "passes/model/voxel_map.h"
 #include "passes/tracking/judge_motion.h"
@@ -28,8 +29,8 @@ struct TrackingSettings {
 
 /// Finds the pose of each frame by comparing it with the model as it was cast into a reference camera, the last frame's
 /// pose (frame-to-model tracking, Newcombe et al. 2011; the photometric term after Kerl, Sturm and Cremers 2013).
-/// Lives as long as the map. Holds two things between frames: the reference, on the device, and the motion so far, on
-/// the host.
+/// Lives as long as the map. Holds three things between frames: on the device the reference and the pictures of the
+/// frame that was searched for last, on the host the motion so far.
 class TrackingModel {
   public:
     /// Throws Error for settings that cannot be met.
@@ -61,6 +62,9 @@ class TrackingModel {
     /// Takes over what was found of a frame. `jumped`: it was found elsewhere than the motion so far led to.
     void accept(const TrackingReport& report, const FrameTime& time, bool jumped);
 
+    /// The frame's pictures, which its searches share, and its fusion once its pose is known.
+    KeptInput& pictures() { return pictures_; }
+
     /// Where the camera may be when a frame was taken, the likeliest first. Needs a reference.
     std::vector<RigidTransform> expected(const FrameTime& time) const { return motion_.expected(time); }
 
@@ -78,6 +82,7 @@ class TrackingModel {
 
     vulkan::Device& device_;
     TrackingSettings settings_;
+    KeptInput pictures_;
     struct ReferenceLevel {
         vulkan::ImageRef pixels;  ///< rgba32ui
         Intrinsics camera;

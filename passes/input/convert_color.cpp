@@ -6,7 +6,7 @@
 
 namespace patina {
 
-graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input) {
+graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input, std::optional<graph::ImageId> target) {
     constexpr const char* kPass = "input.convert_color";
     const bool linear = std::holds_alternative<std::span<const glm::vec3>>(input.pixels);
     const Extent2D extent = input.camera.extent;
@@ -16,7 +16,8 @@ graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input) {
 
     auto pass = frame.compute(kPass, spirv::convert_color);
     pass.read("Source", source).specialise("kLinear", linear).specialise("kDistorted", input.camera.distorted());
-    const graph::ImageId color = pass.create("color", {extent, vulkan::Format::kRgba16f});
+    const graph::ImageId color =
+        target ? pass.write("color", *target) : pass.create("color", {extent, vulkan::Format::kRgba16f});
     pass.push(gpu::ConvertColorParams{lens});
     pass.dispatch_covering(extent);
     return color;

@@ -32,7 +32,7 @@ void check_scale(const DepthInput& input) {
 
 }  // namespace
 
-graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input) {
+graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input, std::optional<graph::ImageId> target) {
     check_scale(input);
     const bool metres = std::holds_alternative<std::span<const float>>(input.pixels);
     const Extent2D extent = input.camera.extent;
@@ -42,7 +42,8 @@ graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input) {
 
     auto pass = frame.compute(kPass, spirv::convert_depth);
     pass.read("Source", source).specialise("kMetres", metres).specialise("kDistorted", input.camera.distorted());
-    const graph::ImageId depth_m = pass.create("depth_m", {extent, vulkan::Format::kR32f});
+    const graph::ImageId depth_m =
+        target ? pass.write("depth_m", *target) : pass.create("depth_m", {extent, vulkan::Format::kR32f});
     pass.push(gpu::ConvertDepthParams{lens, static_cast<float>(input.metres_per_unit), max_code(input, metres), 0, 0});
     pass.dispatch_covering(extent);
     return depth_m;

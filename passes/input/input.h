@@ -2,6 +2,7 @@
 
 #include "engine/graph/frame.h"
 #include "passes/input/filter_depth.h"
+#include "passes/input/kept_input.h"
 #include "passes/input/picture.h"
 #include "passes/input/unproject_depth.h"
 #include "shared/camera.h"
@@ -21,6 +22,11 @@ struct InputImages {
     UnprojectedDepth surface;         ///< of the smoothed depth (add_unproject_depth)
     graph::ImageId color;             ///< rgba16f, linear radiance (add_convert_color)
 };
+
+/// Prepares what was converted; passes whose images nobody uses are culled. `depth_camera` is the pinhole camera of
+/// `depth_m` at its pose.
+InputImages add_input(graph::Frame& frame, const InputPictures& pictures, const gpu::Camera& depth_camera,
+                      const InputSettings& settings = {});
 
 /// Uploads one frame and prepares it; passes whose images nobody uses are culled. `depth_camera` is the pinhole part of
 /// `depth.camera` at its pose.

@@ -196,6 +196,56 @@ TEST_F(TrackingTest, TheSameFramesGiveTheSameBytes) {
     EXPECT_EQ(run(), run());
 }
 
+TEST_F(TrackingTest, ATrackedFrameIsOneSubmission) {
+    Reconstruction reconstruction(device(), settings());
+    const auto submissions = [&] { return reconstruction.runner().host_timing().samples_ms.size(); };
+    const auto conversions = [&] {
+        size_t count = 0;
+        for (const graph::Timing& pass : reconstruction.runner().pass_timings()) {
+            if (pass.name == "input.convert_depth" || pass.name == "input.convert_color")
+                count += pass.samples_ms.size();
+        }
+        return count;
+    };
+    ASSERT_TRUE(add(reconstruction, 0));
+    const size_t before = submissions();
+    for (int frame = 1; frame < 6; ++frame) ASSERT_TRUE(add(reconstruction, frame));
+    EXPECT_EQ(submissions() - before, 5u);
+    EXPECT_EQ(reconstruction.frames(), 6u) << "the last one waits to be fused, and counts";
+    reconstruction.wait();
+    EXPECT_EQ(submissions() - before, 6u) << "which fuses it";
+    EXPECT_EQ(conversions(), 2 * 6u) << "each picture once";
+    EXPECT_EQ(reconstruction.frames(), 6u);
+    reconstruction.wait();
+    EXPECT_EQ(submissions() - before, 6u) << "nothing waits any more";
+}
+
+TEST_F(TrackingTest, WhatWaitsIsFusedBeforeTheModelIsLookedAt) {
+    const auto seen_after_three = [&](bool given) {
+        Reconstruction tracked(device(), settings()), posed(device(), settings());
+        for (int frame = 0; frame < 3; ++frame) {
+            // A caller's pictures are its own again after add().
+            Shot shot = shoot(room(), pose_at(frame));
+            EXPECT_TRUE(add(tracked, shot, frame, pose_at(0)));
+            RgbdFrame rgbd;
+            rgbd.depth.pixels = std::span(shot.depth_m.pixels());
+            rgbd.color.pixels = std::span(shot.color.pixels());
+            rgbd.depth.camera = rgbd.color.camera = camera_;
+            rgbd.world_from_depth = tracked.tracking_report()->world_from_depth;
+            posed.add_posed(rgbd);
+            std::ranges::fill(shot.depth_m.pixels(), 9.0f);
+        }
+        Reconstruction& shown = given ? posed : tracked;
+        const PendingView view = shown.view(camera_, pose_at(1));
+        shown.wait();
+        const Image<glm::vec4> positions = view.get().position_m;
+        return std::vector(positions.pixels().begin(), positions.pixels().end());
+    };
+    const std::vector<glm::vec4> tracked = seen_after_three(false);
+    EXPECT_GT(std::ranges::count_if(tracked, [](glm::vec4 p) { return p.w > 0; }), 10000);
+    EXPECT_EQ(tracked, seen_after_three(true));
+}
+
 TEST_F(TrackingTest, SettingsOutOfRangeAreNamed) {
     ReconstructionSettings wrong = settings();
     wrong.tracking->finest = 3;
