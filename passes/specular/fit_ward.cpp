@@ -40,7 +40,7 @@ void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const Segmen
     weigh.read("Records", records.records).read("Visibility", records.visibility).read("Fits", fits.fits);
     weigh.read("Directions", records.directions).read("Colors", records.colors);
     weigh.specialise("kVoxelChunks", inputs.map.chunks());
-    const graph::BufferId weights = weigh.create("Weights", voxel_count * gpu::kMaxObservations * sizeof(float));
+    const graph::BufferId weights = weigh.create("Weights", voxel_count * gpu::kMaxObservations * sizeof(uint32_t));
     weigh.dispatch_indirect(arguments, sizeof(glm::uvec4));
 
     auto sum = frame.compute("specular.sum_lobes", spirv::sum_lobes);

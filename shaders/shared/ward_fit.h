@@ -17,7 +17,7 @@ INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that ch
 
 // For one alpha, sums over observations without the mean of their voxel, weighted.
 struct FitSums {
-    vec4 lobe2;    // rgb: the square of what ks multiplies, by channel; w: the largest lobe, no sum, 1 at its peak
+    vec4 lobe2;    // rgb: the square of what ks multiplies, by channel; w: voxels seen near its peak
     vec4 product;  // rgb: that times the colour
 };
 

@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment of a batch, one invocation per alpha: adds the frame's sums to those of the frames before;
-// ks follows for each alpha, and the alpha of least cost is taken. What observations do not tell comes from a prior,
-// the network's estimate where there is one.
+// ks follows for each alpha. What observations do not tell comes from a prior, the network's estimate where there is
+// one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model averaging):
+// an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
 #include "lib/fit_alphas.glsl"
 #include "lib/set_material.glsl"
 #include "shared/specular_estimates.h"
@@ -21,13 +22,17 @@ layout(push_constant) uniform Push { FitParams params; };
 const float kLeastDeviation = 0.1;  // of observations, for the prior's weight
 // Observations of one voxel, and voxels beside each other, err together: so many count as one.
 const float kCorrelated = 50.0;
-const float kKsDeviation = 0.15;    // of ks from 0, where no network has said anything
-const float kAlphaDeviation = 2.0;  // octaves, of alpha from kAlphaBefore
+// Where no network has said anything: what polished dielectrics reflect; 67 measured materials (MERL, as fitted by
+// Ngan, Durand and Matusik 2005) have 0.033 in the mean.
+const float kKsBefore = 0.04;
+const float kKsDeviation = 0.15;
+const float kAlphaDeviation = 1.3;  // octaves, of alpha from kAlphaBefore
 const float kAlphaBefore = 0.2;
 const float kNetworkKsDeviation = 0.06;    // of ks from the network's
 const float kNetworkAlphaDeviation = 0.7;  // octaves
 const float kDullKs = 0.01;                // whose roughness does not matter
-const float kSeenLobe = 0.5;               // a view this near to the peak tells it; from flanks alone it is a guess
+const float kIgnoredVoxels = 2.0;          // seen near the peak: so few may be there for wrong normals,
+const float kSeenVoxels = 6.0;             // and with so many all are believed
 const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known half
 
 struct Prior {
@@ -37,61 +42,77 @@ struct Prior {
     float alpha_weight;
 };
 
-shared vec4 ks_cost[kFitAlphas];
-shared float known[kFitAlphas];  // the share of ks that observations tell
+shared vec4 ks_misfit[kFitAlphas];  // the weighted sum of squared errors
+shared float score[kFitAlphas];     // likelihood and prior: -2 log of it, in units of the misfit
+shared float known[kFitAlphas];     // the share of ks that observations tell
 
-Prior prior_of(uint label, float deviation) {
-    const float unit = kCorrelated * deviation * deviation;
+Prior prior_of(uint label, float unit) {
     const WardMaterial said = network[label];
     const bool any_said = said.kd_weight.w > 0.0;
     const float ks = any_said ? kNetworkKsDeviation : kKsDeviation;
     const float alpha = any_said ? kNetworkAlphaDeviation : kAlphaDeviation;
-    return Prior(any_said ? said.ks_alpha.rgb : vec3(0.0), any_said ? said.ks_alpha.w : kAlphaBefore, unit / (ks * ks),
-                 unit / (alpha * alpha));
+    return Prior(any_said ? said.ks_alpha.rgb : vec3(kKsBefore), any_said ? said.ks_alpha.w : kAlphaBefore,
+                 unit / (ks * ks), unit / (alpha * alpha));
 }
 
-void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior) {
+// `unit`: of the misfit, what is as unlikely as one deviation of one independent observation.
+void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior, float unit) {
     const float alpha = fit_alpha(float(a)), scale = lobe_scale(alpha);
-    const vec3 lobe2 = scale * scale * sum.lobe2.rgb, product = scale * sum.product.rgb;
-    const vec3 ks = max((product + prior.ks_weight * prior.ks) / (lobe2 + prior.ks_weight), 0.0);
-    const vec3 off = ks - prior.ks;
+    const float seen = clamp((sum.lobe2.w - kIgnoredVoxels) / (kSeenVoxels - kIgnoredVoxels), 0.0, 1.0);
+    const vec3 lobe2 = seen * scale * scale * sum.lobe2.rgb, product = seen * scale * sum.product.rgb;
+    const vec3 stiffness = lobe2 + prior.ks_weight;
+    const vec3 ks = max((product + prior.ks_weight * prior.ks) / stiffness, 0.0);
+    const vec3 off = ks - prior.ks, misfit = color2 - 2.0 * ks * product + ks * ks * lobe2;
     const float octaves = log2(alpha / prior.alpha);
-    const vec3 cost = color2 - 2.0 * ks * product + ks * ks * lobe2 + prior.ks_weight * off * off;
-    ks_cost[a] = vec4(ks, dot(cost, vec3(1.0)) + prior.alpha_weight * octaves * octaves);
-    known[a] = dot(lobe2 / (lobe2 + prior.ks_weight), vec3(1.0 / 3.0)) * min(sum.lobe2.w / kSeenLobe, 1.0);
+    ks_misfit[a] = vec4(ks, dot(misfit, vec3(1.0)));
+    // Over all ks, the likelihood's integral: the better an alpha would show ks, the less of it is left.
+    const float narrowed = dot(log(stiffness / prior.ks_weight), vec3(1.0));
+    score[a] = ks_misfit[a].w + dot(prior.ks_weight * off * off, vec3(1.0)) + prior.alpha_weight * octaves * octaves +
+               unit * narrowed;
+    known[a] = dot(lobe2 / stiffness, vec3(1.0 / 3.0));
 }
 
-uint least_cost() {
+uint best_alpha() {
     uint best = 0u;
-    for (uint a = 1u; a < kFitAlphas; ++a) best = ks_cost[a].w < ks_cost[best].w ? a : best;
+    for (uint a = 1u; a < kFitAlphas; ++a) best = score[a] < score[best] ? a : best;
     return best;
 }
 
 // ks and alpha at the minimum of the parabola through the best alpha and its neighbours.
 vec4 refined(uint best) {
-    if (best == 0u || best == kFitAlphas - 1u) return vec4(ks_cost[best].rgb, fit_alpha(float(best)));
-    const vec4 before = ks_cost[best - 1u], at = ks_cost[best], after = ks_cost[best + 1u];
-    const float bend = before.w - 2.0 * at.w + after.w;
-    const float t = bend > 0.0 ? clamp(0.5 * (before.w - after.w) / bend, -0.5, 0.5) : 0.0;
-    const vec3 ks = at.rgb + 0.5 * t * (after.rgb - before.rgb) + 0.5 * t * t * (before.rgb - 2.0 * at.rgb + after.rgb);
+    if (best == 0u || best == kFitAlphas - 1u) return vec4(ks_misfit[best].rgb, fit_alpha(float(best)));
+    const float bend = score[best - 1u] - 2.0 * score[best] + score[best + 1u];
+    const float t = bend > 0.0 ? clamp(0.5 * (score[best - 1u] - score[best + 1u]) / bend, -0.5, 0.5) : 0.0;
+    const vec3 before = ks_misfit[best - 1u].rgb, at = ks_misfit[best].rgb, after = ks_misfit[best + 1u].rgb;
+    const vec3 ks = at + 0.5 * t * (after - before) + 0.5 * t * t * (before - 2.0 * at + after);
     return vec4(max(ks, 0.0), fit_alpha(float(best) + t));
 }
 
-// How much of ks the observations tell, over all alphas that they allow; and of alpha, where there is a highlight.
-float confidence(uint best, float deviation, vec3 ks) {
-    const float unit = 0.5 / (kCorrelated * deviation * deviation);
+struct Estimate {
+    vec4 ks_alpha;
+    float confidence;
+};
+
+// The mean over all alphas; where one step of the grid holds them all, the minimum between its steps. The confidence:
+// how much of ks the observations tell, and of alpha, where there is a highlight.
+Estimate averaged(uint best, float unit) {
+    vec3 ks = vec3(0.0);
     float sum = 0.0, share = 0.0, place = 0.0, place2 = 0.0;
     for (uint a = 0u; a < kFitAlphas; ++a) {
-        const float likely = exp(max((ks_cost[best].w - ks_cost[a].w) * unit, -60.0));
-        const float at = (float(a) - float(best)) / float(kFitAlphaSteps);
+        const float likely = exp(max(0.5 * (score[best] - score[a]) / unit, -60.0));
+        const float at = float(a) - float(best);
         sum += likely;
+        ks += likely * ks_misfit[a].rgb;
         share += likely * known[a];
         place += likely * at;
         place2 += likely * at * at;
     }
-    const float variance = max(place2 / sum - place * place / (sum * sum), 0.0);
-    const bool dull = max(max(ks.r, ks.g), ks.b) < kDullKs;
-    return share / sum * (dull ? 1.0 : 1.0 / (1.0 + variance / (kSharpAlpha * kSharpAlpha)));
+    const float step = place / sum, variance = max(place2 / sum - step * step, 0.0);
+    const vec4 mean = vec4(ks / sum, fit_alpha(float(best) + step));
+    const vec4 ks_alpha = mix(refined(best), mean, min(variance, 1.0));
+    const bool dull = max(max(ks_alpha.r, ks_alpha.g), ks_alpha.b) < kDullKs;
+    const float octaves2 = variance / float(kFitAlphaSteps * kFitAlphaSteps);
+    return Estimate(ks_alpha, share / sum * (dull ? 1.0 : 1.0 / (1.0 + octaves2 / (kSharpAlpha * kSharpAlpha))));
 }
 
 void main() {
@@ -102,7 +123,8 @@ void main() {
     const float kept = fit.estimates > 0u ? params.memory : 0.0;
     fit.color2_weight = totals[segment] + (kept > 0.0 ? kept * fit.color2_weight : vec4(0.0));
     const float deviation = max(fit.estimates > 0u ? fit.deviation : 1.0, kLeastDeviation);
-    const Prior prior = prior_of(label, deviation);
+    const float unit = kCorrelated * deviation * deviation;
+    const Prior prior = prior_of(label, unit);
     if (a < kFitAlphas) {
         FitSums sum = sums[segment * kFitAlphas + a];
         if (kept > 0.0) {
@@ -111,15 +133,16 @@ void main() {
             sum.product += kept * curves[label * kFitAlphas + a].product;
         }
         curves[label * kFitAlphas + a] = sum;
-        solve_alpha(a, sum, fit.color2_weight.rgb, prior);
+        solve_alpha(a, sum, fit.color2_weight.rgb, prior, unit);
     }
     barrier();
     // Without an observation only the prior is known; it may change before there is one.
     if (a != 0u) return;
-    const uint best = least_cost();
-    fit.ks_alpha = refined(best);
-    fit.confidence = confidence(best, deviation, fit.ks_alpha.rgb);
-    fit.deviation = sqrt(max(ks_cost[best].w, 0.0) / max(fit.color2_weight.w, 1.0));
+    const uint best = best_alpha();
+    const Estimate estimate = averaged(best, unit);
+    fit.ks_alpha = estimate.ks_alpha;
+    fit.confidence = estimate.confidence;
+    fit.deviation = sqrt(max(ks_misfit[best].w, 0.0) / max(fit.color2_weight.w, 1.0));
     fit.estimates = fit.color2_weight.w > 0.0 ? min(fit.estimates + 1u, 0xffffu) : 0u;
     fits[label] = fit;
     if (label < params.materials) materials[label] = changed_material(materials[label], fit.ks_alpha);

@@ -17,7 +17,7 @@ layout(std140, binding = 0) uniform Lights {
 layout(std430, binding = 1) readonly buffer Voxels { uint voxels[]; };
 layout(std430, binding = 2) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 3) readonly buffer Visibility { uvec2 visibility[]; };
-layout(std430, binding = 4) readonly buffer Weights { float weights[]; };
+layout(std430, binding = 4) readonly buffer Weights { uint weights[]; };  // lib/fit_weights.glsl
 layout(std430, binding = 5) readonly buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
 layout(std430, binding = 10) readonly buffer Colors { uvec4 quads[]; }
@@ -26,6 +26,7 @@ layout(std430, binding = 15) writeonly buffer Sums { FitSums sums[]; };   // by 
 layout(std430, binding = 16) writeonly buffer Totals { vec4 totals[]; };  // by segment: rgb colours, w weights
 layout(push_constant) uniform Push { FitParams params; };
 #include "lib/fit_lights.glsl"
+#include "lib/fit_weights.glsl"
 #include "lib/record_colors.glsl"
 #include "lib/record_directions.glsl"
 
@@ -33,11 +34,14 @@ const uint kAlphas = kFitAlphasPerGroup;
 const uint kSumRows = 6u * kAlphas + 4u;
 const uint kRows = kSumRows + kAlphas;
 
+const float kSeenLobe = 0.5;  // a view this near to the peak tells it; from flanks alone it is a guess
+
 shared float partial[kRows][kFitGroup + 1u];
 
 vec3 lobe2[kAlphas];
 vec3 product[kAlphas];
-float peak[kAlphas];  // the largest lobe, 1 for a view at a mirrored light
+float seen[kAlphas];  // voxels of which a view came near a mirrored light
+float peak[kAlphas];  // the largest lobe of a voxel, 1 for a view at a mirrored light
 vec4 total;           // rgb: squared colours; w: how many, by channel
 
 // exp(-tan^2 / alpha^2) for each alpha, the largest first. The square of alpha halves within half a block.
@@ -62,28 +66,30 @@ void add_voxel(uint segment, uint slot, uint record, float inverse_most2) {
 
     vec3 weight_sum = vec3(1e-20), color_sum = vec3(0.0);
     for (uint quad = 0u; quad < kRecordQuads; ++quad) {
-        const uvec4 words = load_directions(params.records.chunk_shift, record, quad);
         const uvec4 color_words = load_colors(params.records.chunk_shift, record, quad);
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint k = min(4u * quad + i, kMaxObservations - 1u);
-            const float weight = 4u * quad + i < kMaxObservations ? weights[first + k * kSegmentSamples] : 0.0;
-            const vec3 channels = weight * vec3(not(observation_clipped(words[i])));
+            const uint weight = 4u * quad + i < kMaxObservations ? weights[first + k * kSegmentSamples] : 0u;
+            const vec3 channels = fit_channel_weights(weight);
             weight_sum += channels;
-            color_sum += channels * (weight > 0.0 ? unpack_shared_exponent(color_words[i]) : vec3(0.0));
+            color_sum += channels * (weight != 0u ? unpack_shared_exponent(color_words[i]) : vec3(0.0));
         }
     }
     const vec3 mean = color_sum / weight_sum;
 
     vec3 sum[kAlphas], sum2[kAlphas], sum_color[kAlphas];
-    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) sum[a] = sum2[a] = sum_color[a] = vec3(0.0);
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
+        sum[a] = sum2[a] = sum_color[a] = vec3(0.0);
+        peak[a] = 0.0;
+    }
     for (uint k = 0u; k < kMaxObservations; ++k) {
-        const float weight = weights[first + k * kSegmentSamples];
-        if (weight <= 0.0) continue;
+        const uint weight = weights[first + k * kSegmentSamples];
+        if (weight == 0u) continue;
         const uint word = load_direction(params.records.chunk_shift, record, k);
         const vec3 off = unpack_shared_exponent(load_color(params.records.chunk_shift, record, k)) - mean;
         const vec3 to_viewer = observation_direction(word);
         const float cosine = max(dot(to_viewer, normal), kFitLeastCosine);
-        const vec3 channels = weight * vec3(not(observation_clipped(word)));
+        const vec3 channels = fit_channel_weights(weight);
         vec3 lobes[kAlphas];
         [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobes[a] = vec3(0.0);
         const float bend = inversesqrt(cosine);
@@ -102,6 +108,7 @@ void add_voxel(uint segment, uint slot, uint record, float inverse_most2) {
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         lobe2[a] += max(sum2[a] - sum[a] * sum[a] / weight_sum, 0.0);
         product[a] += sum_color[a];
+        seen[a] += min(peak[a] * (1.0 / kSeenLobe), 1.0);
     }
 }
 
@@ -111,7 +118,7 @@ void main() {
     total = vec4(0.0);
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         lobe2[a] = product[a] = vec3(0.0);
-        peak[a] = 0.0;
+        seen[a] = 0.0;
     }
     for (uint slot = lane; slot < kSegmentSamples; slot += kFitGroup) {
         const uint record = voxels[segment * kSegmentSamples + slot];
@@ -122,16 +129,13 @@ void main() {
             partial[6u * a + c][lane] = lobe2[a][c];
             partial[6u * a + 3u + c][lane] = product[a][c];
         }
-        partial[kSumRows + a][lane] = peak[a];
+        partial[kSumRows + a][lane] = seen[a];
     }
     [[unroll]] for (uint c = 0u; c < 4u; ++c) partial[6u * kAlphas + c][lane] = total[c];
     barrier();
     if (lane < kRows) {
         float sum = 0.0;
-        for (uint i = 0u; i < kFitGroup; ++i) {
-            const float more = partial[lane][i];
-            sum = lane < kSumRows ? sum + more : max(sum, more);
-        }
+        for (uint i = 0u; i < kFitGroup; ++i) sum += partial[lane][i];
         partial[lane][0] = sum;
     }
     barrier();

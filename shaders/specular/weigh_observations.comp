@@ -1,8 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance.
-// What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure).
+// One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance,
+// and which of its channels. What is far off the segment's estimate so far, with the voxel's own diffuse part, counts
+// less (Geman and McClure). A clipped channel is at least as bright as it was recorded: it counts where that estimate
+// is darker, and says nothing where it is not. Left out altogether, only those of a sharp highlight's observations
+// would remain that missed its peak.
 #include "lib/fit_alphas.glsl"
 #include "lib/reflectance.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -22,29 +25,36 @@ layout(std430, binding = 6) readonly buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
 layout(std430, binding = 11) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
-layout(std430, binding = 16) writeonly buffer Weights { float weights[]; };  // by segment, observation and voxel
+layout(std430, binding = 16) writeonly buffer Weights {
+    uint weights[];
+};  // lib/fit_weights.glsl; by segment, observation and voxel
 layout(push_constant) uniform Push { FitParams params; };
 #include "lib/fit_lights.glsl"
+#include "lib/fit_weights.glsl"
 #include "lib/record_colors.glsl"
 #include "lib/record_directions.glsl"
 
 const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB's steps in dark tones
-const float kRelativeNoise = 0.05;  // and that of bright ones: normals, lights and colours are estimates
+const float kRelativeNoise = 0.05;  // and that of bright ones: lights and colours are estimates
+const float kHighlightError = 0.3;  // what of a predicted highlight may be wrong, as normals are estimates
 const float kRobustScale = 2.0;     // deviations at which a weight is a quarter
-const float kLeastDeviation = 0.3;  // where everything fits, weights would take what does not for noise
+const float kLeastDeviation = 1.0;  // where everything fits, ever more of a highlight would be taken for outliers
 // Of an estimate that tells outliers: to one without a highlight, the first view of it would be one.
 const float kTrustedConfidence = 0.5;
+const float kTrustedKs = 0.01;
 const uint kRobustSteps = 2u;
+const float kInfinite = 1e30;
 
 uint direction_word[kMaxObservations];
 vec3 direction_of[kMaxObservations];
 float viewer_cosine[kMaxObservations];
-vec3 highlight[kMaxObservations];
-vec3 rest[kMaxObservations];    // the colour without its highlight
-float trust[kMaxObservations];  // inverse variance; 0 where it does not count
+vec3 highlight[kMaxObservations];  // as predicted; at first without ks and what does not depend on the light
+vec3 rest[kMaxObservations];       // the colour without its highlight
+vec3 channels[kMaxObservations];   // 1: counts, 0: does not
+float trust[kMaxObservations];     // inverse variance; 0 where it does not count
 float robust[kMaxObservations];
 
-vec3 unclipped(uint k) { return vec3(not(observation_clipped(direction_word[k]))); }
+float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
 void unpack_directions(uint record, vec3 normal) {
     [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
@@ -71,37 +81,63 @@ void add_highlights(vec3 point_m, vec3 normal, uvec2 reached, float alpha, uint 
     }
 }
 
-void take_highlights(uint record, uint count, vec3 ks_scale) {
+void take_highlights(uint record, vec3 ks_scale) {
     [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
         const uvec4 words = load_colors(params.records.chunk_shift, record, quad);
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint k = 4u * quad + i;
             if (k >= kMaxObservations) continue;
-            const vec3 rgb = unpack_shared_exponent(words[i]);
-            const float noise = kNoise + kRelativeNoise * dot(rgb, vec3(1.0 / 3.0));
-            const bool counts = k < count && viewer_cosine[k] >= kFitLeastCosine;
-            trust[k] = counts ? 1.0 / (noise * noise) : 0.0;
-            robust[k] = 1.0;
-            rest[k] = rgb - highlight[k] * ks_scale * inversesqrt(max(viewer_cosine[k], kFitLeastCosine));
+            highlight[k] *= ks_scale * inversesqrt(max(viewer_cosine[k], kFitLeastCosine));
+            rest[k] = unpack_shared_exponent(words[i]) - highlight[k];
+            channels[k] = vec3(not(observation_clipped(direction_word[k])));
         }
     }
+}
+
+// One noise for all of a voxel's observations: were that of dark ones less, those that miss a highlight's peak, as
+// normals are estimates, would count for more than those that show it, and ks would come out too low.
+void set_trust(uint count) {
+    float brightness = 0.0, counted = 1e-20;
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        trust[k] = k < count && viewer_cosine[k] >= kFitLeastCosine ? 1.0 : 0.0;
+        robust[k] = 1.0;
+        brightness += trust[k] * mean_of(rest[k] + highlight[k]);
+        counted += trust[k];
+    }
+    const float noise = kNoise + kRelativeNoise * brightness / counted;
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        const float doubt = kHighlightError * mean_of(highlight[k]);
+        trust[k] /= noise * noise + doubt * doubt;
+    }
+}
+
+// Of what is left without highlights, by channel; what every observation clips is infinite.
+vec3 mean_rest() {
+    vec3 sum = vec3(0.0), weight_sum = vec3(0.0);
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        const vec3 weight = trust[k] * robust[k] * channels[k];
+        sum += weight * rest[k];
+        weight_sum += weight;
+    }
+    return mix(sum / max(weight_sum, 1e-20), vec3(kInfinite), equal(weight_sum, vec3(0.0)));
+}
+
+// Clipped channels that are brighter than the mean of the others and their own highlight make it.
+void take_clipped() {
+    const vec3 mean = mean_rest();
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) channels[k] =
+        max(channels[k], vec3(greaterThan(rest[k], mean)));
 }
 
 // Weights about the mean of the rest, with the deviation of the estimate so far.
 void reweight(float deviation) {
     const float inverse_scale2 = 1.0 / (kRobustScale * kRobustScale * deviation * deviation);
     for (uint step = 0u; step < kRobustSteps; ++step) {
-        vec3 sum = vec3(0.0), weight_sum = vec3(1e-20);
+        const vec3 mean = mean_rest();
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
-            const vec3 weight = trust[k] * robust[k] * unclipped(k);
-            sum += weight * rest[k];
-            weight_sum += weight;
-        }
-        const vec3 mean = sum / weight_sum;
-        [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
-            const vec3 off = (rest[k] - mean) * unclipped(k);
-            const float channels = max(dot(unclipped(k), vec3(1.0)), 1.0);
-            const float share = 1.0 / (1.0 + dot(off, off) * trust[k] * inverse_scale2 / channels);
+            const vec3 off = (rest[k] - mean) * channels[k];
+            const float counted = max(dot(channels[k], vec3(1.0)), 1.0);
+            const float share = 1.0 / (1.0 + dot(off, off) * trust[k] * inverse_scale2 / counted);
             robust[k] = share * share;
         }
     }
@@ -119,8 +155,12 @@ void main() {
     unpack_directions(record, normal);
     add_highlights(surface_point_m(known, params.records, params.edge_shift), normal, visibility[record], alpha,
                    estimated ? header.count : 0u);
-    take_highlights(record, observation_count(known), estimated ? fit.ks_alpha.rgb * lobe_scale(alpha) : vec3(0.0));
-    if (fit.confidence >= kTrustedConfidence) reweight(max(fit.deviation, kLeastDeviation));
+    take_highlights(record, estimated ? fit.ks_alpha.rgb * lobe_scale(alpha) : vec3(0.0));
+    set_trust(observation_count(known));
+    take_clipped();
+    const bool glossy = any(greaterThan(fit.ks_alpha.rgb, vec3(kTrustedKs)));
+    if (fit.confidence >= kTrustedConfidence && glossy) reweight(max(fit.deviation, kLeastDeviation));
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k)
-        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = trust[k] * robust[k];
+        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] =
+            pack_fit_weight(trust[k] * robust[k], bvec3(channels[k]));
 }

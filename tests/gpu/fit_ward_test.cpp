@@ -209,10 +209,10 @@ TEST_F(FitWardTest, AgreesWithTheReferenceOnNoise) {
     fill(records);
     // As the first estimate has it: deviations as expected, 50 observations as good as one.
     const double unit = 50;
-    const Ward want = reference_fit(records, {glm::dvec3(0), 0.2, unit / (0.15 * 0.15), unit / 4});
+    const Ward want = reference_fit(records, {glm::dvec3(0.04), 0.2, unit / (0.15 * 0.15), unit / (1.3 * 1.3), unit});
     const glm::vec4 got = fit({3})[3].ks_alpha;
-    EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - want.ks)), 5e-4);
-    EXPECT_NEAR(got.w, want.alpha, 5e-4);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - want.ks)), 2e-4);
+    EXPECT_NEAR(got.w, want.alpha, 2e-4);
     EXPECT_GT(max_of(want.ks), 0.05) << "a highlight was there to be found";
 }
 
@@ -234,11 +234,11 @@ TEST_F(FitWardTest, KeepsThePriorWhereNoObservationTells) {
     fill(records);
     set_network(2, {0.07f, 0.08f, 0.09f, 0.06f});
     const auto fits = fit({1, 2}, 3);
-    EXPECT_LT(max_of(glm::dvec3(fits[1].ks_alpha)), 0.01) << "without the network's word, none";
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(fits[1].ks_alpha) - 0.04)), 2e-3) << "without the network's word";
     EXPECT_LT(max_of(glm::abs(glm::dvec3(fits[2].ks_alpha) - glm::dvec3(0.07, 0.08, 0.09))), 1e-3);
     EXPECT_NEAR(fits[2].ks_alpha.w, 0.06f, 2e-3);
-    EXPECT_LT(fits[1].confidence, 0.8f);
-    EXPECT_LT(fits[2].confidence, 0.2f);
+    EXPECT_LT(fits[1].confidence, 0.1f);
+    EXPECT_LT(fits[2].confidence, 0.1f);
 }
 
 TEST_F(FitWardTest, TheNetworksWordGivesWayToObservations) {
@@ -256,7 +256,7 @@ TEST_F(FitWardTest, SegmentsWithoutVoxelsOrLightAreUnknown) {
     const auto fits = fit({1, 5, 1000});
     for (const uint32_t label : {1u, 5u}) {
         EXPECT_EQ(fits[label].estimates, 0u) << label;
-        EXPECT_EQ(max_of(glm::dvec3(fits[label].ks_alpha)), 0) << label;
+        EXPECT_LT(max_of(glm::abs(glm::dvec3(fits[label].ks_alpha) - 0.04)), 1e-6) << label << ": the prior";
         EXPECT_LT(fits[label].confidence, 0.01f) << label;
     }
 }
@@ -278,6 +278,49 @@ TEST_F(FitWardTest, ClippedChannelsAndWildObservationsChangeLittle) {
     const glm::vec4 got = fit({1}, 25)[1].ks_alpha;
     EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - truth.ks)), 0.01);
     EXPECT_NEAR(got.w, truth.alpha, 0.01);
+}
+
+TEST_F(FitWardTest, RoughNormalsAndClippedPeaksTellKs) {
+    // Normals are off by some degrees, as those of a volume, and peaks are clipped. Did dark observations count for
+    // more than bright ones, those that miss a highlight would say that it is weaker: ks would be 0.105.
+    const Ward truth{{}, glm::dvec3(0.15), 0.1};
+    std::vector<FilledRecord> records = sphere(1, truth);
+    std::normal_distribution<float> error(0, 0.03f);
+    for (FilledRecord& record : records) {
+        record.normal = glm::normalize(record.normal + glm::vec3(error(random_), error(random_), error(random_)));
+        for (FilledObservation& seen : record.observations) {
+            for (glm::length_t c = 0; c < 3; ++c) {
+                seen.clipped[static_cast<size_t>(c)] = seen.rgb[c] > 0.8f;
+                seen.rgb[c] = std::min(seen.rgb[c], 0.8f);
+            }
+        }
+    }
+    fill(records);
+    const glm::vec4 got = fit({1}, 25)[1].ks_alpha;
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - truth.ks)), 0.025);
+    EXPECT_NEAR(got.w, truth.alpha, 0.01);
+}
+
+TEST_F(FitWardTest, AFewWrongNormalsDoNotRuleAHighlightOut) {
+    // Seen from far off every mirrored light, but for two voxels, whose normals are wrong: they would show a peak, and
+    // do not.
+    std::vector<FilledRecord> records = sphere(1, {{}, glm::dvec3(0.2), 0.05});
+    for (size_t i = 0; i < records.size(); ++i) {
+        const auto shows_peak = [&](const FilledObservation& seen) {
+            return std::ranges::any_of(kLights, [&](const PointLight& light) {
+                const glm::vec3 to_light = glm::normalize(light.position_m - records[i].point_m);
+                return glm::dot(glm::normalize(to_light + seen.to_viewer), records[i].normal) > std::cos(0.7f);
+            });
+        };
+        std::erase_if(records[i].observations, shows_peak);
+        if (i > 1 || records[i].observations.empty()) continue;
+        const glm::vec3 to_light = glm::normalize(kLights[0].position_m - records[i].point_m);
+        records[i].normal = glm::normalize(to_light + records[i].observations.front().to_viewer);
+    }
+    fill(records);
+    const gpu::WardFit fitted = fit({1}, 3)[1];
+    EXPECT_GT(max_of(glm::dvec3(fitted.ks_alpha)), 0.02);
+    EXPECT_LT(fitted.confidence, 0.5f);
 }
 
 TEST_F(FitWardTest, TheOrderInWhichVoxelsAreKeptChangesNothing) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace patina::reference {
 
@@ -12,44 +13,73 @@ struct Line {
     double lobe2 = 0, product = 0, color2 = 0;
 };
 
-double variance(glm::dvec3 rgb) { return std::pow(0.004 + 0.05 * (rgb.r + rgb.g + rgb.b) / 3, 2); }
+constexpr double kLeast = 0.02, kMost = 0.6;
+
+bool is_flat(const FittedVoxel& voxel, const SeenColor& seen) {
+    return glm::dot(seen.to_viewer, voxel.point.normal) < 0.15;
+}
+
+/// What all of a voxel's observations weigh.
+double weight_of(const FittedVoxel& voxel) {
+    double brightness = 0, count = 0;
+    for (const SeenColor& seen : voxel.observations) {
+        if (is_flat(voxel, seen)) continue;
+        brightness += (seen.rgb.r + seen.rgb.g + seen.rgb.b) / 3;
+        ++count;
+    }
+    return count > 0 ? std::pow(0.004 + 0.05 * brightness / count, -2) : 0;
+}
+
+/// The mean of a channel's unclipped colours; infinite where there are none.
+double unclipped_mean(const FittedVoxel& voxel, int channel) {
+    double sum = 0, count = 0;
+    for (const SeenColor& seen : voxel.observations) {
+        if (seen.clipped[static_cast<size_t>(channel)] || is_flat(voxel, seen)) continue;
+        sum += seen.rgb[channel];
+        ++count;
+    }
+    return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
+}
 
 void add(Line& line, const FittedVoxel& voxel, double alpha, int channel) {
     const Ward gloss{glm::dvec3(0), glm::dvec3(1), alpha};
-    std::vector<double> weight, lobe, color;
-    double sum = 0, lobe_mean = 0, color_mean = 0;
+    const double least_clipped = unclipped_mean(voxel, channel), weight = weight_of(voxel);
+    std::vector<double> lobe, color;
+    double lobe_sum = 0, color_sum = 0;
     for (const SeenColor& seen : voxel.observations) {
-        if (seen.clipped[static_cast<size_t>(channel)] || glm::dot(seen.to_viewer, voxel.point.normal) < 0.15) continue;
-        weight.push_back(1 / variance(seen.rgb));
+        const bool tells = !seen.clipped[static_cast<size_t>(channel)] || seen.rgb[channel] > least_clipped;
+        if (!tells || is_flat(voxel, seen)) continue;
         lobe.push_back(shade(gloss, voxel.point, voxel.lights, glm::dvec3(0), seen.to_viewer)[channel]);
         color.push_back(seen.rgb[channel]);
-        sum += weight.back();
-        lobe_mean += weight.back() * lobe.back();
-        color_mean += weight.back() * color.back();
+        lobe_sum += lobe.back();
+        color_sum += color.back();
     }
-    for (size_t k = 0; k < weight.size(); ++k) {
-        const double l = lobe[k] - lobe_mean / sum, c = color[k] - color_mean / sum;
-        line.lobe2 += weight[k] * l * l;
-        line.product += weight[k] * l * c;
-        line.color2 += weight[k] * c * c;
+    const double count = static_cast<double>(lobe.size());
+    for (size_t k = 0; k < lobe.size(); ++k) {
+        const double l = lobe[k] - lobe_sum / count, c = color[k] - color_sum / count;
+        line.lobe2 += weight * l * l;
+        line.product += weight * l * c;
+        line.color2 += weight * c * c;
     }
 }
 
 struct Solution {
     glm::dvec3 ks{0};
-    double cost = 0;
+    double score = 0;  ///< -2 log of how likely the alpha is, times the prior's unit
 };
 
 Solution solve(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior, double alpha) {
     Solution best;
-    best.cost = prior.alpha_weight * std::pow(std::log2(alpha / prior.alpha), 2);
+    best.score = prior.alpha_weight * std::pow(std::log2(alpha / prior.alpha), 2);
     for (int c = 0; c < 3; ++c) {
         Line line;
         for (const FittedVoxel& voxel : voxels) add(line, voxel, alpha, c);
         const double bend = line.lobe2 + prior.ks_weight;
         if (bend > 0) best.ks[c] = std::max((line.product + prior.ks_weight * prior.ks[c]) / bend, 0.0);
-        best.cost += line.color2 - 2 * best.ks[c] * line.product + std::pow(best.ks[c], 2) * line.lobe2 +
-                     prior.ks_weight * std::pow(best.ks[c] - prior.ks[c], 2);
+        best.score += line.color2 - 2 * best.ks[c] * line.product + std::pow(best.ks[c], 2) * line.lobe2 +
+                      prior.ks_weight * std::pow(best.ks[c] - prior.ks[c], 2);
+        // The integral over ks of a normal distribution is as its width.
+        best.score += prior.unit * std::log(bend / prior.ks_weight);
     }
     return best;
 }
@@ -57,25 +87,22 @@ Solution solve(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prio
 }  // namespace
 
 Ward fit_ward(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior) {
-    constexpr double kFinest = 1e-5, kLeast = 0.02, kMost = 0.6;
-    const auto cost = [&](double log_alpha) { return solve(voxels, prior, std::exp(log_alpha)).cost; };
-    double at = std::log(kMost), step = std::log(1.1);
-    double least = cost(at);
-    for (double x = at; x > std::log(kLeast); x -= step) {
-        if (const double there = cost(x); there < least) {
-            least = there;
-            at = x;
-        }
+    // So fine that sums are integrals.
+    constexpr int kSteps = 500;
+    std::vector<Solution> all;
+    for (int i = 0; i <= kSteps; ++i)
+        all.push_back(solve(voxels, prior, kMost * std::pow(kLeast / kMost, static_cast<double>(i) / kSteps)));
+    const double least = std::ranges::min(all, {}, &Solution::score).score;
+    double sum = 0, place = 0;
+    glm::dvec3 ks(0);
+    for (int i = 0; i <= kSteps; ++i) {
+        const Solution& at = all[static_cast<size_t>(i)];
+        const double likely = std::exp((least - at.score) / (2 * prior.unit));
+        sum += likely;
+        place += likely * i;
+        ks += likely * at.ks;
     }
-    for (; step > kFinest; step /= 2) {
-        for (const double x : {at - step, at + step}) {
-            if (const double there = cost(x); there < least) {
-                least = there;
-                at = x;
-            }
-        }
-    }
-    return {glm::dvec3(0), solve(voxels, prior, std::exp(at)).ks, std::exp(at)};
+    return {glm::dvec3(0), ks / sum, kMost * std::pow(kLeast / kMost, place / sum / kSteps)};
 }
 
 }  // namespace patina::reference

@@ -17,12 +17,14 @@ struct FittedVoxel {
 struct SpecularPrior {
     glm::dvec3 ks{0};
     double alpha = 0.2;
-    double ks_weight = 0;     ///< of squared differences from ks, beside squared errors over their variances
+    double ks_weight = 1;     ///< of squared differences from ks, beside squared errors over their variances
     double alpha_weight = 0;  ///< and of squared octaves from alpha
+    double unit = 1;          ///< of these sums, what is as unlikely as one deviation of one independent observation
 };
 
-/// ks and alpha of the least weighted squared error, kd being free for each voxel and channel; alpha from 0.02 to 0.6.
-/// Clipped channels and views below a cosine of 0.15 are left out.
+/// The means of ks and log(alpha) over how likely they are, kd being free for each voxel and channel; alpha from 0.02
+/// to 0.6. Views below a cosine of 0.15 are left out, and clipped channels that are no brighter than the mean of the
+/// voxel's others.
 Ward fit_ward(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior);
 
 }  // namespace patina::reference
