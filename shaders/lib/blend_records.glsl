@@ -39,7 +39,7 @@ float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
 
 struct Reflectance {
     vec3 kd;
-    vec3 weights;  // of kd's channels, 1 where all records are certain
+    vec3 weights;  // of kd's channels, 1 where all records that there are are certain
     bool known;
     vec3 normal;    // of the records
     uint labelled;  // the nearest record with a label, or kNoRecord
@@ -48,10 +48,11 @@ struct Reflectance {
 // The mean over records of the point's surface while it is summed up.
 struct RecordSums {
     vec3 kd, weights, normals;
+    float shares;
     float nearest2;  // of those with a label
     uint labelled;
 };
-RecordSums no_records() { return RecordSums(vec3(0.0), vec3(0.0), vec3(0.0), kNowhere2, kNoRecord); }
+RecordSums no_records() { return RecordSums(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, kNowhere2, kNoRecord); }
 
 // Adds a record, or kNoRecord with any content; `share` is its trilinear part. Returns its weight, 0 where it is of
 // another surface.
@@ -62,6 +63,7 @@ float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 c
     const vec3 certain = weight * packed_certainty(content);
     sums.kd += certain * packed_kd(content);
     sums.weights += certain;
+    sums.shares += weight;
     sums.normals += weight * surface.xyz;
     const float distance2 = same > 0.0 && packed_has_label(content) ? dot(away_vox, away_vox) : kNowhere2;
     sums.labelled = distance2 < sums.nearest2 ? record : sums.labelled;
@@ -71,7 +73,8 @@ float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 c
 
 Reflectance mean_of(RecordSums sums) {
     const bool known = max(max(sums.weights.r, sums.weights.g), sums.weights.b) > 0.0;
-    return Reflectance(sums.kd / max(sums.weights, 1e-20), sums.weights, known, sums.normals, sums.labelled);
+    return Reflectance(sums.kd / max(sums.weights, 1e-20), sums.weights / max(sums.shares, 1e-20), known, sums.normals,
+                       sums.labelled);
 }
 
 // The nearest records of the point's surface: that which knows kd, and that with a label.
@@ -107,8 +110,10 @@ Reflectance filled(Reflectance found, NearestRecords nearest, uvec4 content) {
 
 // What the records do not know, or not surely, is what the rest of their segment has; `segment` is segment_kd.
 Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
-    const float weight = segment.a * kSegmentWeight;
-    const vec3 kd = (found.weights * found.kd + weight * segment.rgb) / max(found.weights + weight, 1e-20);
+    // Certainty is 1 / (1 + variance), in units of kKdDeviation squared.
+    const vec3 sureness = found.weights / max(1.0 - found.weights, 1e-3);
+    const float weight = segment.a * kKdDeviation * kKdDeviation / (kTextureDeviation * kTextureDeviation);
+    const vec3 kd = (sureness * found.kd + weight * segment.rgb) / max(sureness + weight, 1e-20);
     return Reflectance(kd, found.weights, found.known || segment.a > 0.0, found.known ? found.normal : normal,
                        found.labelled);
 }

@@ -26,7 +26,7 @@ struct SegmentAlbedo {
 };
 INTEROP_CONST float kAlbedoSteps = 1023.0f;  // 32 bits hold the sums of 1.3 M records
 INTEROP_CONST float kCertaintySteps = 3.0f;
-INTEROP_CONST float kSegmentWeight = 0.02f;      // of a segment's albedo beside that of a record which is certain
+INTEROP_CONST float kTextureDeviation = 0.1f;    // of a record's albedo from its segment's mean
 INTEROP_CONST float kLeastSegmentWeight = 3.0f;  // records, certain ones, that a segment's albedo takes
 
 // What a record's visibility and albedo were computed from.

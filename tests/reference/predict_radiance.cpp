@@ -66,12 +66,15 @@ struct Albedo {
 
 Albedo mean_kd(const std::vector<Neighbour>& around) {
     glm::dvec3 sum(0), weights(0);
+    double shares = 0;
     for (const Neighbour& neighbour : around) {
-        const glm::dvec3 weight = neighbour.weight * neighbour.share * neighbour.record->certainty;
+        const double share = neighbour.weight * neighbour.share;
+        const glm::dvec3 weight = share * neighbour.record->certainty;
         sum += weight * neighbour.record->kd;
         weights += weight;
+        shares += share;
     }
-    return {sum / glm::max(weights, 1e-20), weights};
+    return {sum / glm::max(weights, 1e-20), weights / std::max(shares, 1e-20)};
 }
 
 /// The share of the surface around the point that light i reaches; nothing where no record knows.
@@ -122,10 +125,11 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
     if (filled && !fill && !has_segment) return result;
     result.known = true;
     const Albedo own = fill ? Albedo{fill->kd, fill->certainty} : mean_kd(around);
-    constexpr double kSegmentWeight = 0.02;
     result.kd = own.kd;
     if (has_segment) {
-        result.kd = (own.weight * own.kd + kSegmentWeight * whole->second) / (own.weight + kSegmentWeight);
+        // Inverse variances: of kd, in units of 0.05 squared, and of voxels about their segment's mean, 0.1.
+        const glm::dvec3 sure = own.weight / glm::max(1.0 - own.weight, 1e-3);
+        result.kd = (sure * own.kd + 0.25 * whole->second) / (sure + 0.25);
     }
     result.rgb = scene.ambient * result.kd;
     for (size_t i = 0; i < scene.lights.size(); ++i) {
