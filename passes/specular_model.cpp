@@ -20,7 +20,7 @@ SpecularModel::SpecularModel(vulkan::Device& device, const SpecularSettings& set
         throw Error("specular materials are to be estimated by a network, but there is none");
     if (!network) return;
     network_.emplace(device, std::move(*network));
-    network_access_ = preferred_network_access(device.caps(), *network_, settings.segments_per_frame);
+    network_variant_ = preferred_network_variant(device.caps(), *network_, settings.segments_per_frame);
 }
 
 void SpecularModel::reset(graph::Frame& frame) const {
@@ -43,7 +43,7 @@ void SpecularModel::add(graph::Frame& frame, ReflectanceModel& reflectance, cons
     if (network_) {
         const HemiImages hemi = add_hemi_images(frame, inputs.map, inputs.records, segmentation.samples(), samples,
                                                 batch, network_->description().map, settings_.seed + frame_index);
-        const graph::BufferId w = add_run_network(frame, *network_, hemi.images, batch, network_access_);
+        const graph::BufferId w = add_run_network(frame, *network_, hemi.images, batch, network_variant_);
         add_fuse_estimates(frame, batch, w, hemi.drawn, estimates_, ids.estimates);
     }
     if (settings_.fit) {

@@ -10,6 +10,7 @@
 #include "passes/model/ward_fits.h"
 #include "passes/reflectance_model.h"
 #include "passes/segmentation_model.h"
+#include "passes/specular/run_network.h"
 
 namespace patina {
 
@@ -50,7 +51,7 @@ class SpecularModel {
     SpecularEstimates estimates_;
     WardFits fits_;
     std::optional<Network> network_;
-    MapAccess network_access_ = MapAccess::kStorage;
+    NetworkVariant network_variant_;
 };
 
 }  // namespace patina

@@ -32,13 +32,16 @@ struct Step {
 };
 
 // Measured on lavapipe: fewer pixels load each weight more often; more gain nothing, as their code outgrows the caches.
-constexpr uint32_t kWidestTile = 16, kPixelsPerTile = 32, kMostImagesPerTile = 8;
+constexpr uint32_t kWidestTile = 16, kMostTilePixels = 32, kMostImagesPerTile = 8;
+constexpr uint32_t kLeastTilePixels = 4;  // 2 x 2, which pooling needs
+// Of GPUs, whose cores wait for memory unless each has several threads: enough for some 4000 cores. Not measured.
+constexpr uint32_t kBusyInvocations = 32768;
 
-/// The tiles of a square of `side` pixels.
-Tile tile_for(uint32_t side, bool max_pooled) {
-    const uint32_t least = divided_up(side, divided_up(side, kWidestTile));
-    const uint32_t height = max_pooled ? 2 : 1, width = divided_up(least, height) * height;
-    const uint32_t images = std::clamp(kPixelsPerTile / (width * height), 1u, kMostImagesPerTile);
+/// The tiles of a square of `side` pixels, each of at most `pixels`.
+Tile tile_for(uint32_t side, bool max_pooled, uint32_t pixels) {
+    const uint32_t height = max_pooled ? 2 : 1, widest = std::min(pixels / height, kWidestTile);
+    const uint32_t least = divided_up(side, divided_up(side, widest)), width = divided_up(least, height) * height;
+    const uint32_t images = std::clamp(pixels / (width * height), 1u, kMostImagesPerTile);
     return {width, height, images, divided_up(side, width), divided_up(side, height)};
 }
 
@@ -46,8 +49,15 @@ uint64_t quads_in_segment(const ActivationShape& shape) {
     return uint64_t{shape.images} * shape.side * shape.side * quads_of(shape);
 }
 
+/// The pixels of a tile, of so many pixels of quads in a whole batch.
+uint32_t tile_pixels(uint64_t quad_pixels, uint32_t least_invocations) {
+    if (least_invocations == 0) return kMostTilePixels;
+    return static_cast<uint32_t>(
+        std::clamp<uint64_t>(quad_pixels / least_invocations, kLeastTilePixels, kMostTilePixels));
+}
+
 /// Layers `first` to `last` of a network in one dispatch.
-Step make_step(const Network& network, size_t first, size_t last, uint32_t capacity) {
+Step make_step(const Network& network, size_t first, size_t last, uint32_t capacity, uint32_t least_invocations) {
     const ActivationShape &before = network.shapes()[first], &after = network.shapes()[last + 1];
     const NetworkLayer& layer = network.description().layers[first];
     Step step{layer.kind, last > first};
@@ -61,18 +71,19 @@ Step make_step(const Network& network, size_t first, size_t last, uint32_t capac
     if (layer.kind != LayerKind::kConv) return step;
     const uint32_t computed = step.max_pooled ? 2 * after.side : after.side;
     step.quad_inputs = std::min(before.channels, 4u);
-    step.tile = tile_for(computed, step.max_pooled);
+    const uint64_t quad_pixels = uint64_t{capacity} * after.images * computed * computed * params.output_quads;
+    step.tile = tile_for(computed, step.max_pooled, tile_pixels(quad_pixels, least_invocations));
     step.work = {before.images, step.tile.images, step.tile.per_row * step.tile.rows * params.output_quads, 1};
     return step;
 }
 
-std::vector<Step> plan(const Network& network, uint32_t capacity) {
+std::vector<Step> plan(const Network& network, uint32_t capacity, uint32_t least_invocations) {
     const std::vector<NetworkLayer>& layers = network.description().layers;
     std::vector<Step> steps;
     for (size_t i = 0; i < layers.size(); ++i) {
         const bool pooled =
             layers[i].kind == LayerKind::kConv && i + 1 < layers.size() && layers[i + 1].kind == LayerKind::kMaxPool;
-        steps.push_back(make_step(network, i, i + pooled, capacity));
+        steps.push_back(make_step(network, i, i + pooled, capacity, least_invocations));
         i += pooled;
     }
     return steps;
@@ -97,15 +108,16 @@ const vulkan::Shader& shader_of(LayerKind kind, bool texel) {
 
 }  // namespace
 
-MapAccess preferred_network_access(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity) {
+NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity) {
+    if (!caps.software()) return {MapAccess::kStorage, kBusyInvocations};
     uint64_t most = network.bytes() / 16;
     for (const ActivationShape& shape : network.shapes()) most = std::max(most, capacity * quads_in_segment(shape));
-    return caps.software() && most <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage;
+    return {most <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage, 0};
 }
 
 graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
-                                const SegmentBatch& batch, MapAccess access) {
-    const std::vector<Step> steps = plan(network, batch.capacity);
+                                const SegmentBatch& batch, const NetworkVariant& variant) {
+    const std::vector<Step> steps = plan(network, batch.capacity, variant.least_invocations);
     check_images(network, batch.capacity, frame.bytes(images));
     if (steps.empty()) return images;
     std::vector<gpu::BatchWork> work;
@@ -116,7 +128,7 @@ graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::Bu
     graph::BufferId activations = images;
     for (size_t i = 0; i < steps.size(); ++i) {
         const Step& step = steps[i];
-        const vulkan::Shader& shader = shader_of(step.kind, access == MapAccess::kTexel);
+        const vulkan::Shader& shader = shader_of(step.kind, variant.access == MapAccess::kTexel);
         auto pass = frame.compute(text(shader.name, "_", i + 1), shader);
         pass.read("Batch", batch.list).read("Inputs", activations).push(step.params);
         if (shader.find_binding("Weights")) pass.read("Weights", weights);

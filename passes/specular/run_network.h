@@ -7,14 +7,22 @@
 
 namespace patina {
 
-/// How activations and weights of a batch are read fastest on this device, within its limits.
-MapAccess preferred_network_access(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity);
+/// How a network is run; what comes out is the same in all variants.
+struct NetworkVariant {
+    MapAccess access = MapAccess::kStorage;  ///< of activations and weights
+    /// A convolution has so many invocations at least, if its batch has the pixels: each computes fewer of them where
+    /// the batch is small, and loads each weight for fewer. 0: it computes as many as pay.
+    uint32_t least_invocations = 0;
+};
+
+/// The fastest variant for batches of so many segments, within the device's limits.
+NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity);
 
 /// Runs a network on the images of all segments of a batch. `images`: vec4 [segment][sample][y][x], three channels and
 /// an unused one for a network of three; quads_of(channels) vec4 a pixel in general. Returns the last layer's
 /// activations, vec4 [segment][sample][y][x][quad] as far as they are there; undefined beyond the segments of the
 /// batch. Throws Error when `images` or the batch's capacity do not fit.
 graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
-                                const SegmentBatch& batch, MapAccess access);
+                                const SegmentBatch& batch, const NetworkVariant& variant);
 
 }  // namespace patina

@@ -54,7 +54,7 @@ class RunNetwork : public GpuTest {
   protected:
     /// Runs `segments` segments in a batch that has room for `capacity`.
     Activations run_on_gpu(const NetworkDescription& description, const Activations& images, uint32_t segments,
-                           uint32_t capacity, MapAccess access) {
+                           uint32_t capacity, const NetworkVariant& variant) {
         Network network(device(), description);
         const ActivationShape in = network.shapes().front(), out = network.shapes().back();
         std::vector<glm::vec4> quads(size_t{capacity} * in.images * in.side * in.side * quads_of(in), glm::vec4(0));
@@ -69,7 +69,7 @@ class RunNetwork : public GpuTest {
         graph::Frame frame = runner().begin();
         const SegmentBatch batch{frame.upload<uint32_t>("batch", list), capacity};
         const graph::Readback result =
-            frame.read_back(add_run_network(frame, network, frame.upload<glm::vec4>("images", quads), batch, access));
+            frame.read_back(add_run_network(frame, network, frame.upload<glm::vec4>("images", quads), batch, variant));
         run(std::move(frame));
         return unpack(result.as<glm::vec4>(), out, std::min(segments, capacity));
     }
@@ -85,13 +85,13 @@ class RunNetwork : public GpuTest {
         return result;
     }
 
-    MapAccess preferred(const NetworkDescription& network, uint32_t capacity) {
-        return preferred_network_access(device().caps(), Network(device(), network), capacity);
+    NetworkVariant preferred(const NetworkDescription& network, uint32_t capacity) {
+        return preferred_network_variant(device().caps(), Network(device(), network), capacity);
     }
 
-    void expect_agreement(const NetworkDescription& network, uint32_t segments, MapAccess access) {
+    void expect_agreement(const NetworkDescription& network, uint32_t segments, const NetworkVariant& variant) {
         const Activations images = random_images(network, segments, 3), want = expected(network, images);
-        const Activations got = run_on_gpu(network, images, segments, std::max(segments, 1u), access);
+        const Activations got = run_on_gpu(network, images, segments, std::max(segments, 1u), variant);
         ASSERT_EQ(got.values.size(), want.values.size());
         double largest = 0, worst = 0;
         for (const double value : want.values) largest = std::max(largest, std::abs(value));
@@ -101,7 +101,7 @@ class RunNetwork : public GpuTest {
             worst = std::max(worst, std::abs(got.values[i] - want.values[i]) / scale);
         }
         EXPECT_LT(worst, 1e-4) << "side " << network.side << ", channels " << network.channels << ", segments "
-                               << segments << (access == MapAccess::kTexel ? ", texel" : ", storage");
+                               << segments << (variant.access == MapAccess::kTexel ? ", texel" : ", storage");
     }
     void expect_agreement(const NetworkDescription& network, uint32_t segments) {
         expect_agreement(network, segments, preferred(network, std::max(segments, 1u)));
@@ -113,8 +113,7 @@ TEST_F(RunNetwork, AKernelWithOneTapMovesTheImage) {
     network.layers[0].weight.assign(9, 0);
     network.layers[0].weight[5] = 2;  // the pixel to the right
     network.layers[0].bias = {0.25f};
-    const Activations images = random_images(network, 1, 1),
-                      got = run_on_gpu(network, images, 1, 1, MapAccess::kStorage);
+    const Activations images = random_images(network, 1, 1), got = run_on_gpu(network, images, 1, 1, {});
     for (size_t y = 0; y < 7; ++y) {
         for (size_t x = 0; x < 7; ++x) {
             const auto right = static_cast<float>(x < 6 ? images.at(0, x + 1, y, 0) : 0);
@@ -154,7 +153,26 @@ TEST_F(RunNetwork, PoolingAndFullLayersAgreeWithTheReferenceOnAwkwardShapes) {
 TEST_F(RunNetwork, TheWholeNetworkAgreesWithTheReference) { expect_agreement(random_hemi_network(1), 1); }
 
 TEST_F(RunNetwork, TheWholeNetworkAgreesWithTheReferenceThroughStorageBuffers) {
-    expect_agreement(random_hemi_network(1), 2, MapAccess::kStorage);
+    expect_agreement(random_hemi_network(1), 2, NetworkVariant{});
+}
+
+TEST_F(RunNetwork, ManyInvocationsOfSmallTilesGiveTheSameBytes) {
+    const NetworkDescription network = random_hemi_network(3);
+    const Activations images = random_images(network, 2, 7);
+    const auto with = [&](uint32_t least_invocations) {
+        return run_on_gpu(network, images, 2, 2, {MapAccess::kStorage, least_invocations}).values;
+    };
+    const auto large_tiles = with(0);
+    ASSERT_EQ(large_tiles.size(), 14u);
+    for (const uint32_t invocations : {1u << 14, 1u << 16, 1u << 30})
+        EXPECT_EQ(with(invocations), large_tiles) << invocations;
+}
+
+TEST_F(RunNetwork, SmallTilesAgreeWithTheReferenceOnAwkwardShapes) {
+    const NetworkVariant small{MapAccess::kStorage, 1u << 30};
+    expect_agreement(network_of(2, 7, 1, {conv(33, 1, false)}), 1, small);
+    expect_agreement(network_of(1, 17, 3, {conv(4, 1), kMaxPool}), 1, small);
+    expect_agreement(network_of(3, 1, 33, {conv(5, 1)}), 31, small);
 }
 
 TEST_F(RunNetwork, TheOrderOfSamplesDoesNotMatterAndCopiesOfOneAreAsOne) {
@@ -169,9 +187,9 @@ TEST_F(RunNetwork, TheOrderOfSamplesDoesNotMatterAndCopiesOfOneAreAsOne) {
     }
     NetworkDescription single = network;
     single.samples = 1;
-    const MapAccess access = preferred(network, 1);
+    const NetworkVariant variant = preferred(network, 1);
     const auto run_one = [&](const NetworkDescription& with, const Activations& in) {
-        return run_on_gpu(with, in, 1, 1, access).values;
+        return run_on_gpu(with, in, 1, 1, variant).values;
     };
     const auto forward = run_one(network, images), backward = run_one(network, reversed);
     const auto of_copies = run_one(network, copies), of_one = run_one(single, one);
@@ -187,10 +205,10 @@ TEST_F(RunNetwork, TheOrderOfSamplesDoesNotMatterAndCopiesOfOneAreAsOne) {
 TEST_F(RunNetwork, ABatchHoldsWhatItsCountSaysAndNoMoreThanItsCapacity) {
     const NetworkDescription network = network_of(5, 1, 4, {kSamplePool, {LayerKind::kFull, "full", 7}});
     const Activations images = random_images(network, 3, 2);
-    const auto all = run_on_gpu(network, images, 3, 3, MapAccess::kStorage).values;
-    const auto limited = run_on_gpu(network, images, 1000, 3, MapAccess::kStorage).values;
+    const auto all = run_on_gpu(network, images, 3, 3, {}).values;
+    const auto limited = run_on_gpu(network, images, 1000, 3, {}).values;
     EXPECT_EQ(all, limited);
-    EXPECT_TRUE(run_on_gpu(network, images, 0, 3, MapAccess::kStorage).values.empty());
+    EXPECT_TRUE(run_on_gpu(network, images, 0, 3, {}).values.empty());
 }
 
 TEST_F(RunNetwork, WhatDoesNotFitIsRefused) {
@@ -199,10 +217,10 @@ TEST_F(RunNetwork, WhatDoesNotFitIsRefused) {
     const graph::BufferId images = frame.create_buffer("images", 5 * 16), list = frame.create_buffer("list", 8);
     EXPECT_THAT(
         [&] {
-            add_run_network(frame, network, images, {list, 2}, MapAccess::kStorage);
+            add_run_network(frame, network, images, {list, 2}, {});
         },
         ::testing::ThrowsMessage<Error>(::testing::HasSubstr("has images of 80 bytes, a batch of 2 segments")));
-    EXPECT_THROW(add_run_network(frame, network, images, {list, 0}, MapAccess::kStorage), Error);
+    EXPECT_THROW(add_run_network(frame, network, images, {list, 0}, {}), Error);
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ TEST_F(TrainedNetwork, GivesWhatItGaveWhereItWasTrained) {
     graph::Frame frame = runner().begin();
     const SegmentBatch batch{frame.upload<uint32_t>("batch", list), segments};
     const graph::BufferId images = frame.upload<glm::vec4>("images", check_images(segments));
-    const MapAccess access = preferred_network_access(device().caps(), network, segments);
-    const graph::Readback result = frame.read_back(add_run_network(frame, network, images, batch, access));
+    const NetworkVariant variant = preferred_network_variant(device().caps(), network, segments);
+    const graph::Readback result = frame.read_back(add_run_network(frame, network, images, batch, variant));
     run(std::move(frame));
     const auto got = result.as<gpu::PerceptualMaterial>();
     for (uint32_t i = 0; i < segments; ++i) {

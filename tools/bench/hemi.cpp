@@ -61,7 +61,7 @@ class Bench {
           samples_(device, segments + 1),
           estimates_(device, segments + 1),
           network_(device, random_hemi_network(1)),
-          access_(options.storage ? MapAccess::kStorage : preferred_network_access(device.caps(), network_, segments)),
+          variant_(options.storage ? NetworkVariant{} : preferred_network_variant(device.caps(), network_, segments)),
           runner_(device) {
         graph::Frame frame = runner_.begin();
         map_.reset(frame, glm::dvec3(0));
@@ -84,7 +84,7 @@ class Bench {
         const SegmentBatch batch{frame.upload<uint32_t>("batch", list), segments_};
         const HemiImages images = add_hemi_images(frame, map_, map_.import(frame), samples_, samples_.import(frame),
                                                   batch, HemisphereMap::kParabolic, seed_++);
-        const graph::BufferId estimates = add_run_network(frame, network_, images.images, batch, access_);
+        const graph::BufferId estimates = add_run_network(frame, network_, images.images, batch, variant_);
         SpecularEstimateIds ids = estimates_.import(frame);
         add_fuse_estimates(frame, batch, estimates, images.drawn, estimates_, ids);
         SpecularEstimates::keep(frame, ids);
@@ -92,7 +92,7 @@ class Bench {
         runner_.wait();
     }
 
-    MapAccess access() const { return access_; }
+    MapAccess access() const { return variant_.access; }
     graph::Runner& runner() { return runner_; }
 
   private:
@@ -114,7 +114,7 @@ class Bench {
     SegmentSamples samples_;
     SpecularEstimates estimates_;
     Network network_;
-    MapAccess access_;
+    NetworkVariant variant_;
     graph::Runner runner_;
 };
 
