@@ -16,6 +16,7 @@ constexpr float kExplained = 0.5f;  // a highlight, by a lamp
 std::vector<gpu::LightSample> draw_samples(Reconstruction& reconstruction) {
     const ReflectanceModel* reflectance = reconstruction.reflectance();
     if (!reflectance) throw Error("lights cannot be found in a reconstruction without reflectance");
+    reconstruction.wait();  // so that all frames are fused
     graph::Frame frame = reconstruction.runner().begin();
     const ObservationMap& map = reflectance->observations();
     const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame)));

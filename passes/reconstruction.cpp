@@ -97,17 +97,19 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
 void Reconstruction::check(const RgbdFrame& frame) const {
     check_size("depth", frame.depth.pixels, frame.depth.camera);
     check_size("colour", frame.color.pixels, frame.color.camera);
+    check_depth(frame.depth);
+    check_color(frame.color);
     if (!frame.labels.empty() && frame.labels.size() != frame.depth.camera.extent.area()) {
         throw Error("the label picture has ", frame.labels.size(), " pixels, the depth camera ",
                     frame.depth.camera.extent);
     }
     // Readers orthonormalise poses; what is left is rounding.
     const double defect = rotation_defect(frame.world_from_depth);
-    if (!(defect < 1e-3)) throw Error("the pose of frame ", frames_, " is not rigid: its rotation is off by ", defect);
+    if (!(defect < 1e-3)) throw Error("the pose of frame ", frames(), " is not rigid: its rotation is off by ", defect);
 }
 
-VisibleBlocks Reconstruction::fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame,
-                                   const InputPictures& pictures) {
+VisibleBlocks Reconstruction::add_passes(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame,
+                                         const InputPictures& pictures) {
     const gpu::Camera depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
     const RigidTransform world_from_color = world_from_color_of(frame);
     const gpu::Camera color_camera = make_camera(frame.color.camera, world_from_color);
@@ -221,6 +223,7 @@ bool Reconstruction::add(const RgbdFrame& frame) {
     // The caller's pixels are gone when the frame has its turn.
     posed.depth.pixels = {};
     posed.color.pixels = {};
+    posed.labels = {};
     waiting_.emplace(Waiting{posed, {frame.labels.begin(), frame.labels.end()}});
     return true;
 }
@@ -240,39 +243,51 @@ void Reconstruction::start_map(const RgbdFrame& frame) {
 void Reconstruction::fuse_posed(const RgbdFrame& frame) {
     if (frames_ == 0) start_map(frame);
     graph::Frame graph = runner_.begin();
-    fuse(graph, frame, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)});
+    PendingCounts counts =
+        add_fusion(graph, frame, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)});
     runner_.submit(std::move(graph));
-    take_counts();
+    note_fused(frame, std::move(counts));
 }
 
 void Reconstruction::fuse_waiting() {
     if (!waiting_) return;
     graph::Frame graph = runner_.begin();
-    fuse_waiting(graph);
+    PendingCounts counts = add_waiting(graph);
     runner_.submit(std::move(graph));
-    take_counts();
+    note_waiting_fused(std::move(counts));
 }
 
-void Reconstruction::fuse_waiting(graph::Frame& graph) {
+Reconstruction::PendingCounts Reconstruction::add_waiting(graph::Frame& graph) {
     waiting_->frame.labels = waiting_->labels;
-    fuse(graph, waiting_->frame, tracking_->pictures().import(graph));
+    return add_fusion(graph, waiting_->frame, tracking_->pictures().import(graph));
+}
+
+void Reconstruction::note_waiting_fused(PendingCounts counts) {
+    note_fused(waiting_->frame, std::move(counts));
     waiting_.reset();
 }
 
-void Reconstruction::fuse(graph::Frame& graph, const RgbdFrame& frame, const InputPictures& pictures) {
+Reconstruction::PendingCounts Reconstruction::add_fusion(graph::Frame& graph, const RgbdFrame& frame,
+                                                         const InputPictures& pictures) {
     VoxelMapIds ids = map_.import(graph);
-    const VisibleBlocks visible = fuse(graph, ids, frame, pictures);
+    const VisibleBlocks visible = add_passes(graph, ids, frame, pictures);
     VoxelMap::keep(graph, ids);
-    PendingCounts& pending = pending_counts_.emplace_back(
-        PendingCounts{graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}, {}, {}});
+    PendingCounts pending{
+        graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}, {}, {}};
     if (segmentation_) pending.segments = graph.read_back(segmentation_->table().import(graph).counters);
     if (reflectance_) {
         const ObservationMapIds observed = reflectance_->observations().import(graph);
         pending.observed_blocks = graph.read_back(observed.block_counters);
         pending.observed_records = graph.read_back(observed.record_counters);
     }
+    return pending;
+}
+
+void Reconstruction::note_fused(const RgbdFrame& frame, PendingCounts counts) {
+    pending_counts_.push_back(std::move(counts));
     world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
+    take_counts();
 }
 
 void Reconstruction::wait() {

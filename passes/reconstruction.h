@@ -155,6 +155,8 @@ class Reconstruction {
     /// reflectance.
     MeshReflectance sample_reflectance(const Mesh& mesh);
 
+    // With tracking, none of what follows tells of the last frame before wait(); runner().wait() does not fuse it.
+
     /// The map's counters as of at most two frames ago; exact after wait().
     const gpu::MapCounters& counters();
 
@@ -185,7 +187,7 @@ class Reconstruction {
     void relight(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
 
     /// The reflectance beside the geometry; null when the settings have none. Its lights and materials may change at
-    /// any time, with tracking after wait().
+    /// any time.
     ReflectanceModel* reflectance() { return reflectance_ ? &*reflectance_ : nullptr; }
 
     /// The colour gains of the frames so far (ColorCorrection::gains); empty where the settings estimate none.
@@ -199,6 +201,11 @@ class Reconstruction {
     graph::Runner& runner() { return runner_; }
 
   private:
+    struct PendingCounts {
+        graph::Readback counters, visible_blocks;
+        std::optional<graph::Readback> segments, observed_blocks, observed_records;
+    };
+
     TrackingReport start_tracking(const RgbdFrame& frame);
     TrackingReport track(const RgbdFrame& frame);
     TrackingReport best_search(const RgbdFrame& frame);
@@ -215,9 +222,12 @@ class Reconstruction {
     void start_map(const RgbdFrame& frame);
     void fuse_posed(const RgbdFrame& frame);
     void fuse_waiting();
-    void fuse_waiting(graph::Frame& graph);
-    void fuse(graph::Frame& graph, const RgbdFrame& frame, const InputPictures& pictures);
-    VisibleBlocks fuse(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame, const InputPictures& pictures);
+    PendingCounts add_waiting(graph::Frame& graph);
+    void note_waiting_fused(PendingCounts counts);
+    PendingCounts add_fusion(graph::Frame& graph, const RgbdFrame& frame, const InputPictures& pictures);
+    VisibleBlocks add_passes(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame,
+                             const InputPictures& pictures);
+    void note_fused(const RgbdFrame& frame, PendingCounts counts);
     RaycastImages sharpened(graph::Frame& graph, const RaycastImages& model, const Intrinsics& camera) const;
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                            const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
@@ -244,10 +254,6 @@ class Reconstruction {
     uint32_t weak_frames_ = 0;                               ///< the last ones
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
-    struct PendingCounts {
-        graph::Readback counters, visible_blocks;
-        std::optional<graph::Readback> segments, observed_blocks, observed_records;
-    };
     std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
     ObservationCounters observation_counters_;

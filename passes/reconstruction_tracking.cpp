@@ -61,10 +61,11 @@ TrackingReport Reconstruction::search_again(const RgbdFrame& frame, const RigidT
 TrackingReport Reconstruction::best_search(const RgbdFrame& frame) {
     const std::vector<RigidTransform> starts = tracking_->expected(frame.time);
     graph::Frame graph = runner_.begin();
-    if (waiting_) fuse_waiting(graph);
+    std::optional<PendingCounts> fused;
+    if (waiting_) fused = add_waiting(graph);
     const InputPictures pictures = tracking_->pictures().add(graph, frame.depth, frame.color);
     TrackingReport best = search(std::move(graph), pictures, frame, starts.front());
-    take_counts();
+    if (fused) note_waiting_fused(*std::move(fused));
     for (size_t i = 1; i < starts.size() && best.state == TrackingState::kLost; ++i) {
         const TrackingReport report = search_again(frame, starts[i]);
         if (report.state < best.state) best = report;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "passes/input/kept_input.h"
+#include "passes/kept_input.h"
 #include "passes/model/map_access.h"
 #include "passes/model/voxel_map.h"
 #include "passes/tracking/judge_motion.h"

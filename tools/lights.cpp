@@ -142,6 +142,8 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device) {
     const std::unique_ptr<sensor::Source> source = open_main(options, device);
     ReconstructionSettings settings = options.reconstruction;
     if (!settings.reflectance) settings.reflectance.emplace();
+    settings.tracking.reset();  // poses are given
+    settings.keyframes.reset();
     Reconstruction reconstruction(device, settings);
     LightEstimation estimation(device, clipped_lamps(options.settings));
     const sensor::SequenceInfo& info = source->info();

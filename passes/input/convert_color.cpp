@@ -6,8 +6,15 @@
 
 namespace patina {
 
+namespace {
+
+constexpr const char* kPass = "input.convert_color";
+
+}  // namespace
+
+void check_color(const ColorInput& input) { lens_of(input.camera, kPass); }
+
 graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input, std::optional<graph::ImageId> target) {
-    constexpr const char* kPass = "input.convert_color";
     const bool linear = std::holds_alternative<std::span<const glm::vec3>>(input.pixels);
     const Extent2D extent = input.camera.extent;
     const gpu::Lens lens = lens_of(input.camera, kPass);

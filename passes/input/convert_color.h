@@ -16,4 +16,7 @@ namespace patina {
 graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input,
                                  std::optional<graph::ImageId> target = std::nullopt);
 
+/// Throws Error when the intrinsics make no sense.
+void check_color(const ColorInput& input);
+
 }  // namespace patina

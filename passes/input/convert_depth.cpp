@@ -32,6 +32,11 @@ void check_scale(const DepthInput& input) {
 
 }  // namespace
 
+void check_depth(const DepthInput& input) {
+    check_scale(input);
+    lens_of(input.camera, kPass);
+}
+
 graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input, std::optional<graph::ImageId> target) {
     check_scale(input);
     const bool metres = std::holds_alternative<std::span<const float>>(input.pixels);

@@ -15,4 +15,7 @@ namespace patina {
 graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input,
                                  std::optional<graph::ImageId> target = std::nullopt);
 
+/// Throws Error when the intrinsics or the scale make no sense.
+void check_depth(const DepthInput& input);
+
 }  // namespace patina

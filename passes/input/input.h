@@ -2,7 +2,6 @@
 
 #include "engine/graph/frame.h"
 #include "passes/input/filter_depth.h"
-#include "passes/input/kept_input.h"
 #include "passes/input/picture.h"
 #include "passes/input/unproject_depth.h"
 #include "shared/camera.h"
@@ -21,6 +20,12 @@ struct InputImages {
     graph::ImageId filtered_depth_m;  ///< r32f, smoothed (add_filter_depth)
     UnprojectedDepth surface;         ///< of the smoothed depth (add_unproject_depth)
     graph::ImageId color;             ///< rgba16f, linear radiance (add_convert_color)
+};
+
+/// The two pictures of a frame as passes read them.
+struct InputPictures {
+    graph::ImageId depth_m;  ///< r32f (add_convert_depth)
+    graph::ImageId color;    ///< rgba16f, linear radiance (add_convert_color)
 };
 
 /// Prepares what was converted; passes whose images nobody uses are culled. `depth_camera` is the pinhole camera of

@@ -41,8 +41,9 @@ struct PredictedImages {
 /// Reflectance and radiance of each surface point (paper, Eq. 6 with Ward's Eq. 2-4, and an ambient term). Kd is the
 /// trilinear mean of the eight records around the point (Section 3.7), each weighted by its certainty and by how much
 /// its surface is the point's: normals agree, its tangent plane passes by. Where none of them is known, the nearest
-/// known one within a voxel more counts, of the same surface if there is one. The mean of the segment is one more
-/// record of little weight (kSegmentWeight), and all there is where no record knows. How much of a light reaches the
+/// known one within a voxel more counts, of the same surface if there is one. Where records are not
+/// sure of it, the mean of the segment counts by inverse variances (kTextureDeviation), and it is all there is where no
+/// record knows. How much of a light reaches the
 /// point is interpolated likewise; all of it, where none was marched yet. The segment is that of the nearest record
 /// with a label. Throws Error when the images differ in extent.
 PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,

@@ -39,7 +39,7 @@ constexpr uint32_t kBusyInvocations = 32768;
 
 /// The tiles of a square of `side` pixels, each of at most `pixels`.
 Tile tile_for(uint32_t side, bool max_pooled, uint32_t pixels) {
-    const uint32_t height = max_pooled ? 2 : 1, widest = std::min(pixels / height, kWidestTile);
+    const uint32_t height = max_pooled ? 2 : 1, widest = std::min(pixels / height / height * height, kWidestTile);
     const uint32_t least = divided_up(side, divided_up(side, widest)), width = divided_up(least, height) * height;
     const uint32_t images = std::clamp(pixels / (width * height), 1u, kMostImagesPerTile);
     return {width, height, images, divided_up(side, width), divided_up(side, height)};

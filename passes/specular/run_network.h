@@ -15,7 +15,7 @@ struct NetworkVariant {
     uint32_t least_invocations = 0;
 };
 
-/// The fastest variant for batches of so many segments, within the device's limits.
+/// The variant that is fastest for batches of so many segments, within the device's limits; on hardware not measured.
 NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity);
 
 /// Runs a network on the images of all segments of a batch. `images`: vec4 [segment][sample][y][x], three channels and

@@ -101,6 +101,7 @@ void set_trust(uint count) {
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         trust[k] = k < count && viewer_cosine[k] >= kFitLeastCosine ? 1.0 : 0.0;
         robust[k] = 1.0;
+        channels[k] *= trust[k];  // so far 0 or 1; what does not count must not meet an infinite mean
         brightness += trust[k] * mean_of(rest[k] + highlight[k]);
         counted += trust[k];
     }

@@ -301,10 +301,32 @@ TEST_F(FitWardTest, RoughNormalsAndClippedPeaksTellKs) {
     EXPECT_NEAR(got.w, truth.alpha, 0.01);
 }
 
+TEST_F(FitWardTest, AChannelThatAllViewsClipCostsTheOthersNothing) {
+    const Ward truth{{}, glm::dvec3(0.1), 0.15};
+    std::vector<FilledRecord> records = sphere(1, truth);
+    for (FilledRecord& record : records) {
+        record.observations.resize(20);
+        for (FilledObservation& seen : record.observations) {
+            seen.clipped[2] = true;
+            seen.rgb.b = 1;
+        }
+    }
+    fill(records);
+    const gpu::WardFit first = fit({1}, 1)[1];
+    ASSERT_GT(first.confidence, 0.5f);
+    EXPECT_EQ(first.color2_weight.w, 2.0f * 20 * kVoxels) << "two channels of each observation";
+    const gpu::WardFit later = fit({1}, 4)[1];
+    EXPECT_GT(later.color2_weight.w, 4 * first.color2_weight.w) << "0.93 of them are kept each time";
+    EXPECT_NEAR(later.ks_alpha.r, 0.1, 2e-3);
+    EXPECT_NEAR(later.ks_alpha.g, 0.1, 2e-3);
+    EXPECT_NEAR(later.ks_alpha.w, 0.15, 2e-3);
+}
+
 TEST_F(FitWardTest, AFewWrongNormalsDoNotRuleAHighlightOut) {
     // Seen from far off every mirrored light, but for two voxels, whose normals are wrong: they would show a peak, and
     // do not.
     std::vector<FilledRecord> records = sphere(1, {{}, glm::dvec3(0.2), 0.05});
+    uint32_t wrong = 0;
     for (size_t i = 0; i < records.size(); ++i) {
         const auto shows_peak = [&](const FilledObservation& seen) {
             return std::ranges::any_of(kLights, [&](const PointLight& light) {
@@ -313,11 +335,13 @@ TEST_F(FitWardTest, AFewWrongNormalsDoNotRuleAHighlightOut) {
             });
         };
         std::erase_if(records[i].observations, shows_peak);
-        if (i > 1 || records[i].observations.empty()) continue;
+        if (wrong == 2 || records[i].observations.empty()) continue;
+        ++wrong;
         const glm::vec3 to_light = glm::normalize(kLights[0].position_m - records[i].point_m);
         records[i].normal = glm::normalize(to_light + records[i].observations.front().to_viewer);
     }
     fill(records);
+    ASSERT_EQ(wrong, 2u);
     const gpu::WardFit fitted = fit({1}, 3)[1];
     EXPECT_GT(max_of(glm::dvec3(fitted.ks_alpha)), 0.02);
     EXPECT_LT(fitted.confidence, 0.5f);

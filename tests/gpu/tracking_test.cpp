@@ -98,6 +98,10 @@ TEST_F(TrackingTest, EveryGraphIsSound) {
         EXPECT_THAT(graph::check(compiled.description, compiled.plan), ::testing::IsEmpty());
         EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), ::testing::IsEmpty());
     }
+    reconstruction.wait();  // fuses kept pictures alone
+    const graph::CompiledFrame& last = reconstruction.runner().last_frame();
+    EXPECT_THAT(graph::check(last.description, last.plan), ::testing::IsEmpty());
+    EXPECT_THAT(graph::find_unneeded_barriers(last.description, last.plan), ::testing::IsEmpty());
 }
 
 TEST_F(TrackingTest, DroppedFramesAreCaughtUpWith) {
@@ -221,7 +225,7 @@ TEST_F(TrackingTest, ATrackedFrameIsOneSubmission) {
 }
 
 TEST_F(TrackingTest, WhatWaitsIsFusedBeforeTheModelIsLookedAt) {
-    const auto seen_after_three = [&](bool given) {
+    const auto seen_after_three = [&](bool given, bool surface) {
         Reconstruction tracked(device(), settings()), posed(device(), settings());
         for (int frame = 0; frame < 3; ++frame) {
             // A caller's pictures are its own again after add().
@@ -236,14 +240,53 @@ TEST_F(TrackingTest, WhatWaitsIsFusedBeforeTheModelIsLookedAt) {
             std::ranges::fill(shot.depth_m.pixels(), 9.0f);
         }
         Reconstruction& shown = given ? posed : tracked;
+        if (surface) return shown.extract_surface().positions_m;
         const PendingView view = shown.view(camera_, pose_at(1));
         shown.wait();
-        const Image<glm::vec4> positions = view.get().position_m;
-        return std::vector(positions.pixels().begin(), positions.pixels().end());
+        std::vector<glm::vec3> seen;
+        const ModelView pictures = view.get();
+        for (const glm::vec4 position : pictures.position_m.pixels()) seen.emplace_back(position);
+        return seen;
     };
-    const std::vector<glm::vec4> tracked = seen_after_three(false);
-    EXPECT_GT(std::ranges::count_if(tracked, [](glm::vec4 p) { return p.w > 0; }), 10000);
-    EXPECT_EQ(tracked, seen_after_three(true));
+    for (const bool surface : {false, true}) {
+        const std::vector<glm::vec3> tracked = seen_after_three(false, surface);
+        EXPECT_GT(std::ranges::count_if(tracked, [](glm::vec3 p) { return p != glm::vec3(0); }), 10000) << surface;
+        EXPECT_EQ(tracked, seen_after_three(true, surface)) << surface;
+    }
+}
+
+TEST_F(TrackingTest, AFrameOfGivenPoseComesAfterTheOneThatWaits) {
+    Reconstruction reconstruction(device(), settings());
+    ASSERT_TRUE(add(reconstruction, 0));
+    ASSERT_TRUE(add(reconstruction, 1));
+    const Shot shot = shoot(room(), pose_at(2));
+    RgbdFrame rgbd;
+    rgbd.depth.pixels = std::span(shot.depth_m.pixels());
+    rgbd.color.pixels = std::span(shot.color.pixels());
+    rgbd.depth.camera = rgbd.color.camera = camera_;
+    rgbd.world_from_depth = pose_at(2);
+    const size_t before = reconstruction.runner().host_timing().samples_ms.size();
+    reconstruction.add_posed(rgbd);
+    EXPECT_EQ(reconstruction.runner().host_timing().samples_ms.size() - before, 2u) << "the one that waited, and this";
+    EXPECT_EQ(reconstruction.frames(), 3u);
+}
+
+TEST_F(TrackingTest, AFrameThatCannotBeReadLosesNothing) {
+    Reconstruction reconstruction(device(), settings());
+    ASSERT_TRUE(add(reconstruction, 0));
+    ASSERT_TRUE(add(reconstruction, 1));
+    const Shot shot = shoot(room(), pose_at(2));
+    RgbdFrame wrong;
+    wrong.depth.pixels = std::span(shot.depth_m.pixels());
+    wrong.color.pixels = std::span(shot.color.pixels());
+    wrong.depth.camera = wrong.color.camera = camera_;
+    wrong.depth.max_metres = -1;
+    EXPECT_THROW(reconstruction.add(wrong), Error);
+    EXPECT_EQ(reconstruction.frames(), 2u);
+    ASSERT_TRUE(add(reconstruction, 2)) << reconstruction.tracking_report()->reason;
+    reconstruction.wait();
+    EXPECT_EQ(reconstruction.frames(), 3u);
+    EXPECT_GT(reconstruction.counters().free_blocks, 0u);
 }
 
 TEST_F(TrackingTest, SettingsOutOfRangeAreNamed) {

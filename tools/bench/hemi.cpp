@@ -61,8 +61,9 @@ class Bench {
           samples_(device, segments + 1),
           estimates_(device, segments + 1),
           network_(device, random_hemi_network(1)),
-          variant_(options.storage ? NetworkVariant{} : preferred_network_variant(device.caps(), network_, segments)),
+          variant_(preferred_network_variant(device.caps(), network_, segments)),
           runner_(device) {
+        if (options.storage) variant_.access = MapAccess::kStorage;
         graph::Frame frame = runner_.begin();
         map_.reset(frame, glm::dvec3(0));
         estimates_.reset(frame);

@@ -1,4 +1,4 @@
-#include "passes/input/kept_input.h"
+#include "passes/kept_input.h"
 
 #include "engine/vulkan/device.h"
 #include "passes/input/convert_color.h"

@@ -1,19 +1,12 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/input/picture.h"
+#include "passes/input/input.h"
 
 namespace patina::vulkan {
 class Device;
 }
 
 namespace patina {
-
-/// The two pictures of a frame as passes read them.
-struct InputPictures {
-    graph::ImageId depth_m;  ///< r32f (add_convert_depth)
-    graph::ImageId color;    ///< rgba16f, linear radiance (add_convert_color)
-};
 
 /// The converted pictures of one frame, on the device until the next frame's take their place: who learns a frame's
 /// pose only when its graph has finished goes on with them in another graph, and uploads nothing again.
