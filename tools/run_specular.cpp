@@ -25,9 +25,7 @@ void set_specular(ReconstructionSettings& settings, const SequenceOptions& optio
     }
     if (!settings.specular) settings.specular.emplace();
     settings.specular->fit = options.specular != "hemicnn";
-    // The network that ships is taken only when it is asked for: it has not learned enough yet to be a prior.
-    const bool asked = !options.specular.empty() || !options.network.empty();
-    if (options.specular == "fit" || !asked) return;
+    if (options.specular == "fit") return;
     const std::filesystem::path file = network_file(options);
     if (!file.empty()) {
         settings.network = read_network_file(file);
