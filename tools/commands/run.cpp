@@ -36,7 +36,8 @@ void add_run(CLI::App& app) {
                         "Keep the colours of every so many-th frame out of the model, and compare them in the end");
     command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")
         ->capture_default_str();
-    command->add_option("--dump-graph", run_options.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
+    command->add_option("--dump-graph", run_options.dump_graph,
+                        "Write PATH.dot and PATH.json of the last frame's last graph");
     command->callback([arguments] {
         arguments->sequence.finish(arguments->run);
         run(arguments->run);
