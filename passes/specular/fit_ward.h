@@ -18,7 +18,7 @@ struct FitWardInputs {
     uint32_t position_version = 0;     ///< of the lights
     const SegmentSamples& samples;
     const SegmentSampleIds& sample_ids;
-    graph::BufferId network;  ///< SpecularEstimateIds::materials: the prior, where there is an estimate
+    graph::BufferId network;  ///< SpecularEstimateIds::materials: alpha's prior, where there is an estimate
     uint32_t materials = 0;   ///< entries of the table of materials
     float memory = 0.93f;     ///< what is left of the frames before when a segment is fitted again
 };
@@ -29,9 +29,9 @@ struct FitWardInputs {
 /// over these by how likely they are, or, where one step of the grid holds all that is likely, the best between its
 /// steps. Flat views and voxels whose lights are not known, or all hidden, are left out; a clipped channel counts where
 /// the estimate before is darker; outliers of that estimate count less. Sums are kept by label, `memory` of them from
-/// one fit to the next. Priors of ks and alpha hold where observations do not tell: the network's estimate, else ks
-/// 0.04 and alpha 0.2. `fits` is brought up to date, and `segment_materials` (gpu::SegmentMaterial by label), whose
-/// version changes when the material does.
+/// one fit to the next. Where observations do not tell, priors hold: ks 0.04, and the network's alpha, else 0.2. `fits`
+/// is brought up to date, and `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the
+/// material does.
 void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,
                   WardFitIds& fits, graph::BufferId& segment_materials);
 

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment of a batch, one invocation per alpha: adds the frame's sums to those of the frames before;
-// ks follows for each alpha. What observations do not tell comes from a prior, the network's estimate where there is
-// one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model averaging):
-// an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
+// ks follows for each alpha. What observations do not tell comes from a prior, whose alpha is the network's where there
+// is one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model
+// averaging): an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
 #include "lib/fit_alphas.glsl"
 #include "lib/set_material.glsl"
 #include "shared/specular_estimates.h"
@@ -22,14 +22,13 @@ layout(push_constant) uniform Push { FitParams params; };
 const float kLeastDeviation = 0.1;  // of observations, for the prior's weight
 // Observations of one voxel, and voxels beside each other, err together: so many count as one.
 const float kCorrelated = 50.0;
-// Where no network has said anything: what polished dielectrics reflect; 67 measured materials (MERL, as fitted by
-// Ngan, Durand and Matusik 2005) have 0.033 in the mean.
+// What polished dielectrics reflect; 67 measured materials (MERL, as fitted by Ngan, Durand and Matusik 2005) have
+// 0.033 in the mean. The network's word on ks is no better where no highlight was seen.
 const float kKsBefore = 0.04;
 const float kKsDeviation = 0.15;
-const float kAlphaDeviation = 1.3;  // octaves, of alpha from kAlphaBefore
+const float kAlphaDeviation = 1.3;  // octaves, of alpha from kAlphaBefore, where no network has said anything
 const float kAlphaBefore = 0.2;
-const float kNetworkKsDeviation = 0.06;    // of ks from the network's
-const float kNetworkAlphaDeviation = 0.7;  // octaves
+const float kNetworkAlphaDeviation = 0.7;  // octaves, from the network's
 const float kDullKs = 0.01;                // whose roughness does not matter
 const float kIgnoredVoxels = 2.0;          // seen near the peak: so few may be there for wrong normals,
 const float kSeenVoxels = 6.0;             // and with so many all are believed
@@ -49,10 +48,9 @@ shared float known[kFitAlphas];     // the share of ks that observations tell
 Prior prior_of(uint label, float unit) {
     const WardMaterial said = network[label];
     const bool any_said = said.kd_weight.w > 0.0;
-    const float ks = any_said ? kNetworkKsDeviation : kKsDeviation;
-    const float alpha = any_said ? kNetworkAlphaDeviation : kAlphaDeviation;
-    return Prior(any_said ? said.ks_alpha.rgb : vec3(kKsBefore), any_said ? said.ks_alpha.w : kAlphaBefore,
-                 unit / (ks * ks), unit / (alpha * alpha));
+    const float deviation = any_said ? kNetworkAlphaDeviation : kAlphaDeviation;
+    return Prior(vec3(kKsBefore), any_said ? said.ks_alpha.w : kAlphaBefore, unit / (kKsDeviation * kKsDeviation),
+                 unit / (deviation * deviation));
 }
 
 // `unit`: of the misfit, what is as unlikely as one deviation of one independent observation.
