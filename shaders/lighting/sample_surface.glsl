@@ -1,5 +1,6 @@
 // What a record of the observation map shows as a sample of the surface. The includer declares Records, the chunks of
 // Directions and Colors, and the push constants `params`.
+#include "lib/mean.glsl"
 #include "lib/record_colors.glsl"
 #include "lib/record_directions.glsl"
 #include "lib/reflectance.glsl"
@@ -11,8 +12,6 @@ const float kDarkShare = 0.4;
 const float kUsualShare = 0.3;
 
 float brightness_of[kMaxObservations];
-
-float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
 // How many observations are darker.
 uint rank_of(uint item, uint count) {

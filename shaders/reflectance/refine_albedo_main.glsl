@@ -6,6 +6,7 @@
 //
 // One invocation per record; lights in the outer loop, so that what a light and a surface have in common is computed
 // once, and observations unrolled in the inner one.
+#include "lib/mean.glsl"
 #include "lib/reflectance.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/ward.glsl"
@@ -99,8 +100,6 @@ void unpack_directions(uint record, vec3 normal) {
         }
     }
 }
-
-float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
 // Takes the highlights from the colours. Returns a first guess of where the brightness of the rest lies: the plain
 // mean, with a scale that even wild observations are within.

@@ -4,6 +4,7 @@
 // Restores what of the diffuse albedo is finer than a voxel of the observations: the fused colour over the light,
 // scaled so that its mean over the voxels around the point is that of kd. Where no light was marched yet, what is seen
 // is the fused colour.
+#include "lib/mean.glsl"
 #include "lib/packed_detail.glsl"
 #include "shared/restore_detail.h"
 
@@ -26,8 +27,6 @@ const float kUnevenLight = 0.25;  // those that vary by more leave none: it may 
 const float kMostBrighter = 4.0;  // than the voxels' kd: what is still brighter is a highlight
 const float kShading = 0.1;       // relative contrast that normals and light are off by within a voxel,
 const float kHighlight = 0.5;     // and that of what highlights leave in a mean of views, over ks / kd
-
-float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
 // The albedo with its detail.
 vec3 restored(ivec2 pixel, vec4 hit, Detail own) {

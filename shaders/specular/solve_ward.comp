@@ -35,7 +35,6 @@ const float kSeenVoxels = 6.0;             // and with so many all are believed
 const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known half
 
 struct Prior {
-    vec3 ks;
     float alpha;
     float ks_weight;  // of squared deviations, in units of the cost
     float alpha_weight;
@@ -49,7 +48,7 @@ Prior prior_of(uint label, float unit) {
     const WardMaterial said = network[label];
     const bool any_said = said.kd_weight.w > 0.0;
     const float deviation = any_said ? kNetworkAlphaDeviation : kAlphaDeviation;
-    return Prior(vec3(kKsBefore), any_said ? said.ks_alpha.w : kAlphaBefore, unit / (kKsDeviation * kKsDeviation),
+    return Prior(any_said ? said.ks_alpha.w : kAlphaBefore, unit / (kKsDeviation * kKsDeviation),
                  unit / (deviation * deviation));
 }
 
@@ -59,8 +58,8 @@ void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior, float unit) {
     const float seen = clamp((sum.lobe2.w - kIgnoredVoxels) / (kSeenVoxels - kIgnoredVoxels), 0.0, 1.0);
     const vec3 lobe2 = seen * scale * scale * sum.lobe2.rgb, product = seen * scale * sum.product.rgb;
     const vec3 stiffness = lobe2 + prior.ks_weight;
-    const vec3 ks = max((product + prior.ks_weight * prior.ks) / stiffness, 0.0);
-    const vec3 off = ks - prior.ks, misfit = color2 - 2.0 * ks * product + ks * ks * lobe2;
+    const vec3 ks = max((product + prior.ks_weight * kKsBefore) / stiffness, 0.0);
+    const vec3 off = ks - kKsBefore, misfit = color2 - 2.0 * ks * product + ks * ks * lobe2;
     const float octaves = log2(alpha / prior.alpha);
     ks_misfit[a] = vec4(ks, dot(misfit, vec3(1.0)));
     // Over all ks, the likelihood's integral: the better an alpha would show ks, the less of it is left.

@@ -7,6 +7,7 @@
 // is darker, and says nothing where it is not. Left out altogether, only those of a sharp highlight's observations
 // would remain that missed its peak.
 #include "lib/fit_alphas.glsl"
+#include "lib/mean.glsl"
 #include "lib/reflectance.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "shared/ward_fit.h"
@@ -53,8 +54,6 @@ vec3 rest[kMaxObservations];       // the colour without its highlight
 vec3 channels[kMaxObservations];   // 1: counts, 0: does not
 float trust[kMaxObservations];     // inverse variance; 0 where it does not count
 float robust[kMaxObservations];
-
-float mean_of(vec3 rgb) { return dot(rgb, vec3(1.0 / 3.0)); }
 
 void unpack_directions(uint record, vec3 normal) {
     [[unroll]] for (uint quad = 0u; quad < kRecordQuads; ++quad) {
