@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists those of the visible blocks that have their turn, or never had it.
+// Lists those of the visible blocks that have their turn, or never had it. A surface that comes into view bit by bit,
+// as the narrow side of a thing, does so in blocks that have had their first turn: they have others soon.
 #include "lib/voxel_map.glsl"
 #include "shared/segments.h"
 
@@ -16,7 +17,9 @@ void main() {
     if (gl_GlobalInvocationID.x >= visible[0]) return;
     const uint block = visible[1u + gl_GlobalInvocationID.x];
     const uint known = stamps[block];
-    const uint frames = known >= kSettledBlock ? kSettledFrames : kUpdateFrames;
+    const uint frames = (known & kSettledBlock) != 0u      ? kSettledFrames
+                        : (known & kIncompleteBlock) != 0u ? kIncompleteFrames
+                                                           : kUpdateFrames;
     if (known != 0u && hash_of_key(block_keys[block]) % frames != params.stamp % frames) return;
     stamps[block] = params.stamp;
     const uint item = atomicAdd(due[0], 1u);

@@ -111,6 +111,20 @@ TEST_F(ListDueBlocks, BlocksThatHaveSettledHaveALongerTurn) {
     EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));
 }
 
+TEST_F(ListDueBlocks, BlocksWithUnlabelledVoxelsHaveAShorterTurn) {
+    const std::vector<uint32_t> visible = visible_blocks();
+    std::vector<uint32_t> stamps(kBlocks, 3 | gpu::kIncompleteBlock);
+    std::set<uint32_t> had_turn;
+    for (uint32_t stamp = 20; stamp < 20 + gpu::kIncompleteFrames; ++stamp) {
+        const Listed got = list(visible, stamps, stamp);
+        for (const uint32_t block : got.blocks) {
+            EXPECT_TRUE(had_turn.insert(block).second) << block << " had two turns";
+            EXPECT_EQ(got.stamps[block], stamp) << "whether it still is incomplete, its update tells";
+        }
+    }
+    EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));
+}
+
 TEST_F(ListDueBlocks, NothingInViewIsAnEmptyList) {
     const Listed got = list({}, std::vector<uint32_t>(kBlocks), 20);
     EXPECT_TRUE(got.blocks.empty());

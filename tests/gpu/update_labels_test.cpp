@@ -197,6 +197,39 @@ TEST_F(UpdateLabels, ABlockSettlesWhenAllItsVoxelsNearTheSurfaceAreSure) {
     EXPECT_LT(settled(), before / 2) << "contradicted, but for blocks out of sight";
 }
 
+TEST_F(UpdateLabels, ABlockIsIncompleteWhileAVoxelNearTheSurfaceHasNoLabel) {
+    LabelRig rig(device(), runner());
+    std::vector<uint32_t> roots(LabelRig::kLabels);
+    std::iota(roots.begin(), roots.end(), 0u);
+    rig.set(std::vector<uint32_t>(size_t{LabelRig::kCapacity} * gpu::kBlockVoxels),
+            std::vector<uint32_t>(LabelRig::kCapacity));
+    // The picture's left half has no segment.
+    Image<uint32_t> segment(LabelRig::camera().extent);
+    for (uint32_t y = 0; y < segment.extent().height; ++y) {
+        for (uint32_t x = segment.extent().width / 2; x < segment.extent().width; ++x) segment.at(x, y) = 1;
+    }
+    update(rig, RigidTransform(1.0), segment, {0, 5}, roots);
+    const reference::Volume volume = rig.fusion().volume();
+    const reference::LabelVolume labels = rig.volume();
+    const std::vector<uint32_t> keys = rig.fusion().table().block_keys, stamps = rig.stamps();
+    size_t incomplete = 0, complete = 0;
+    for (size_t block = 0; block < keys.size(); ++block) {
+        if (keys[block] == gpu::kEmptyKey) continue;
+        const auto at = coordinates_of_key(keys[block]);
+        bool near = false, expected = false;
+        for (size_t i = 0; i < gpu::kBlockVoxels; ++i) {
+            if (!is_near_surface(volume.blocks.at(at)[i], volume.voxel_m)) continue;
+            near = true;
+            expected = expected || labels.blocks.at(at)[i].label == 0;
+        }
+        EXPECT_EQ((stamps[block] & gpu::kIncompleteBlock) != 0, expected) << "block " << block;
+        incomplete += expected ? 1 : 0;
+        complete += near && !expected ? 1 : 0;
+    }
+    EXPECT_GT(incomplete, 20u);
+    EXPECT_GT(complete, 20u);
+}
+
 TEST_F(UpdateLabels, InFourTurnsEveryVoxelOfASettledBlockHasOne) {
     LabelRig rig(device(), runner());
     std::vector<uint32_t> roots(LabelRig::kLabels);
