@@ -55,6 +55,7 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     check_range("fusion.allocation_stride_px", settings.fusion.allocation_stride_px, 64);
     check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
     check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
+    check_range("fusion.settled_color_every", settings.fusion.settled_color_every, 65535);
     if (settings.gains && !settings.fusion.color) {
         throw Error("gains are estimated from fused colours, but fusion.color is false");
     }

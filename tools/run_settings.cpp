@@ -23,6 +23,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
     visit("fusion.max_depth_m", s.fusion.max_depth_m);
     visit("fusion.max_weight", s.fusion.max_weight);
     visit("fusion.max_color_weight", s.fusion.max_color_weight);
+    visit("fusion.settled_color_every", s.fusion.settled_color_every);
     visit("fusion.color", s.fusion.color);
     visit("fusion.allocation_stride_px", s.fusion.allocation_stride_px);
     visit("input.sigma_px", s.input.filter.sigma_px);

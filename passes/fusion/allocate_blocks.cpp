@@ -37,6 +37,8 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.phase = frame_index * 5u % (params.stride_px * params.stride_px);
     params.max_table_keys = map.table_slots() / 2;
     params.frame_index = frame_index;
+    params.settled_weight = 0.5f * params.max_weight;
+    params.settled_color_every = std::max(settings.settled_color_every, 1u);
     params.inverse_sdf_range = 1 / (gpu::kSdfRangeVox * voxel_m);
     return params;
 }

@@ -15,6 +15,7 @@ struct FusionSettings {
     float max_depth_m = 6.0f;         ///< farther readings are not fused
     uint32_t max_weight = 6;          ///< samples after which a distance becomes a sliding average: poses drift
     uint32_t max_color_weight = 64;
+    uint32_t settled_color_every = 4;   ///< frames from colour to colour of blocks whose voxels have half of max_weight
     bool color = true;                  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
 };

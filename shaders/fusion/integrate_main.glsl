@@ -1,8 +1,9 @@
-// Body of the integration shaders: TSDF, and colour where PATINA_WITH_COLOR is 1. One workgroup per visible block; an
-// invocation takes four voxels along x at a time (one 16-byte load and store). Curless and Levoy's running average of
-// the distance from the plane through the reading: the projective distance d - z would depend on the viewing direction,
-// and blur what several views see.
+// Body of the integration shaders. One workgroup per visible block; an invocation takes four voxels along x at a time
+// (one 16-byte load and store). Curless and Levoy's running average of the distance from the plane through the reading:
+// the projective distance d - z would depend on the viewing direction, and blur what several views see. Where
+// PATINA_MARK_SURFACE is 1, marks the voxels that take colour and lists the blocks whose turn it is.
 #include "lib/camera.glsl"
+#include "lib/pixel_row.glsl"
 #include "lib/slope.glsl"
 #include "lib/voxel_chunks.glsl"
 #include "lib/voxel_map.glsl"
@@ -17,30 +18,13 @@ layout(binding = 3, r32f) uniform readonly image2D depth_m;
 layout(binding = 4, r32ui) uniform readonly uimage2D slope;
 layout(std430, binding = 5) buffer Tsdf { uvec4 quads[]; }
 tsdf[kMaxVoxelChunks];
-#if PATINA_WITH_COLOR
-layout(binding = 6, rgba16f) uniform readonly image2D color_linear;
-layout(std430, binding = 7) buffer Color { uvec4 quads[]; }
-color[kMaxVoxelChunks];
+#if PATINA_MARK_SURFACE
+layout(std430, binding = 6) writeonly buffer NearSurface { uint near_surface[]; };
+layout(std430, binding = 7) buffer ColorBlocks { uint color_blocks[]; };
+layout(std430, binding = 8) buffer ColorArguments { uint color_arguments[]; };
+
+shared uint group_marks;
 #endif
-
-// Homogeneous pixel coordinates of four voxels along x: they are linear in the voxel's index.
-struct Row {
-    vec3 first;
-    vec3 step;
-};
-
-Row row_of(Camera camera, vec3 world_m) {
-    const vec4 k = camera.focal_center_px;
-    const mat3 pixel_from_camera = mat3(k.x, 0.0, 0.0, 0.0, k.y, 0.0, k.z, k.w, 1.0);
-    return Row(pixel_from_camera * to_camera(camera, world_m),
-               pixel_from_camera * (camera.camera_from_world[0].xyz * fusion.grid.voxel_m));
-}
-
-// The pixel of voxel i, far outside every image where it is not before the camera. Images read zero outside.
-vec2 pixel_of(Row row, int i) {
-    const vec3 at = row.first + float(i) * row.step;
-    return at.z > kNearestDepth ? at.xy * (1.0 / at.z) : vec2(-1e6);
-}
 
 const float kFreeShare = 0.25;  // of the weight of free space beside an edge
 
@@ -85,20 +69,13 @@ uint update_voxel(uint voxel, Sample seen) {
     return seen.valid ? pack_voxel(sdf, uint(min(sum, fusion.max_weight))) : voxel;
 }
 
-#if PATINA_WITH_COLOR
-// The mean of what a voxel's colour was and what the colour camera sees at its place, by the weight of its distance.
-uint update_color(uint color, uint voxel, vec2 pixel, uint dither) {
-    const vec4 seen = imageLoad(color_linear, ivec2(floor(pixel + 0.5)));
-    const float weight = min(float(voxel_weight(voxel)), fusion.max_color_weight);
-    const float share = color == 0u ? 1.0 : min(float(kWeightOne) / weight, 1.0);
-    return seen.a > 0.0 ? pack_color(mix(voxel_color(color), seen.rgb, share), dither) : color;
-}
-#endif
-
-// Four voxels along x, from `voxel` on: quad `quad` of the block's chunk.
-void integrate_quad(uint block, uint quad, ivec3 voxel, uint dither) {
+// Four voxels along x, from `voxel` on: quad `quad` of the block's chunk. Returns kNear << i for those that lie near
+// the surface, and kUnsettled if one of these has few samples.
+const uint kNear = 1u;
+const uint kUnsettled = 1u << 31;
+uint integrate_quad(uint block, uint quad, ivec3 voxel) {
     const vec3 world_m = (vec3(voxel) + 0.5) * fusion.grid.voxel_m;
-    const Row row = row_of(fusion.depth_camera, world_m);
+    const PixelRow row = pixel_row(fusion.depth_camera, world_m, fusion.grid.voxel_m);
     Sample seen[4];
     [[unroll]] for (int i = 0; i < 4; ++i) seen[i] =
         sample_depth(pixel_of(row, i), row.first.z + float(i) * row.step.z);
@@ -109,36 +86,50 @@ void integrate_quad(uint block, uint quad, ivec3 voxel, uint dither) {
     [[unroll]] for (int i = 0; i < 4; ++i) voxels[i] = update_voxel(voxels[i], seen[i]);
     WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_TSDF)
 
-#if PATINA_WITH_COLOR
-    bvec4 near;
-    [[unroll]] for (int i = 0; i < 4; ++i) near[i] = seen[i].valid && abs(seen[i].signed_m) <= fusion.color_band_m;
-    if (!any(near)) return;
-    const Row color_row = row_of(fusion.color_camera, world_m);
-#define LOAD_COLOR(C) colors = color[C].quads[quad]
-#define STORE_COLOR(C) color[C].quads[quad] = colors
-    uvec4 colors;
-    WITH_CHUNK(fusion.grid.chunk_shift, block, LOAD_COLOR)
+    uint marks = 0u;
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        const uint updated = update_color(colors[i], voxels[i], pixel_of(color_row, i), hash_of_key(dither + uint(i)));
-        colors[i] = near[i] ? updated : colors[i];
+        const bool near = seen[i].valid && abs(seen[i].signed_m) <= fusion.color_band_m;
+        const uint unsettled = float(voxel_weight(voxels[i])) < fusion.settled_weight ? kUnsettled : 0u;
+        marks |= near ? kNear << i | unsettled : 0u;
     }
-    WITH_CHUNK(fusion.grid.chunk_shift, block, STORE_COLOR)
-#endif
+    return marks;
 }
+
+#if PATINA_MARK_SURFACE
+// Most blocks show a surface that is settled, whose colours remember several frames: they take colour by turns, others
+// in every frame.
+void list_color_block(uint item, ivec3 block) {
+    const bool turn = (uint(block.x + block.y + block.z) + fusion.frame_index) % fusion.settled_color_every == 0u;
+    if (group_marks == 0u || !(turn || (group_marks & kUnsettled) != 0u)) return;
+    const uint listed = atomicAdd(color_blocks[0], 1u);
+    color_blocks[1u + listed] = item;
+    atomicMax(color_arguments[0], min(listed + 1u, kGroupsPerRow));
+    if (listed % kGroupsPerRow == 0u) atomicMax(color_arguments[1], listed / kGroupsPerRow + 1u);
+}
+#endif
 
 void main() {
     const uint item = group_item(gl_WorkGroupID);
     if (item >= visible[0]) return;
     const uint block = visible[1u + item];
-    const uint key = block_keys[block];
-    const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
+    const ivec3 coordinates = block_of_key(fusion.grid, block_keys[block]);
     const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
-    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u);
+    uint near = 0u, unsettled = 0u;
     // Few invocations with several quads each: on software devices every eight invocations of a group cost as much to
     // start as the work on a quad.
     [[unroll]] for (uint i = 0u; i < kQuadsPerInvocation; ++i) {
         const uint quad = i * kIntegrateGroup + gl_LocalInvocationIndex;
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        integrate_quad(block, first_quad + quad, corner + within, dither + quad * 4u);
+        const uint marks = integrate_quad(block, first_quad + quad, coordinates * int(kBlockEdge) + within);
+        near |= (marks & ~kUnsettled) << 4u * i;
+        unsettled |= marks & kUnsettled;
     }
+#if PATINA_MARK_SURFACE
+    near_surface[item * kIntegrateGroup + gl_LocalInvocationIndex] = near;
+    if (gl_LocalInvocationIndex == 0u) group_marks = 0u;
+    barrier();
+    if (near != 0u) atomicOr(group_marks, near | unsettled);
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) list_color_block(item, coordinates);
+#endif
 }

@@ -25,8 +25,10 @@ struct FusionParams {
     uint phase;           // which of the stride^2 pixels, changes from frame to frame
     uint max_table_keys;  // beyond it nothing is inserted
     uint frame_index;
-    float inverse_sdf_range;  // 1 / (kSdfRangeVox * voxel_m)
-    uint pad0;
+    float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)
+    float settled_weight;      // of a voxel whose colour can wait
+    uint settled_color_every;  // blocks of such voxels take colour once in so many frames
+    uint pad0, pad1, pad2;
 };
 
 INTEROP_END

@@ -171,8 +171,9 @@ reference::Volume FusionRig::volume() {
 
 reference::Fusion FusionRig::reference_fusion() const {
     const gpu::FusionParams params = fusion_params({}, {});
-    return {params.truncation_m, params.truncation_slope, params.max_depth_m,     gpu::kWeightOne,
-            params.max_weight,   params.color_band_m,     params.max_color_weight};
+    return {params.truncation_m,        params.truncation_slope, params.max_depth_m,      gpu::kWeightOne,
+            params.max_weight,          params.color_band_m,     params.max_color_weight, params.settled_weight,
+            params.settled_color_every, params.frame_index};
 }
 
 }  // namespace patina

@@ -71,7 +71,7 @@ class FusionRig {
     MapContent content();
     /// The same, unpacked.
     reference::Volume volume();
-    /// The fusion's settings as the reference takes them.
+    /// The fusion's settings as the reference takes them, for the frame that is fused next.
     reference::Fusion reference_fusion() const;
 
     VoxelMap& map() { return map_; }

@@ -36,17 +36,16 @@ void integrate_color(Voxel& voxel, glm::dvec3 center_m, const Observation::Color
     voxel.colored = true;
 }
 
-}  // namespace
-
-Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion) {
+/// Returns whether the voxel is near the surface that the frame shows.
+bool integrate_distance(Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion) {
     const auto at = project_into(seen.camera, seen.world_from_camera, center_m);
-    if (!at) return voxel;
+    if (!at) return false;
     const double reading = seen.depth_m.at(at->x, at->y);
     const Slope& slope = seen.slope.at(at->x, at->y);
-    if (reading <= 0 || reading > fusion.max_depth_m || slope.plane_factor == 0) return voxel;
+    if (reading <= 0 || reading > fusion.max_depth_m || slope.plane_factor == 0) return false;
     const double truncation = fusion.truncation_m + fusion.truncation_slope * reading;
     const double in_front_m = reading + glm::dot(slope.depth_per_px, at->rest) - at->depth_m;
-    if (in_front_m < -truncation) return voxel;
+    if (in_front_m < -truncation) return false;
 
     const double pixel_m = at->depth_m / seen.camera.fx;
     const double most_m = slope.beside_edge ? std::min(pixel_m, truncation) : truncation;
@@ -55,19 +54,27 @@ Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen
     const double free_share = slope.beside_edge && in_front_m > pixel_m ? 0.25 : 1;
     const double weight =
         std::max(std::round(fusion.frontal_weight * free_share * slope.plane_factor * std::pow(trust, 1.5)), 1.0);
-    Voxel updated = voxel;
-    updated.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
-    updated.weight = std::min(voxel.weight + weight, fusion.max_weight);
-    if (seen.color && std::abs(distance_m) <= fusion.color_band_m)
-        integrate_color(updated, center_m, *seen.color, fusion);
-    return updated;
+    voxel.sdf_m = (voxel.sdf_m * voxel.weight + distance_m * weight) / (voxel.weight + weight);
+    voxel.weight = std::min(voxel.weight + weight, fusion.max_weight);
+    return std::abs(distance_m) <= fusion.color_band_m;
 }
+
+}  // namespace
 
 void integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
     for (auto& [block, voxels] : volume.blocks) {
+        std::vector<int> near;
+        bool settled = true;
         for (int i = 0; i < 512; ++i) {
             Voxel& voxel = voxels[static_cast<size_t>(i)];
-            voxel = integrate(voxel, volume.center_m(block, i), seen, fusion);
+            if (!integrate_distance(voxel, volume.center_m(block, i), seen, fusion)) continue;
+            near.push_back(i);
+            settled = settled && voxel.weight >= fusion.settled_weight;
+        }
+        const int64_t turn = int64_t{block[0]} + block[1] + block[2] + fusion.frame_index;
+        if (!seen.color || (settled && turn % fusion.settled_color_every != 0)) continue;
+        for (const int i : near) {
+            integrate_color(voxels[static_cast<size_t>(i)], volume.center_m(block, i), *seen.color, fusion);
         }
     }
 }

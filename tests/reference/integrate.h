@@ -29,12 +29,14 @@ struct Fusion {
     double max_weight = 0;
     double color_band_m = 0;
     double max_color_weight = 0;
+    double settled_weight = 0;         ///< of a voxel whose colour can wait
+    uint32_t settled_color_every = 1;  ///< frames from turn to turn of a block of such voxels
+    uint32_t frame_index = 0;
 };
 
-/// What add_integrate makes of one voxel, in double precision and without rounding of what is stored.
-Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion);
-
-/// The same for all voxels of a volume.
+/// What add_integrate makes of a volume, in double precision and without rounding of what is stored. A block whose
+/// voxels near the surface are all settled takes colour when the sum of its coordinates and the frame's index is a
+/// multiple of settled_color_every, others do in every frame.
 void integrate(Volume& volume, const Observation& seen, const Fusion& fusion);
 
 }  // namespace patina::reference

@@ -1,6 +1,8 @@
 #include "tools/bench/measure.h"
 
+#include <algorithm>
 #include <chrono>
+#include <functional>
 #include <unordered_map>
 
 #include <sys/resource.h>
@@ -104,7 +106,11 @@ class Bench {
             if (ms.count < result_.frames) continue;
             (compute_[timing.name] ? result_.geometry_ms : result_.transfers_ms) += ms.median;
         }
-        const std::vector<float>& integrate = samples("fusion.integrate");
+        std::vector<float> integrate = samples("fusion.integrate");
+        if (reconstruction_.settings().fusion.color) {
+            const std::vector<float>& color = samples("fusion.integrate_color");
+            std::transform(integrate.begin(), integrate.end(), color.begin(), integrate.begin(), std::plus<>());
+        }
         const std::vector<float>&touch = samples("fusion.touch_blocks"), &select = samples("fusion.select_blocks"),
               &assign = samples("fusion.assign_blocks");
         std::vector<float> mvoxel_s, allocate;
@@ -112,7 +118,7 @@ class Bench {
             mvoxel_s.push_back(visible_mvoxel_[i] / (integrate[i] * 1e-3f));
             allocate.push_back(touch[i] + select[i] + assign[i]);
         }
-        result_.integrate_ms = distribution(integrate);
+        result_.integrate_ms = distribution(std::move(integrate));
         result_.integrate_mvoxel_s = distribution(std::move(mvoxel_s));
         result_.allocate_ms = distribution(std::move(allocate));
         result_.raycast_ms = distribution(samples("fusion.raycast"));

@@ -1,0 +1,5 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#define PATINA_MARK_SURFACE 1
+#include "fusion/integrate_main.glsl"
