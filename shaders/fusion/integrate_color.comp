@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // The mean of the colours that voxels near the surface have been seen in. One workgroup per block that integration
-// listed; invocations share its voxels as there. A pass of its own, since software devices run through every branch.
+// listed. Its quads near the surface are listed first, about a third of all, and the invocations share these: software
+// devices run through every branch, whether or not a voxel takes it.
 #include "lib/camera.glsl"
 #include "lib/pixel_row.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -21,6 +22,9 @@ layout(std430, binding = 6) readonly buffer Tsdf { uvec4 quads[]; }
 tsdf[kMaxVoxelChunks];
 layout(std430, binding = 7) buffer Color { uvec4 quads[]; }
 color[kMaxVoxelChunks];
+
+shared uint listed_quads;
+shared uint list[kBlockVoxels / 4u];  // quad | which of its voxels take colour << 8
 
 // The mean of what a voxel's colour was and what the colour camera sees at its place, by the weight of its distance.
 uint update_color(uint color, uint voxel, vec2 pixel, uint dither) {
@@ -56,12 +60,18 @@ void main() {
     const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
     const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
     const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u);
+    if (gl_LocalInvocationIndex == 0u) listed_quads = 0u;
+    barrier();
     const uint near = near_surface[item * kIntegrateGroup + gl_LocalInvocationIndex];
     [[unroll]] for (uint i = 0u; i < kQuadsPerInvocation; ++i) {
         const uint quad_near = near >> 4u * i & 15u;
-        if (quad_near == 0u) continue;
         const uint quad = i * kIntegrateGroup + gl_LocalInvocationIndex;
+        if (quad_near != 0u) list[atomicAdd(listed_quads, 1u)] = quad | quad_near << 8;
+    }
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < listed_quads; i += kIntegrateGroup) {
+        const uint quad = list[i] & 0xffu;
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        integrate_quad(block, first_quad + quad, corner + within, quad_near, dither + quad * 4u);
+        integrate_quad(block, first_quad + quad, corner + within, list[i] >> 8, dither + quad * 4u);
     }
 }
