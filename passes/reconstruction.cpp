@@ -55,7 +55,7 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
     check_range("fusion.allocation_stride_px", settings.fusion.allocation_stride_px, 64);
     check_range("fusion.max_weight", settings.fusion.max_weight, 65535);
     check_range("fusion.max_color_weight", settings.fusion.max_color_weight, 65535);
-    check_range("fusion.settled_color_every", settings.fusion.settled_color_every, 65535);
+    check_range("fusion.settled_color_every", settings.fusion.settled_color_every, 64);
     if (settings.gains && !settings.fusion.color) {
         throw Error("gains are estimated from fused colours, but fusion.color is false");
     }
@@ -120,7 +120,8 @@ VisibleBlocks Reconstruction::add_passes(graph::Frame& graph, VoxelMapIds& ids, 
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
 
     const FusionSettings& fusion = settings_.fusion;
-    const gpu::FusionParams values = make_fusion_params(map_, fusion, depth_camera, color_camera, frames_);
+    const gpu::FusionParams values =
+        make_fusion_params(map_, fusion, depth_camera, color_camera, frames_, color_frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
     if (color_correction_) {
         input.color = color_correction_->add(graph, ids, input.color, frame.color.camera, world_from_color,
@@ -130,7 +131,7 @@ VisibleBlocks Reconstruction::add_passes(graph::Frame& graph, VoxelMapIds& ids, 
     if (segmentation_) segmentation_->clear_new_blocks(graph, ids);
     const VisibleBlocks visible = add_visible_blocks(graph, map_, ids, depth_camera, settings_.near_m, far_m());
     add_integrate(graph, map_, ids, visible, params, input.depth_m, slope,
-                  fusion.color && !frame.held_out ? std::optional(input.color) : std::nullopt);
+                  fuses_color(frame) ? std::optional(input.color) : std::nullopt);
     if (segmentation_ || reflectance_ || tracking_ || settings_.view_every_frame) {
         const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
         if (tracking_) keep_reference(graph, ids, visible, model, frame.depth.camera, frame.world_from_depth);
@@ -288,6 +289,7 @@ void Reconstruction::note_fused(const RgbdFrame& frame, PendingCounts counts) {
     pending_counts_.push_back(std::move(counts));
     world_from_color_before_ = world_from_color_of(frame);
     ++frames_;
+    if (fuses_color(frame)) ++color_frames_;
     take_counts();
 }
 

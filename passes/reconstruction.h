@@ -228,6 +228,7 @@ class Reconstruction {
     VisibleBlocks add_passes(graph::Frame& graph, VoxelMapIds& ids, const RgbdFrame& frame,
                              const InputPictures& pictures);
     void note_fused(const RgbdFrame& frame, PendingCounts counts);
+    bool fuses_color(const RgbdFrame& frame) const { return settings_.fusion.color && !frame.held_out; }
     RaycastImages sharpened(graph::Frame& graph, const RaycastImages& model, const Intrinsics& camera) const;
     graph::ImageId segment(graph::Frame& graph, const VoxelMapIds& ids, const VisibleBlocks& visible,
                            const RaycastImages& model, const InputImages& input, const RgbdFrame& frame);
@@ -254,6 +255,7 @@ class Reconstruction {
     uint32_t weak_frames_ = 0;                               ///< the last ones
     std::optional<RigidTransform> world_from_color_before_;  ///< of the last frame
     uint32_t frames_ = 0;
+    uint32_t color_frames_ = 0;  ///< of these, whose colour was fused
     std::deque<PendingCounts> pending_counts_;
     gpu::MapCounters counters_{};
     ObservationCounters observation_counters_;

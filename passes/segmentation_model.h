@@ -43,7 +43,8 @@ struct LabelStability {
 
     uint64_t voxels = 0;  ///< that segments voted on
     uint64_t flips = 0;   ///< of these
-    double seen = 0;      ///< voxels in sight that would be voted on if no block waited for its turn, about
+    double seen = 0;  ///< voxels in sight that would be voted on if no block waited for its turn: about, as if those
+                      ///< that have short turns, some of whose voxels nothing shows, were like others
     uint32_t frames = 0;  ///< all of them, the first ones too
 
     /// Counts a frame in.

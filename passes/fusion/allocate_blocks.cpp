@@ -9,7 +9,7 @@ namespace patina {
 
 gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& settings,
                                      const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
-                                     uint32_t frame_index) {
+                                     uint32_t frame_index, uint32_t color_frame) {
     const float voxel_m = map.settings().voxel_m;
     gpu::FusionParams params{};
     params.grid = map.grid();
@@ -39,6 +39,7 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.frame_index = frame_index;
     params.settled_weight = 0.5f * params.max_weight;
     params.settled_color_every = std::max(settings.settled_color_every, 1u);
+    params.color_frame = color_frame;
     params.inverse_sdf_range = 1 / (gpu::kSdfRangeVox * voxel_m);
     return params;
 }

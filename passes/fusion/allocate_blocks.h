@@ -15,17 +15,19 @@ struct FusionSettings {
     float max_depth_m = 6.0f;         ///< farther readings are not fused
     uint32_t max_weight = 6;          ///< samples after which a distance becomes a sliding average: poses drift
     uint32_t max_color_weight = 64;
-    uint32_t settled_color_every = 4;   ///< frames from colour to colour of blocks whose voxels have half of max_weight
+    /// Frames from colour to colour of a block whose voxels near the surface all have half of max_weight; a voxel there
+    /// that has no colour yet waits, too. Colours remember that many times more frames than distances do.
+    uint32_t settled_color_every = 4;
     bool color = true;                  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
 };
 
 /// The parameters that one frame's fusion passes share. `color_camera` may be the depth camera where there is no
-/// colour. Throws Error when the truncation band is wider than a voxel's distance can express at max_depth_m, or
-/// max_weight than its weight can.
+/// colour; `color_frame` counts the frames before this one whose colour was fused. Throws Error when the truncation
+/// band is wider than a voxel's distance can express at max_depth_m, or max_weight than its weight can.
 gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& settings,
                                      const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
-                                     uint32_t frame_index);
+                                     uint32_t frame_index, uint32_t color_frame);
 
 /// Makes sure that every block touched by a reading's truncation band is in the map, as far as the pool reaches: touch
 /// (insert keys by compare-and-swap), select (which new keys get a block when the pool runs short, by hash of the key),

@@ -9,16 +9,18 @@ namespace {
 
 /// What integration leaves for the colour pass.
 struct ColorWork {
-    graph::BufferId near_surface;  ///< kIntegrateGroup words per visible block: bit 4 i + j, voxel j of quad i is near
+    graph::BufferId near_surface;  ///< kIntegrateGroup words per visible block: bit 4 i + j of word
+                                   ///< k: voxel j of quad i kIntegrateGroup + k is near the surface
     graph::BufferId blocks;        ///< u32: count, then items of the visible list
     graph::BufferId arguments;     ///< one group per listed block, in rows of gpu::kGroupsPerRow
 };
 
 ColorWork make_color_work(graph::Frame& frame, const VoxelMap& map) {
     const uint64_t capacity = map.settings().capacity_blocks;
-    return {frame.create_buffer("fusion.near_surface", capacity * gpu::kIntegrateGroup * sizeof(uint32_t)),
-            frame.fill(frame.create_buffer("fusion.color_blocks", (1 + capacity) * sizeof(uint32_t)), 0),
-            frame.fill(frame.create_buffer("fusion.color_arguments", 16), 1)};
+    return {
+        frame.create_buffer("fusion.near_surface", capacity * gpu::kIntegrateGroup * sizeof(uint32_t)),
+        frame.fill(frame.create_buffer("fusion.color_blocks", (1 + capacity) * sizeof(uint32_t)), 0, sizeof(uint32_t)),
+        frame.fill(frame.create_buffer("fusion.color_arguments", 16), 1)};
 }
 
 }  // namespace

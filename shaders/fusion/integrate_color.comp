@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// The mean of the colours that voxels near the surface have been seen in. One workgroup per block that integration
-// listed. Its quads near the surface are listed first, about a third of all, and the invocations share these: software
-// devices run through every branch, whether or not a voxel takes it.
+// The mean of the colours that voxels near the surface have been seen in, a sliding one where their weight is at its
+// cap: over that many of their block's turns. One workgroup per block that integration listed. Its quads near the
+// surface are listed first, about a third of all, and the invocations share these: software devices run through every
+// branch, whether or not a voxel takes it.
 #include "lib/camera.glsl"
 #include "lib/pixel_row.glsl"
 #include "lib/voxel_chunks.glsl"

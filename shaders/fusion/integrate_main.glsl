@@ -69,10 +69,10 @@ uint update_voxel(uint voxel, Sample seen) {
     return seen.valid ? pack_voxel(sdf, uint(min(sum, fusion.max_weight))) : voxel;
 }
 
-// Four voxels along x, from `voxel` on: quad `quad` of the block's chunk. Returns kNear << i for those that lie near
-// the surface, and kUnsettled if one of these has few samples.
-const uint kNear = 1u;
-const uint kUnsettled = 1u << 31;
+const uint kUnsettled = 1u << 31;  // a mark: some voxel near the surface has few samples
+
+// Four voxels along x, from `voxel` on: quad `quad` of the block's chunk. Returns bit i if voxel i lies near the
+// surface, and kUnsettled if one of these has few samples.
 uint integrate_quad(uint block, uint quad, ivec3 voxel) {
     const vec3 world_m = (vec3(voxel) + 0.5) * fusion.grid.voxel_m;
     const PixelRow row = pixel_row(fusion.depth_camera, world_m, fusion.grid.voxel_m);
@@ -90,21 +90,21 @@ uint integrate_quad(uint block, uint quad, ivec3 voxel) {
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const bool near = seen[i].valid && abs(seen[i].signed_m) <= fusion.color_band_m;
         const uint unsettled = float(voxel_weight(voxels[i])) < fusion.settled_weight ? kUnsettled : 0u;
-        marks |= near ? kNear << i | unsettled : 0u;
+        marks |= near ? 1u << i | unsettled : 0u;
     }
     return marks;
 }
 
 #if PATINA_MARK_SURFACE
-// Most blocks show a surface that is settled, whose colours remember several frames: they take colour by turns, others
-// in every frame.
-void list_color_block(uint item, ivec3 block) {
-    const bool turn = (uint(block.x + block.y + block.z) + fusion.frame_index) % fusion.settled_color_every == 0u;
+// Most blocks show a surface that is settled, whose colours remember many frames: they take colour by turns, others in
+// every frame.
+void list_color_block(uint item, uint key) {
+    const uint diagonal = (key & 0x7ffu) + (key >> 11 & 0x3ffu) + (key >> 21);  // neighbours differ by one
+    const bool turn = (diagonal + fusion.color_frame) % fusion.settled_color_every == 0u;
     if (group_marks == 0u || !(turn || (group_marks & kUnsettled) != 0u)) return;
     const uint listed = atomicAdd(color_blocks[0], 1u);
     color_blocks[1u + listed] = item;
-    atomicMax(color_arguments[0], min(listed + 1u, kGroupsPerRow));
-    if (listed % kGroupsPerRow == 0u) atomicMax(color_arguments[1], listed / kGroupsPerRow + 1u);
+    GROW_ARGUMENTS(color_arguments, listed)
 }
 #endif
 
@@ -112,7 +112,8 @@ void main() {
     const uint item = group_item(gl_WorkGroupID);
     if (item >= visible[0]) return;
     const uint block = visible[1u + item];
-    const ivec3 coordinates = block_of_key(fusion.grid, block_keys[block]);
+    const uint key = block_keys[block];
+    const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
     const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
     uint near = 0u, unsettled = 0u;
     // Few invocations with several quads each: on software devices every eight invocations of a group cost as much to
@@ -120,7 +121,7 @@ void main() {
     [[unroll]] for (uint i = 0u; i < kQuadsPerInvocation; ++i) {
         const uint quad = i * kIntegrateGroup + gl_LocalInvocationIndex;
         const ivec3 within = ivec3((quad & 1u) * 4u, quad >> 1 & 7u, quad >> 4);
-        const uint marks = integrate_quad(block, first_quad + quad, coordinates * int(kBlockEdge) + within);
+        const uint marks = integrate_quad(block, first_quad + quad, corner + within);
         near |= (marks & ~kUnsettled) << 4u * i;
         unsettled |= marks & kUnsettled;
     }
@@ -130,6 +131,6 @@ void main() {
     barrier();
     if (near != 0u) atomicOr(group_marks, near | unsettled);
     barrier();
-    if (gl_LocalInvocationIndex == 0u) list_color_block(item, coordinates);
+    if (gl_LocalInvocationIndex == 0u) list_color_block(item, key);
 #endif
 }

@@ -18,9 +18,7 @@ layout(std430, binding = 6) buffer ViewGrid { uint view_grid[]; };
 void append(uint block) {
     const uint item = atomicAdd(visible[0], 1u);
     visible[1u + item] = block;
-    // Whole rows of groups; the arguments start at one group, which finds the list empty if it is.
-    atomicMax(arguments[0], min(item + 1u, kGroupsPerRow));
-    if (item % kGroupsPerRow == 0u) atomicMax(arguments[1], item / kGroupsPerRow + 1u);
+    GROW_ARGUMENTS(arguments, item)
 }
 
 void widen_tiles(vec2 low_px, vec2 high_px, float near_m, float far_m) {

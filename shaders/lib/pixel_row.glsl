@@ -2,7 +2,6 @@
 #ifndef PATINA_LIB_PIXEL_ROW_GLSL
 #define PATINA_LIB_PIXEL_ROW_GLSL
 #include "lib/camera.glsl"
-#include "shared/integrate.h"
 
 // Homogeneous pixel coordinates of neighbouring voxels along x: they are linear in the voxel's index.
 struct PixelRow {

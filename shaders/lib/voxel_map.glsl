@@ -53,4 +53,12 @@ uint pack_color(vec3 linear, uint dither) {
 // The item of a list that this group of an indirect dispatch works on.
 uint group_item(uvec3 group) { return group.y * kGroupsPerRow + group.x; }
 
+// Rows of groups enough for item `group` of a list, whose first group the arguments (a buffer's array) begin with: it
+// finds the list empty if it is.
+#define GROW_ARGUMENTS(arguments, group)                                                          \
+    {                                                                                             \
+        atomicMax(arguments[0], min((group) + 1u, kGroupsPerRow));                                \
+        if ((group) % kGroupsPerRow == 0u) atomicMax(arguments[1], (group) / kGroupsPerRow + 1u); \
+    }
+
 #endif

@@ -24,8 +24,5 @@ void main() {
     stamps[block] = params.stamp;
     const uint item = atomicAdd(due[0], 1u);
     due[1u + item] = block | (known & kSettledBlock);
-    const uint group = item / kUpdateBlocks;
-    if (item % kUpdateBlocks != 0u) return;
-    atomicMax(arguments[0], min(group + 1u, kGroupsPerRow));
-    if (group % kGroupsPerRow == 0u) atomicMax(arguments[1], group / kGroupsPerRow + 1u);
+    if (item % kUpdateBlocks == 0u) GROW_ARGUMENTS(arguments, item / kUpdateBlocks)
 }

@@ -36,7 +36,7 @@ shared uint items[kUpdateBlocks];         // of this group: as in the list
 shared uint keys[kUpdateBlocks];          // of these blocks
 shared uint block_listed[kUpdateBlocks];  // voxels near their surface,
 shared uint unsettled[kUpdateBlocks];     // and those of them whose label is not known, not sure or was contradicted
-shared uint unlabelled[kUpdateBlocks];    // or those without any
+shared uint unlabelled[kUpdateBlocks];    // and those that have no label after this turn
 shared uint listed;
 shared uint list[kUpdateBlocks * kBlockVoxels];  // voxel | which block << 9, in any order: each is updated by itself
 

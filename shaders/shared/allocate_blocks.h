@@ -27,8 +27,9 @@ struct FusionParams {
     uint frame_index;
     float inverse_sdf_range;   // 1 / (kSdfRangeVox * voxel_m)
     float settled_weight;      // of a voxel whose colour can wait
-    uint settled_color_every;  // blocks of such voxels take colour once in so many frames
-    uint pad0, pad1, pad2;
+    uint settled_color_every;  // blocks of such voxels take colour once in so many frames that have one
+    uint color_frame;          // how many frames that have one there were before
+    uint pad0, pad1;
 };
 
 INTEROP_END

@@ -4,6 +4,8 @@
 #include "shared/interop.h"
 INTEROP_BEGIN
 
+INTEROP_CONST float kNearestDepth = 1e-3f;  // metres; what is nearer, or behind the camera, is not seen
+
 struct Camera {
     mat4 camera_from_world;  // rigid, metres; camera axes x right, y down, z forward
     vec4 focal_center_px;    // fx, fy, cx, cy; pixel (0, 0) is the centre of the top left pixel

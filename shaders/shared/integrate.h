@@ -6,7 +6,6 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kIntegrateGroup = 32u;     // invocations per block
 INTEROP_CONST uint kQuadsPerInvocation = 4u;  // of four voxels along x
-INTEROP_CONST float kNearestDepth = 1e-3f;    // metres; what is nearer, or behind the camera, is not seen
 
 INTEROP_END
 #endif

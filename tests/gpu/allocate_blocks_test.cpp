@@ -128,7 +128,7 @@ TEST_F(AllocateBlocksTest, SettingsThatVoxelsCannotHoldAreErrors) {
     const auto with = [&](auto change) {
         FusionSettings settings;
         change(settings);
-        return [&map, settings] { make_fusion_params(map, settings, {}, {}, 0); };
+        return [&map, settings] { make_fusion_params(map, settings, {}, {}, 0, 0); };
     };
     EXPECT_THAT(with([](FusionSettings& s) { s.truncation_m = 0.07f; }),
                 ::testing::ThrowsMessage<Error>(::testing::HasSubstr("voxels of 0.005 m hold at most 0.08 m")));

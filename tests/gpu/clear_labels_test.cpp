@@ -13,7 +13,7 @@ class ClearLabels : public GpuTest {
     void allocate(LabelRig& rig, const RigidTransform& world_from_camera) {
         graph::Frame frame = runner().begin();
         const gpu::Camera camera = make_camera(LabelRig::camera(), world_from_camera);
-        const gpu::FusionParams values = make_fusion_params(rig.map(), rig.fusion().settings(), camera, camera, 0);
+        const gpu::FusionParams values = make_fusion_params(rig.map(), rig.fusion().settings(), camera, camera, 0, 0);
         const auto params = frame.upload<gpu::FusionParams>("params", std::span(&values, 1));
         const auto depth = frame.upload("depth", {LabelRig::camera().extent, vulkan::Format::kR32f},
                                         std::as_bytes(std::span(LabelRig::depth_m(world_from_camera).pixels())));

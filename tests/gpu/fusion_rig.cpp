@@ -39,7 +39,7 @@ FusionRig::FusionRig(vulkan::Device& device, graph::Runner& runner, const VoxelM
 }
 
 gpu::FusionParams FusionRig::fusion_params(const gpu::Camera& depth_camera, const gpu::Camera& color_camera) const {
-    return make_fusion_params(map_, fusion_, depth_camera, color_camera, frame_);
+    return make_fusion_params(map_, fusion_, depth_camera, color_camera, frame_, color_frame_);
 }
 
 void FusionRig::fuse(const Intrinsics& camera, const RigidTransform& world_from_camera, const Image<float>& depth_m,
@@ -66,6 +66,7 @@ void FusionRig::fuse(const Intrinsics& camera, const RigidTransform& world_from_
     VoxelMap::keep(frame, ids);
     runner_.submit(std::move(frame));
     ++frame_;
+    if (color) ++color_frame_;
 }
 
 void FusionRig::remove_empty_blocks(const Intrinsics& camera, const RigidTransform& world_from_camera) {
@@ -173,7 +174,7 @@ reference::Fusion FusionRig::reference_fusion() const {
     const gpu::FusionParams params = fusion_params({}, {});
     return {params.truncation_m,        params.truncation_slope, params.max_depth_m,      gpu::kWeightOne,
             params.max_weight,          params.color_band_m,     params.max_color_weight, params.settled_weight,
-            params.settled_color_every, params.frame_index};
+            params.settled_color_every, params.color_frame};
 }
 
 }  // namespace patina

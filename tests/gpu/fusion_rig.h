@@ -87,6 +87,7 @@ class FusionRig {
     VoxelMap map_;
     FusionSettings fusion_;
     uint32_t frame_ = 0;
+    uint32_t color_frame_ = 0;
 };
 
 }  // namespace patina

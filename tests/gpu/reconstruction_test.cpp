@@ -253,5 +253,33 @@ TEST_F(ReconstructionTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) 
     EXPECT_GT(failures, 10u);
 }
 
+TEST_F(ReconstructionTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
+    ReconstructionSettings settings = small_settings();
+    settings.fusion.settled_color_every = 2;
+    Reconstruction reconstruction(device(), settings);
+    const Intrinsics camera = cubes_.info.depth;
+    const auto add = [&](uint8_t grey, int count) {
+        RgbdFrame frame = tools::to_rgbd(cubes_.info, cubes_.frames[0]);
+        const Image<glm::u8vec3> picture(frame.color.camera.extent, glm::u8vec3(grey));
+        frame.color.pixels = std::span(picture.pixels());
+        for (int i = 0; i < count; ++i) {
+            frame.held_out = i % 2 == 1;
+            reconstruction.add(frame);
+        }
+        const PendingView pending = reconstruction.view(camera, frame.world_from_depth);
+        reconstruction.wait();
+        return pending.get().color;
+    };
+    const Image<glm::vec4> before = add(60, 24), after = add(200, 48);
+    size_t seen = 0, changed = 0;
+    for (size_t i = 0; i < before.pixels().size(); ++i) {
+        if (before.pixels()[i].a == 0) continue;
+        ++seen;
+        changed += after.pixels()[i].r > 4 * before.pixels()[i].r ? 1 : 0;
+    }
+    EXPECT_GT(seen, before.pixels().size() / 3);
+    EXPECT_GT(changed, seen * 97 / 100);
+}
+
 }  // namespace
 }  // namespace patina

@@ -170,7 +170,7 @@ TEST_F(RemoveEmptyBlocksTest, AStaleListFreesNothingTwice) {
 
     graph::Frame frame = runner().begin();
     const gpu::Camera camera = make_camera(kCamera, kPose);
-    const gpu::FusionParams values = make_fusion_params(rig.map(), rig.settings(), camera, camera, 0);
+    const gpu::FusionParams values = make_fusion_params(rig.map(), rig.settings(), camera, camera, 0, 0);
     const auto params = frame.upload<gpu::FusionParams>("params", std::span(&values, 1));
     VoxelMapIds ids = rig.map().import(frame);
     const VisibleBlocks visible = add_visible_blocks(frame, rig.map(), ids, camera, 0.1f, 4.0f);

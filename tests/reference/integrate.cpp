@@ -61,7 +61,8 @@ bool integrate_distance(Voxel& voxel, glm::dvec3 center_m, const Observation& se
 
 }  // namespace
 
-void integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
+size_t integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
+    size_t waiting = 0;
     for (auto& [block, voxels] : volume.blocks) {
         std::vector<int> near;
         bool settled = true;
@@ -71,12 +72,17 @@ void integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
             near.push_back(i);
             settled = settled && voxel.weight >= fusion.settled_weight;
         }
-        const int64_t turn = int64_t{block[0]} + block[1] + block[2] + fusion.frame_index;
-        if (!seen.color || (settled && turn % fusion.settled_color_every != 0)) continue;
+        if (!seen.color || near.empty()) continue;
+        const int64_t turn = int64_t{block[0]} + block[1] + block[2] + 2560 + fusion.color_frame;
+        if (settled && turn % fusion.settled_color_every != 0) {
+            ++waiting;
+            continue;
+        }
         for (const int i : near) {
             integrate_color(voxels[static_cast<size_t>(i)], volume.center_m(block, i), *seen.color, fusion);
         }
     }
+    return waiting;
 }
 
 }  // namespace patina::reference

@@ -31,12 +31,13 @@ struct Fusion {
     double max_color_weight = 0;
     double settled_weight = 0;         ///< of a voxel whose colour can wait
     uint32_t settled_color_every = 1;  ///< frames from turn to turn of a block of such voxels
-    uint32_t frame_index = 0;
+    uint32_t color_frame = 0;          ///< frames with colour before this one
 };
 
 /// What add_integrate makes of a volume, in double precision and without rounding of what is stored. A block whose
-/// voxels near the surface are all settled takes colour when the sum of its coordinates and the frame's index is a
-/// multiple of settled_color_every, others do in every frame.
-void integrate(Volume& volume, const Observation& seen, const Fusion& fusion);
+/// voxels near the surface are all settled takes colour when the sum of its coordinates, 2560 (as keys have none below
+/// zero), and color_frame is a multiple of settled_color_every, others do in every frame. Returns how many blocks with
+/// voxels near the surface had to wait.
+size_t integrate(Volume& volume, const Observation& seen, const Fusion& fusion);
 
 }  // namespace patina::reference
