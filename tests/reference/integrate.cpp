@@ -61,6 +61,13 @@ bool integrate_distance(Voxel& voxel, glm::dvec3 center_m, const Observation& se
 
 }  // namespace
 
+Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion) {
+    Voxel updated = voxel;
+    const bool near = integrate_distance(updated, center_m, seen, fusion);
+    if (near && seen.color) integrate_color(updated, center_m, *seen.color, fusion);
+    return updated;
+}
+
 size_t integrate(Volume& volume, const Observation& seen, const Fusion& fusion) {
     size_t waiting = 0;
     for (auto& [block, voxels] : volume.blocks) {

@@ -34,7 +34,11 @@ struct Fusion {
     uint32_t color_frame = 0;          ///< frames with colour before this one
 };
 
-/// What add_integrate makes of a volume, in double precision and without rounding of what is stored. A block whose
+/// What add_integrate makes of one voxel, in double precision and without rounding of what is stored, if its block has
+/// its turn to take colour.
+Voxel integrate(const Voxel& voxel, glm::dvec3 center_m, const Observation& seen, const Fusion& fusion);
+
+/// The same for all voxels of a volume. A block whose
 /// voxels near the surface are all settled takes colour when the sum of its coordinates, 2560 (as keys have none below
 /// zero), and color_frame is a multiple of settled_color_every, others do in every frame. Returns how many blocks with
 /// voxels near the surface had to wait.
