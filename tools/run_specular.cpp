@@ -17,7 +17,16 @@ std::filesystem::path network_file(const SequenceOptions& options) {
 
 }  // namespace
 
-void set_specular(ReconstructionSettings& settings, const SequenceOptions& options) {
+std::optional<NetworkDescription> read_network(const SequenceOptions& options) {
+    if (options.truth_materials || options.specular == "off" || options.specular == "fit") return {};
+    const std::filesystem::path file = network_file(options);
+    if (!file.empty()) return read_network_file(file);
+    if (options.specular.empty()) return {};
+    throw Error("--specular ", options.specular, " needs a network: give --network FILE");
+}
+
+void set_specular(ReconstructionSettings& settings, const SequenceOptions& options,
+                  std::optional<NetworkDescription> network) {
     const bool possible = settings.reflectance && settings.segmentation && !options.truth_materials;
     if (!possible || options.specular == "off") {
         settings.specular.reset();
@@ -25,13 +34,7 @@ void set_specular(ReconstructionSettings& settings, const SequenceOptions& optio
     }
     if (!settings.specular) settings.specular.emplace();
     settings.specular->fit = options.specular != "hemicnn";
-    if (options.specular == "fit") return;
-    const std::filesystem::path file = network_file(options);
-    if (!file.empty()) {
-        settings.network = read_network_file(file);
-    } else if (!options.specular.empty()) {
-        throw Error("--specular ", options.specular, " needs a network: give --network FILE");
-    }
+    settings.network = std::move(network);
 }
 
 std::string specular_mode(const ReconstructionSettings& settings) {

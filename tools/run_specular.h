@@ -1,14 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "passes/model/network.h"
 #include "tools/sequence_fusion.h"
 
 namespace patina::tools {
 
+/// The network that estimates materials as the options say; none where they ask for none, or leave it open and none
+/// ships. Throws Error when one is asked for that is not there, or as read_network_file.
+std::optional<NetworkDescription> read_network(const SequenceOptions& options);
+
 /// Sets how specular materials of segments are estimated, as the options say: not at all without lights or segments, or
-/// where the materials are given. Throws Error when a network is asked for that is not there, or as read_network_file.
-void set_specular(ReconstructionSettings& settings, const SequenceOptions& options);
+/// where the materials are given.
+void set_specular(ReconstructionSettings& settings, const SequenceOptions& options,
+                  std::optional<NetworkDescription> network);
 
 /// For run.json: "off", "fit", "hemicnn" or "both".
 std::string specular_mode(const ReconstructionSettings& settings);

@@ -41,7 +41,7 @@ std::unique_ptr<sensor::SyntheticSource> open_synthetic(const SequenceOptions& o
 
 /// With lights, reflectance is estimated; without, there is nothing to estimate it from.
 ReconstructionSettings settings_of(const SequenceOptions& options, const sensor::SequenceInfo& info,
-                                   const std::vector<PointLight>& lights) {
+                                   const std::vector<PointLight>& lights, std::optional<NetworkDescription> network) {
     ReconstructionSettings settings = options.settings;
     const bool drifts = options.gains == GainMode::kAuto && !info.exposure_known && settings.fusion.color;
     if (options.gains == GainMode::kOff) settings.gains.reset();
@@ -67,7 +67,7 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
         if (settings.gains) settings.keyframes->tests = KeyframeTests::kDepth;
     }
     if (settings.segmentation) settings.segmentation->given = options.labels == "truth";
-    set_specular(settings, options);
+    set_specular(settings, options, std::move(network));
     return settings;
 }
 
@@ -75,9 +75,11 @@ ReconstructionSettings settings_of(const SequenceOptions& options, const sensor:
 
 SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGuard& interrupt)
     : options_(options), interrupt_(interrupt), held_out_(options.hold_out) {
-    // A recording is opened before the device, so that a wrong path is told at once.
+    // A recording is opened before the device, and a network read before lights are looked for, so that a wrong path
+    // is told at once.
     const sensor::SyntheticSource* scene = nullptr;
     if (!is_synthetic(options)) source_ = open_recording(options);
+    std::optional<NetworkDescription> network = read_network(options);
     illumination_ = lights_of(options);
     lights_ = point_lights(illumination_);
     device_.emplace(options.device);
@@ -89,7 +91,7 @@ SequenceFusion::SequenceFusion(const SequenceOptions& options, const InterruptGu
     truth_.emplace(options.sequence, scene);
     info_ = source_->info();
     if (options.frames > 0) info_.frames = std::min(info_.frames, options.frames);
-    reconstruction_.emplace(*device_, settings_of(options, info_, lights_));
+    reconstruction_.emplace(*device_, settings_of(options, info_, lights_, std::move(network)));
     if (reconstruction_->reflectance()) prepare_reflectance(*reconstruction_->reflectance());
 }
 
