@@ -160,6 +160,14 @@ TEST_F(BadInput, LightingSequenceThatIsMissingOrDark) {
                 HasSubstr("no lamp was found"));
 }
 
+TEST_F(BadInput, ABrokenNetworkIsToldBeforeLightsAreLookedFor) {
+    const fs::path network = beside("network.safetensors");
+    const std::vector<std::string> arguments{"--network", network.string(), "--lighting", beside("nowhere").string()};
+    EXPECT_THAT(failure_of_run(sequence(), arguments), HasSubstr(network.string()));
+    write_text(network, "half a header");
+    EXPECT_THAT(failure_of_run(sequence(), arguments), HasSubstr(network.string()));
+}
+
 TEST_F(BadInput, InfoOfNothing) {
     EXPECT_THAT(expect_failure(patina({"info", beside("nowhere")})), HasSubstr("nowhere"));
 }
