@@ -28,12 +28,12 @@ INTEROP_CONST uint kIncompleteFrames = 2u;    // or, while it holds voxels near 
 INTEROP_CONST uint kSettledFrames = 32u;      // or, when its labels have settled: a multiple of the others
 INTEROP_CONST uint kSettledConfidence = 4u;   // of every voxel near the surface in a block that has settled
 INTEROP_CONST uint kSettledBlock = 1u << 31;  // of a block's stamp
-INTEROP_CONST uint kIncompleteBlock = 1u << 30;
-INTEROP_CONST uint kUpdateLabelsGroup = 32u;   // invocations,
-INTEROP_CONST uint kUpdateBlocks = 4u;         // for so many blocks, of each of which an invocation looks at
-INTEROP_CONST uint kLabelQuads = 4u;           // times four voxels along x
-INTEROP_CONST uint kAssignLabelsGroup = 128u;  // of the one workgroup that assigns labels
-INTEROP_CONST uint kSweepGroup = 64u;          // block ids per group
+INTEROP_CONST uint kIncompleteBlock = 1u << 30;  // as that
+INTEROP_CONST uint kUpdateLabelsGroup = 32u;     // invocations,
+INTEROP_CONST uint kUpdateBlocks = 4u;           // for so many blocks, of each of which an invocation looks at
+INTEROP_CONST uint kLabelQuads = 4u;             // times four voxels along x
+INTEROP_CONST uint kAssignLabelsGroup = 128u;    // of the one workgroup that assigns labels
+INTEROP_CONST uint kSweepGroup = 64u;            // block ids per group
 
 // What becomes of a label. One that is retired is in nobody's way, but some voxels may still hold it: it is free once
 // all have been swept since.
