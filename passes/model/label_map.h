@@ -10,8 +10,8 @@ namespace patina {
 struct LabelMapIds {
     graph::BufferId words;   ///< u32 per voxel, chunked: label 16 bits, 0 where none is known | confidence 8 bits
     graph::BufferId stamps;  ///< u32 per block: index + 1 of the frame that updated it last, and
-                             ///< gpu::kSettledBlock if its labels have settled, gpu::kIncompleteBlock if voxels near
-                             ///< the surface had none; 0: never
+                             ///< gpu::kSettledBlock if its labels have settled, gpu::kRestlessBlock if voxels near
+                             ///< the surface had none or were contradicted; 0: never
 };
 
 /// A label per voxel of a voxel map, beside it: block ids and chunks are the map's. Blocks are cleared when the map

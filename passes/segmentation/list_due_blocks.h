@@ -7,9 +7,9 @@
 namespace patina {
 
 /// Lists those of the visible blocks that were never listed since they were assigned, or have their turn: one in
-/// gpu::kUpdateFrames frames, of those that hold unlabelled voxels near the surface in gpu::kIncompleteFrames, of those
-/// that have settled in gpu::kSettledFrames, by their keys. `stamp` is the frame's
-/// index + 1.
+/// gpu::kUpdateFrames frames, of those where voxels near the surface had no label or were contradicted in
+/// gpu::kRestlessFrames, of those that have settled in gpu::kSettledFrames, by their keys. `stamp` is the frame's index
+/// + 1.
 DueBlocks add_list_due_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                               graph::BufferId visible, uint32_t stamp);
 

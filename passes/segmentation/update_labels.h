@@ -15,9 +15,10 @@ namespace patina {
 /// voxel of the surface that the frame sees: agreement raises a voxel's confidence, contradiction lowers it and at last
 /// replaces its label. A voxel without one takes that of a surface within two voxels, as beside silhouettes noise
 /// leaves gaps. A block has settled (LabelMapIds::stamps) when all its voxels near the surface have a confidence of
-/// gpu::kSettledConfidence, and none was contradicted, and is incomplete while one of them has no label; of one that
-/// has settled, a quarter of the voxels has its turn. Counts voxels and flips in gpu::SegmentCounters. Throws Error
-/// when images do not fit each other, and when `access` is MapAccess::kTexel and the map too large for it.
+/// gpu::kSettledConfidence, and none was contradicted, and is restless while one of them has no label or was
+/// contradicted; of one that has settled, a quarter of the voxels has its turn. Counts voxels and flips in
+/// gpu::SegmentCounters. Throws Error when images do not fit each other, and when `access` is MapAccess::kTexel and the
+/// map too large for it.
 void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                        SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
                        const FrameSegments& segments, graph::BufferId segment_labels, MapAccess access);

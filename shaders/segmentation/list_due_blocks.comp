@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists those of the visible blocks that have their turn, or never had it. A surface that comes into view bit by bit,
-// as the narrow side of a thing, does so in blocks that have had their first turn: they have others soon.
+// as the narrow side of a thing, does so in blocks that have had their first turn: they have others soon, as those have
+// whose labels change.
 #include "lib/voxel_map.glsl"
 #include "shared/segments.h"
 
@@ -17,9 +18,9 @@ void main() {
     if (gl_GlobalInvocationID.x >= visible[0]) return;
     const uint block = visible[1u + gl_GlobalInvocationID.x];
     const uint known = stamps[block];
-    const uint frames = (known & kSettledBlock) != 0u      ? kSettledFrames
-                        : (known & kIncompleteBlock) != 0u ? kIncompleteFrames
-                                                           : kUpdateFrames;
+    const uint frames = (known & kSettledBlock) != 0u    ? kSettledFrames
+                        : (known & kRestlessBlock) != 0u ? kRestlessFrames
+                                                         : kUpdateFrames;
     if (known != 0u && hash_of_key(block_keys[block]) % frames != params.stamp % frames) return;
     stamps[block] = params.stamp;
     const uint item = atomicAdd(due[0], 1u);

@@ -36,7 +36,7 @@ shared uint items[kUpdateBlocks];         // of this group: as in the list
 shared uint keys[kUpdateBlocks];          // of these blocks
 shared uint block_listed[kUpdateBlocks];  // voxels near their surface,
 shared uint unsettled[kUpdateBlocks];     // and those of them whose label is not known, not sure or was contradicted
-shared uint unlabelled[kUpdateBlocks];    // and those that have no label after this turn
+shared uint restless[kUpdateBlocks];      // and those that have no label after this turn or were contradicted in it
 shared uint listed;
 shared uint list[kUpdateBlocks * kBlockVoxels];  // voxel | which block << 9, in any order: each is updated by itself
 
@@ -140,7 +140,7 @@ void update_voxel(uint entry, inout uint votes, inout uint flips) {
     const uint before = known;
     known = updated(known, label, votes, flips);
     if (known >> 16 < max(kSettledConfidence, before >> 16)) atomicAdd(unsettled[slot], 1u);
-    if (known == 0u) atomicAdd(unlabelled[slot], 1u);
+    if (known == 0u || known >> 16 < before >> 16) atomicAdd(restless[slot], 1u);
     if (known != before) {
         WITH_CHUNK(view.grid.chunk_shift, block, STORE_WORD)
     }
@@ -150,7 +150,7 @@ void update_voxel(uint entry, inout uint votes, inout uint flips) {
 void settle(uint slot) {
     const uint item = items[slot];
     atomicAdd(looked_at, is_settled(item) ? 1u : kLabelQuads);
-    if (unlabelled[slot] > 0u) stamps[block_of(item)] |= kIncompleteBlock;
+    if (restless[slot] > 0u) stamps[block_of(item)] |= kRestlessBlock;
     if ((is_settled(item) || block_listed[slot] > 0u) && unsettled[slot] == 0u) stamps[block_of(item)] |= kSettledBlock;
 }
 
@@ -164,7 +164,7 @@ void main() {
     if (lane < count) {
         items[lane] = due[1u + first + lane];
         keys[lane] = block_keys[block_of(items[lane])];
-        block_listed[lane] = unsettled[lane] = unlabelled[lane] = 0u;
+        block_listed[lane] = unsettled[lane] = restless[lane] = 0u;
     }
     barrier();
     for (uint slot = 0u; slot < count; ++slot) list_near(slot);

@@ -19,21 +19,22 @@ INTEROP_CONST uint kMostChromaSamples = 1u << 20;  // then the sums are halved
 INTEROP_CONST uint kLabelGroup = 128u;  // of a row: software devices take a group of several rows a quarter longer
 INTEROP_CONST uint kStripGroupX = 32u;  // of strips
 INTEROP_CONST uint kStripGroupY = 4u;
-INTEROP_CONST uint kSampleStride = 2u;        // of the pixels, in x and y, whose labels the map is asked for
-INTEROP_CONST uint kAskGroup = 32u;           // invocations, each of which asks for a column of
-INTEROP_CONST uint kAskRows = 8u;             // so many labels
-INTEROP_CONST uint kStripPixels = 8u;         // of one row, that one invocation counts
-INTEROP_CONST uint kUpdateFrames = 16u;       // in which every block that stays in sight is updated once,
-INTEROP_CONST uint kIncompleteFrames = 2u;    // or, while it holds voxels near the surface without a label, in so many,
-INTEROP_CONST uint kSettledFrames = 32u;      // or, when its labels have settled: a multiple of the others
-INTEROP_CONST uint kSettledConfidence = 4u;   // of every voxel near the surface in a block that has settled
-INTEROP_CONST uint kSettledBlock = 1u << 31;  // of a block's stamp
-INTEROP_CONST uint kIncompleteBlock = 1u << 30;  // as that
-INTEROP_CONST uint kUpdateLabelsGroup = 32u;     // invocations,
-INTEROP_CONST uint kUpdateBlocks = 4u;           // for so many blocks, of each of which an invocation looks at
-INTEROP_CONST uint kLabelQuads = 4u;             // times four voxels along x
-INTEROP_CONST uint kAssignLabelsGroup = 128u;    // of the one workgroup that assigns labels
-INTEROP_CONST uint kSweepGroup = 64u;            // block ids per group
+INTEROP_CONST uint kSampleStride = 2u;   // of the pixels, in x and y, whose labels the map is asked for
+INTEROP_CONST uint kAskGroup = 32u;      // invocations, each of which asks for a column of
+INTEROP_CONST uint kAskRows = 8u;        // so many labels
+INTEROP_CONST uint kStripPixels = 8u;    // of one row, that one invocation counts
+INTEROP_CONST uint kUpdateFrames = 16u;  // in which every block that stays in sight is updated once,
+INTEROP_CONST uint kRestlessFrames =
+    2u;  // or, while voxels near the surface have no label or another than seen, in so many,
+INTEROP_CONST uint kSettledFrames = 32u;       // or, when its labels have settled: a multiple of the others
+INTEROP_CONST uint kSettledConfidence = 4u;    // of every voxel near the surface in a block that has settled
+INTEROP_CONST uint kSettledBlock = 1u << 31;   // of a block's stamp
+INTEROP_CONST uint kRestlessBlock = 1u << 30;  // as that
+INTEROP_CONST uint kUpdateLabelsGroup = 32u;   // invocations,
+INTEROP_CONST uint kUpdateBlocks = 4u;         // for so many blocks, of each of which an invocation looks at
+INTEROP_CONST uint kLabelQuads = 4u;           // times four voxels along x
+INTEROP_CONST uint kAssignLabelsGroup = 128u;  // of the one workgroup that assigns labels
+INTEROP_CONST uint kSweepGroup = 64u;          // block ids per group
 
 // What becomes of a label. One that is retired is in nobody's way, but some voxels may still hold it: it is free once
 // all have been swept since.

@@ -111,15 +111,15 @@ TEST_F(ListDueBlocks, BlocksThatHaveSettledHaveALongerTurn) {
     EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));
 }
 
-TEST_F(ListDueBlocks, BlocksWithUnlabelledVoxelsHaveAShorterTurn) {
+TEST_F(ListDueBlocks, RestlessBlocksHaveAShorterTurn) {
     const std::vector<uint32_t> visible = visible_blocks();
-    std::vector<uint32_t> stamps(kBlocks, 3 | gpu::kIncompleteBlock);
+    std::vector<uint32_t> stamps(kBlocks, 3 | gpu::kRestlessBlock);
     std::set<uint32_t> had_turn;
-    for (uint32_t stamp = 20; stamp < 20 + gpu::kIncompleteFrames; ++stamp) {
+    for (uint32_t stamp = 20; stamp < 20 + gpu::kRestlessFrames; ++stamp) {
         const Listed got = list(visible, stamps, stamp);
         for (const uint32_t block : got.blocks) {
             EXPECT_TRUE(had_turn.insert(block).second) << block << " had two turns";
-            EXPECT_EQ(got.stamps[block], stamp) << "whether it still is incomplete, its update tells";
+            EXPECT_EQ(got.stamps[block], stamp) << "whether it still is restless, its update tells";
         }
     }
     EXPECT_EQ(had_turn, std::set<uint32_t>(visible.begin(), visible.end()));

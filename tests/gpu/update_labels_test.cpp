@@ -197,7 +197,7 @@ TEST_F(UpdateLabels, ABlockSettlesWhenAllItsVoxelsNearTheSurfaceAreSure) {
     EXPECT_LT(settled(), before / 2) << "contradicted, but for blocks out of sight";
 }
 
-TEST_F(UpdateLabels, ABlockIsIncompleteWhileAVoxelNearTheSurfaceHasNoLabel) {
+TEST_F(UpdateLabels, ABlockIsRestlessWhileAVoxelNearTheSurfaceHasNoLabelOrIsContradicted) {
     LabelRig rig(device(), runner());
     std::vector<uint32_t> roots(LabelRig::kLabels);
     std::iota(roots.begin(), roots.end(), 0u);
@@ -208,26 +208,33 @@ TEST_F(UpdateLabels, ABlockIsIncompleteWhileAVoxelNearTheSurfaceHasNoLabel) {
     for (uint32_t y = 0; y < segment.extent().height; ++y) {
         for (uint32_t x = segment.extent().width / 2; x < segment.extent().width; ++x) segment.at(x, y) = 1;
     }
-    update(rig, RigidTransform(1.0), segment, {0, 5}, roots);
     const reference::Volume volume = rig.fusion().volume();
-    const reference::LabelVolume labels = rig.volume();
-    const std::vector<uint32_t> keys = rig.fusion().table().block_keys, stamps = rig.stamps();
-    size_t incomplete = 0, complete = 0;
-    for (size_t block = 0; block < keys.size(); ++block) {
-        if (keys[block] == gpu::kEmptyKey) continue;
-        const auto at = coordinates_of_key(keys[block]);
-        bool near = false, expected = false;
-        for (size_t i = 0; i < gpu::kBlockVoxels; ++i) {
-            if (!is_near_surface(volume.blocks.at(at)[i], volume.voxel_m)) continue;
-            near = true;
-            expected = expected || labels.blocks.at(at)[i].label == 0;
+    const std::vector<uint32_t> keys = rig.fusion().table().block_keys;
+    // Labels first appear, then agree, then are contradicted.
+    for (const uint32_t label : {5u, 5u, 6u}) {
+        const reference::LabelVolume before = rig.volume();
+        rig.set(rig.words(), std::vector<uint32_t>(LabelRig::kCapacity));
+        update(rig, RigidTransform(1.0), segment, {0, label}, roots);
+        const reference::LabelVolume after = rig.volume();
+        const std::vector<uint32_t> stamps = rig.stamps();
+        size_t restless = 0, calm = 0;
+        for (size_t block = 0; block < keys.size(); ++block) {
+            if (keys[block] == gpu::kEmptyKey) continue;
+            const auto at = coordinates_of_key(keys[block]);
+            bool near = false, expected = false;
+            for (size_t i = 0; i < gpu::kBlockVoxels; ++i) {
+                if (!is_near_surface(volume.blocks.at(at)[i], volume.voxel_m)) continue;
+                const reference::VoxelLabel &was = before.blocks.at(at)[i], &is = after.blocks.at(at)[i];
+                near = true;
+                expected = expected || is.label == 0 || is.confidence < was.confidence;
+            }
+            EXPECT_EQ((stamps[block] & gpu::kRestlessBlock) != 0, expected) << "block " << block;
+            restless += expected ? 1 : 0;
+            calm += near && !expected ? 1 : 0;
         }
-        EXPECT_EQ((stamps[block] & gpu::kIncompleteBlock) != 0, expected) << "block " << block;
-        incomplete += expected ? 1 : 0;
-        complete += near && !expected ? 1 : 0;
+        EXPECT_GT(restless, 20u) << label;
+        EXPECT_EQ(calm > 20, label == 5) << calm;
     }
-    EXPECT_GT(incomplete, 20u);
-    EXPECT_GT(complete, 20u);
 }
 
 TEST_F(UpdateLabels, InFourTurnsEveryVoxelOfASettledBlockHasOne) {
