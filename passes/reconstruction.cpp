@@ -207,6 +207,11 @@ float Reconstruction::far_m() const {
     return fusion.max_depth_m + truncation_m + fusion.truncation_slope * fusion.max_depth_m;
 }
 
+float Reconstruction::reach_m(const Intrinsics& camera) const {
+    const float seen_m = view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, far_m());
+    return std::min(settings_.fusion.max_depth_m, seen_m);
+}
+
 bool Reconstruction::add(const RgbdFrame& frame) {
     check(frame);
     if (!tracking_) {

@@ -145,6 +145,10 @@ class Reconstruction {
     /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
+    /// How far surfaces are fused and seen, metres along the optical axis of a depth camera: fusion.max_depth_m, or
+    /// less, where with such small voxels the view of the map does not reach so far (view_reach_m).
+    float reach_m(const Intrinsics& camera) const;
+
     /// Fuses what waits to be, and waits for the device.
     void wait();
 

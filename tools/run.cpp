@@ -219,6 +219,7 @@ class Run {
 
     std::vector<std::string> warnings(const gpu::MapCounters& counters) {
         std::vector<std::string> list;
+        if (const auto warning = fusion_.reach_warning()) list.push_back(*warning);
         if (counters.refused_blocks > 0) {
             list.push_back(
                 fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "

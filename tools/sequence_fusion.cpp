@@ -105,6 +105,7 @@ void SequenceFusion::prepare_reflectance(ReflectanceModel& reflectance) {
 void SequenceFusion::fuse_all(const std::function<void(const sensor::Frame&)>& after_frame) {
     Progress progress(info_.frames, options_.quiet);
     bool warned_full = false, warned_observations = false;
+    if (const auto warning = reach_warning()) progress.say("warning: " + *warning);
     for (uint32_t done = 0; done < info_.frames; ++done) {
         stop_if_interrupted();
         auto reading = source_->next();
@@ -192,6 +193,16 @@ std::string SequenceFusion::gains_text() {
         lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
     }
     return lines;
+}
+
+std::optional<std::string> SequenceFusion::reach_warning() const {
+    const float reach_m = reconstruction_->reach_m(info_.depth);
+    const double wanted_m = std::min<double>(settings().fusion.max_depth_m, info_.max_metres);
+    if (reach_m >= wanted_m) return std::nullopt;
+    return fmt::format(
+        "with voxels of {} m the view reaches {:.1f} m, not {:.1f} m: what lies farther is left out; raise "
+        "map.voxel_m, or lower fusion.max_depth_m",
+        settings().map.voxel_m, reach_m, wanted_m);
 }
 
 uint32_t SequenceFusion::blocks_used() {

@@ -58,15 +58,23 @@ void place_grid(gpu::ViewParams& params) {
 
 }  // namespace
 
+float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m) {
+    gpu::ViewParams params{};
+    params.grid.voxel_m = voxel_m;
+    params.camera = camera;
+    params.far_m = far_m;
+    while (cells_for_any_pose(params) > kMaxGridCells) params.far_m *= 0.9f;
+    return params.far_m;
+}
+
 VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                  const gpu::Camera& camera, float near_m, float far_m) {
     gpu::ViewParams params{};
     params.grid = map.grid();
     params.camera = camera;
     params.near_m = near_m;
-    params.far_m = far_m;
+    params.far_m = view_reach_m(camera, params.grid.voxel_m, far_m);
     params.tiles = (camera.extent + gpu::kTileEdge - 1u) / gpu::kTileEdge;
-    while (cells_for_any_pose(params) > kMaxGridCells) params.far_m *= 0.9f;
     place_grid(params);
 
     VisibleBlocks visible;

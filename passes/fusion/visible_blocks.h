@@ -17,9 +17,13 @@ struct VisibleBlocks {
     Extent2D extent;        ///< of the camera's image
 };
 
-/// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, and finds the depth range
-/// in which the rays of each image tile can meet blocks (ray interval splatting, Niessner et al. 2013). far_m is
-/// shortened where the grid of blocks around the frustum would take more than 128 MiB (at 5 mm voxels beyond some 9 m).
+/// How far a camera sees at most, metres along its optical axis: far_m, or less where the grid of blocks around the
+/// frustum would take more than 128 MiB (with voxels of 5 mm beyond some 7 m).
+float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m);
+
+/// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, or view_reach_m() where
+/// that is nearer, and finds the depth range in which the rays of each image tile can meet blocks (ray interval
+/// splatting, Niessner et al. 2013).
 VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                  const gpu::Camera& camera, float near_m, float far_m);
 

@@ -201,6 +201,14 @@ TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
     EXPECT_THAT(record["warnings"].dump(), HasSubstr("reflectance.capacity_records"));
 }
 
+TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
+    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lighting", "none", "--out", out(),
+                                    "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("with voxels of 0.0025 m the view reaches 3."));
+    EXPECT_THAT(record_of(out())["warnings"].dump(), HasSubstr("not 6.0 m: what lies farther is left out"));
+}
+
 TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"),
