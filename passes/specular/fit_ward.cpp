@@ -7,7 +7,6 @@
 namespace patina {
 
 static_assert(gpu::kFitAlphas % gpu::kFitAlphasPerGroup == 0 && gpu::kFitAlphas <= gpu::kFitGroup);
-static_assert(gpu::kFitAlphasPerGroup == gpu::kFitAlphaSteps, "half a block halves the square of alpha");
 static_assert(gpu::kFitGroup == gpu::kBatchGroup && gpu::kSegmentSamples % gpu::kFitGroup == 0);
 
 void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,
@@ -32,7 +31,8 @@ void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const Segmen
     choose.read("Batch", batch.list).read("Records", records.records).push(params);
     choose.read("Counts", inputs.sample_ids.counts).read("Kept", inputs.sample_ids.kept);
     choose.read("Visibility", records.visibility).read("Status", inputs.status);
-    const graph::BufferId voxels = choose.create("Voxels", voxel_count * sizeof(uint32_t));
+    choose.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
+    const graph::BufferId voxels = choose.create("Voxels", voxel_count * sizeof(gpu::FitVoxel));
     choose.dispatch_indirect(arguments);
 
     auto weigh = frame.compute("specular.weigh_observations", spirv::weigh_observations);

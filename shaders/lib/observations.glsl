@@ -4,6 +4,8 @@
 #include "lib/octahedral.glsl"
 #include "shared/observations.h"
 
+const float kSameFaceCosine = 0.5;  // 60 degrees: of normals of one face, within a voxel or beside each other
+
 uint pack_clipped(bvec3 clipped) { return uint(clipped.r) << 26 | uint(clipped.g) << 27 | uint(clipped.b) << 28; }
 
 // A direction word: octahedral 13 + 13 bits (0.02 degrees) | clipped channels 3 | samples - 1, 3.

@@ -35,7 +35,6 @@ layout(constant_id = 1) const bool kColorApart = false;  // the colour camera is
 
 const int kSightSteps = 16;
 const float kNearestOccluder = 0.3;  // metres
-const float kSameFaceCosine = 0.5;   // 60 degrees: normals of one face within a voxel
 
 struct Surface {
     vec3 normal;

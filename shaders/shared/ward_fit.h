@@ -10,10 +10,17 @@ INTEROP_CONST uint kFitAlphas = 40u;          // tried for each segment
 INTEROP_CONST uint kFitAlphasPerGroup = 8u;   // in one workgroup
 INTEROP_CONST uint kFitAlphaSteps = 8u;       // from an alpha to half of it
 INTEROP_CONST float kFitMostAlpha = 0.6f;     // the first; the last is 0.02
+INTEROP_CONST float kFitBlurM = 0.0076f;      // metres of a bent surface that an observation shows at once
 INTEROP_CONST uint kFitGroup = 64u;           // invocations over the voxels of a segment
 INTEROP_CONST float kFitLeastCosine = 0.15f;  // of observations, to the viewer: what is flatter does not count
 
 INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that chooses
+
+// A voxel that is fitted.
+struct FitVoxel {
+    uint record;  // kNoRecord: a gap
+    float blur2;  // what its highlights seem to have more than alpha^2
+};
 
 // For one alpha, sums over observations without the mean of their voxel, weighted.
 struct FitSums {

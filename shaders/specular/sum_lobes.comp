@@ -14,7 +14,7 @@ layout(std140, binding = 0) uniform Lights {
     LightHeader header;
     PointLight lights[kMaxPointLights];
 };
-layout(std430, binding = 1) readonly buffer Voxels { uint voxels[]; };
+layout(std430, binding = 1) readonly buffer Voxels { FitVoxel voxels[]; };
 layout(std430, binding = 2) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 3) readonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 4) readonly buffer Weights { uint weights[]; };  // lib/fit_weights.glsl
@@ -44,20 +44,28 @@ float seen[kAlphas];  // voxels of which a view came near a mirrored light
 float peak[kAlphas];  // the largest lobe of a voxel, 1 for a view at a mirrored light
 vec4 total;           // rgb: squared colours; w: how many, by channel
 
-// exp(-tan^2 / alpha^2) for each alpha, the largest first. The square of alpha halves within half a block.
-void add_lobes(inout vec3 lobes[kAlphas], vec3 gloss, float tan2, float inverse_most2) {
-    const float lit = any(greaterThan(gloss, vec3(0.0))) ? 1.0 : 0.0;
-    [[unroll]] for (uint i = 0u; i < kAlphas / 2u; ++i) {
-        const float scale = exp2(2.0 * float(i) / float(kFitAlphaSteps)) * inverse_most2;
-        const float lobe = exp2(max(-kFitLog2E * tan2 * scale, kFitLeastExponent));
-        lobes[i] += gloss * lobe;
-        lobes[i + kAlphas / 2u] += gloss * (lobe * lobe);
-        peak[i] = max(peak[i], lit * lobe);
-        peak[i + kAlphas / 2u] = max(peak[i + kAlphas / 2u], lit * lobe * lobe);
+// Of the lobes of a voxel, which are blurred: what tan^2 is multiplied by in an exponent to the base of 2, and the
+// peak.
+vec2 blurred[kAlphas];
+
+void blur_lobes(uint first, float blur2) {
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
+        const float alpha = fit_alpha(float(first + a)), inverse = 1.0 / (alpha * alpha + blur2);
+        blurred[a] = vec2(-kFitLog2E * inverse, alpha * alpha * inverse);
     }
 }
 
-void add_voxel(uint segment, uint slot, uint record, float inverse_most2) {
+// exp(-tan^2 / alpha^2) for each alpha, blurred: as wide as that of a rougher material, and with the same integral.
+void add_lobes(inout vec3 lobes[kAlphas], vec3 gloss, float tan2) {
+    const float lit = any(greaterThan(gloss, vec3(0.0))) ? 1.0 : 0.0;
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
+        const float lobe = blurred[a].y * exp2(max(tan2 * blurred[a].x, kFitLeastExponent));
+        lobes[a] += gloss * lobe;
+        peak[a] = max(peak[a], lit * lobe);
+    }
+}
+
+void add_voxel(uint segment, uint slot, uint record) {
     const VoxelRecord known = records[record];
     const vec3 normal = surface_normal(known);
     const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
@@ -95,7 +103,7 @@ void add_voxel(uint segment, uint slot, uint record, float inverse_most2) {
         const float bend = inversesqrt(cosine);
         for (uint i = 0u; i < header.count; ++i) {
             const FitLight light = fit_light(i, point_m, normal, reached);
-            add_lobes(lobes, light.gloss * bend, tan2_of_half(light, to_viewer, cosine), inverse_most2);
+            add_lobes(lobes, light.gloss * bend, tan2_of_half(light, to_viewer, cosine));
         }
         [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
             const vec3 weighted = channels * lobes[a];
@@ -114,15 +122,16 @@ void add_voxel(uint segment, uint slot, uint record, float inverse_most2) {
 
 void main() {
     const uint segment = gl_WorkGroupID.x, block = gl_WorkGroupID.y, lane = gl_LocalInvocationIndex;
-    const float most = fit_alpha(float(block * kAlphas));
     total = vec4(0.0);
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         lobe2[a] = product[a] = vec3(0.0);
         seen[a] = 0.0;
     }
     for (uint slot = lane; slot < kSegmentSamples; slot += kFitGroup) {
-        const uint record = voxels[segment * kSegmentSamples + slot];
-        if (record != kNoRecord) add_voxel(segment, slot, record, 1.0 / (most * most));
+        const FitVoxel voxel = voxels[segment * kSegmentSamples + slot];
+        if (voxel.record == kNoRecord) continue;
+        blur_lobes(block * kAlphas, voxel.blur2);
+        add_voxel(segment, slot, voxel.record);
     }
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         [[unroll]] for (uint c = 0u; c < 3u; ++c) {

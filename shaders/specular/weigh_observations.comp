@@ -18,7 +18,7 @@ layout(std140, binding = 0) uniform Lights {
     PointLight lights[kMaxPointLights];
 };
 layout(std430, binding = 1) readonly buffer Batch { uint batch[]; };  // count, then labels
-layout(std430, binding = 2) readonly buffer Voxels { uint voxels[]; };
+layout(std430, binding = 2) readonly buffer Voxels { FitVoxel voxels[]; };
 layout(std430, binding = 3) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 4) readonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 5) readonly buffer Fits { WardFit fits[]; };
@@ -145,13 +145,14 @@ void reweight(float deviation) {
 
 void main() {
     const uint segment = gl_GlobalInvocationID.x / kSegmentSamples, slot = gl_GlobalInvocationID.x % kSegmentSamples;
-    const uint record = voxels[gl_GlobalInvocationID.x];
+    const FitVoxel voxel = voxels[gl_GlobalInvocationID.x];
+    const uint record = voxel.record;
     if (record == kNoRecord) return;
     const VoxelRecord known = records[record];
     const vec3 normal = surface_normal(known);
     const WardFit fit = fits[batch[1u + segment]];
     const bool estimated = fit.estimates > 0u;
-    const float alpha = estimated ? fit.ks_alpha.w : 1.0;
+    const float alpha = estimated ? sqrt(fit.ks_alpha.w * fit.ks_alpha.w + voxel.blur2) : 1.0;  // as it is seen
     unpack_directions(record, normal);
     add_highlights(surface_point_m(known, params.records, params.edge_shift), normal, visibility[record], alpha,
                    estimated ? header.count : 0u);

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <random>
 #include <set>
 
 #include "shared/reflectance.h"
+#include "shared/test_voxel_map.h"
+#include "spirv/shaders.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/reflectance_rig.h"
 #include "tests/reference/fit_ward.h"
@@ -55,14 +58,15 @@ class FitWardTest : public GpuTest {
     }
 
     /// Voxels of a sphere about the origin, each with a kd of its own and seen from random directions.
-    std::vector<FilledRecord> sphere(uint32_t label, const Ward& gloss, uint32_t voxels = kVoxels) {
+    std::vector<FilledRecord> sphere(uint32_t label, const Ward& gloss, uint32_t voxels = kVoxels,
+                                     float radius_m = 0.4f) {
         std::uniform_real_distribution<double> level(0.05, 0.5);
         std::vector<FilledRecord> records;
         while (records.size() < voxels) {
             const glm::vec3 normal(direction_about({0, -1, 0}, 0.2));
-            const glm::ivec3 voxel(glm::floor(0.4f * normal / map_.settings().voxel_m));
+            const glm::ivec3 voxel(glm::floor(radius_m * normal / map_.settings().voxel_m));
             if (!used_.insert({voxel.x, voxel.y, voxel.z}).second) continue;
-            FilledRecord record{0.4f * normal, normal, label, {}};
+            FilledRecord record{radius_m * normal, normal, label, {}};
             const reference::SurfacePoint point{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(normal)};
             const Ward material{{level(random_), level(random_), level(random_)}, gloss.ks, gloss.alpha};
             while (record.observations.size() < gpu::kMaxObservations) {
@@ -101,6 +105,46 @@ class FitWardTest : public GpuTest {
             SegmentSamples::keep(frame, sampled);
             return add_list_records(frame, static_cast<uint32_t>(records.size()));
         });
+    }
+
+    /// Enters records into the map's table, by which voxels find those beside them.
+    void enter(uint32_t count) {
+        graph::Frame frame = runner().begin();
+        const graph::Readback written = frame.read_back(map_.import(frame).records);
+        run(std::move(frame));
+        std::vector<gpu::VoxelRecord> records = written.as<gpu::VoxelRecord>();
+        records.resize(count);
+        std::map<uint32_t, uint32_t> block_of_key;
+        for (const gpu::VoxelRecord& record : records)
+            block_of_key.try_emplace(record.block_key, static_cast<uint32_t>(block_of_key.size()));
+        ASSERT_LE(block_of_key.size(), map_.settings().capacity_blocks);
+        std::vector<uint32_t> keys;
+        for (const auto& [key, block] : block_of_key) keys.push_back(key);
+
+        frame = runner().begin();
+        ObservationMapIds ids = map_.import(frame);
+        auto insert = frame.compute("test.insert_keys", spirv::test_insert_keys);
+        insert.read("List", frame.upload<uint32_t>("list", keys));
+        ids.keys = insert.modify("Keys", ids.keys);
+        const auto out = insert.create("Insertions", keys.size() * sizeof(glm::uvec2));
+        insert.push(gpu::TestMapParams{map_.grid(), static_cast<uint32_t>(keys.size()), 0, 0, 0});
+        insert.dispatch_covering(static_cast<uint32_t>(keys.size()));
+        frame.keep(ids.keys);
+        const graph::Readback insertions = frame.read_back(out);
+        run(std::move(frame));
+
+        const uint32_t shift = 3 * map_.edge_shift();
+        std::vector<uint32_t> blocks((map_.grid().bucket_mask + 1) * gpu::kBucketSlots, gpu::kNoBlock);
+        std::vector<uint32_t> table(size_t{map_.settings().capacity_blocks} << shift, gpu::kNoRecord);
+        const auto slots = insertions.as<glm::uvec2>();
+        for (size_t i = 0; i < keys.size(); ++i) blocks[slots[i].x] = block_of_key.at(keys[i]);
+        for (uint32_t i = 0; i < count; ++i)
+            table[block_of_key.at(records[i].block_key) << shift | (records[i].state >> 5 & 63u)] = i;
+        frame = runner().begin();
+        ids = map_.import(frame);
+        frame.keep(frame.upload_bytes(ids.blocks, 0, std::as_bytes(std::span(blocks)), true));
+        frame.keep(frame.upload_bytes(ids.record_table, 0, std::as_bytes(std::span(table)), true));
+        run(std::move(frame));
     }
 
     /// What no light reaches.
@@ -150,10 +194,40 @@ class FitWardTest : public GpuTest {
         return fits;
     }
 
-    Ward reference_fit(const std::vector<FilledRecord>& records, const reference::SpecularPrior& prior) const {
+    std::array<int, 3> voxel_of(const FilledRecord& record) const {
+        const glm::ivec3 voxel(glm::floor(record.point_m / map_.settings().voxel_m));
+        return {voxel.x, voxel.y, voxel.z};
+    }
+
+    /// FittedVoxel::blur2 of each record, from the records of the same face whose voxels touch.
+    std::vector<double> blur2_of(const std::vector<FilledRecord>& records) const {
+        std::map<std::array<int, 3>, glm::dvec3> normals;
+        for (const FilledRecord& record : records) normals[voxel_of(record)] = glm::dvec3(record.normal);
+        std::vector<double> blur2;
+        for (const FilledRecord& record : records) {
+            double sum = 0;
+            int count = 0;
+            for (size_t axis = 0; axis < 3; ++axis) {
+                for (const int step : {-1, 1}) {
+                    std::array<int, 3> beside = voxel_of(record);
+                    beside[axis] += step;
+                    const auto found = normals.find(beside);
+                    if (found == normals.end() || glm::dot(found->second, glm::dvec3(record.normal)) < 0.5) continue;
+                    sum += 2 - 2 * glm::dot(found->second, glm::dvec3(record.normal));
+                    ++count;
+                }
+            }
+            blur2.push_back(count == 0 ? 0 : std::pow(gpu::kFitBlurM / map_.settings().voxel_m, 2) * sum / count);
+        }
+        return blur2;
+    }
+
+    Ward reference_fit(const std::vector<FilledRecord>& records, const reference::SpecularPrior& prior,
+                       const std::vector<double>& blur2 = {}) const {
         std::vector<reference::FittedVoxel> voxels;
         for (const FilledRecord& record : records) {
             voxels.push_back({{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)}, {}, received()});
+            if (!blur2.empty()) voxels.back().blur2 = blur2[voxels.size() - 1];
             for (const FilledObservation& seen : record.observations)
                 voxels.back().observations.push_back({glm::dvec3(seen.to_viewer), glm::dvec3(seen.rgb), seen.clipped});
         }
@@ -166,7 +240,7 @@ class FitWardTest : public GpuTest {
     VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
     // Several chunks of 256 records.
     ObservationMap map_{device(),
-                        {.capacity_blocks = 64, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
+                        {.capacity_blocks = 256, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
     ReflectanceRig rig_{device(), runner(), voxel_map_, map_};
     SegmentSamples samples_{device(), kLabels};
     SpecularEstimates estimates_{device(), kLabels};
@@ -214,6 +288,64 @@ TEST_F(FitWardTest, AgreesWithTheReferenceOnNoise) {
     EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - want.ks)), 2e-4);
     EXPECT_NEAR(got.w, want.alpha, 2e-4);
     EXPECT_GT(max_of(want.ks), 0.05) << "a highlight was there to be found";
+}
+
+TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
+    // All voxels of a cap of a ball, each seen with the mean over normals that spread as its blur says.
+    const Ward truth{{}, glm::dvec3(0.05), 0.07};
+    std::vector<FilledRecord> records = sphere(1, truth, 200, 0.16f);
+    const std::vector<double> blur2 = blur2_of(records);
+    ASSERT_GT(std::ranges::count_if(blur2, [](double b) { return b > 0.02 * 0.02; }), 150);
+    std::normal_distribution<double> gauss;
+    for (size_t i = 0; i < records.size(); ++i) {
+        FilledRecord& record = records[i];
+        const glm::dvec3 position(kept_point_m(map_, record)), normal(record.normal);
+        const Ward material{{0.2, 0.2, 0.2}, truth.ks, truth.alpha};
+        for (FilledObservation& seen : record.observations) {
+            glm::dvec3 rgb(0);
+            constexpr int kNormals = 400;
+            for (int k = 0; k < kNormals; ++k) {
+                const glm::dvec3 off =
+                    std::sqrt(0.5 * blur2[i]) * glm::dvec3(gauss(random_), gauss(random_), gauss(random_));
+                const glm::dvec3 tilted = glm::normalize(normal + off - normal * glm::dot(normal, off));
+                rgb += reference::shade(material, {position, tilted}, received(), glm::dvec3(0),
+                                        glm::dvec3(seen.to_viewer)) /
+                       double(kNormals);
+            }
+            seen.rgb = glm::vec3(rgb);
+        }
+    }
+    // Beyond an edge the ball does not bend: faces of another thing, across its own, in voxels beside some of its own.
+    for (size_t i = 0; i < 60; ++i) {
+        std::array<int, 3> beside = voxel_of(records[i]);
+        beside[i % 3] += i % 2 == 0 ? 1 : -1;
+        if (!used_.insert(beside).second) continue;
+        const glm::vec3 center_vox(beside[0] + 0.5f, beside[1] + 0.5f, beside[2] + 0.5f);
+        records.push_back({center_vox * map_.settings().voxel_m,
+                           glm::normalize(glm::cross(records[i].normal, glm::vec3(0.3f, 0.5f, 0.8f))),
+                           2,
+                           {}});
+    }
+    ASSERT_GT(records.size(), 220u);
+    fill(records);
+    const gpu::WardFit unaware = fit({1})[1];
+    EXPECT_GT(unaware.ks_alpha.w, 1.08 * truth.alpha) << "without its neighbours a voxel knows no better";
+    enter(static_cast<uint32_t>(records.size()));
+    graph::Frame frame = runner().begin();
+    table_.reset(frame);
+    run(std::move(frame));
+    const gpu::WardFit got = fit({1})[1];
+    EXPECT_NEAR(got.ks_alpha.w, truth.alpha, 0.03 * truth.alpha);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - truth.ks)), 0.05 * 0.05);
+
+    EXPECT_NEAR(fit({1}, 5)[1].ks_alpha.w, truth.alpha, 0.03 * truth.alpha) << "when the estimate tells outliers, too";
+
+    const double unit = 50;
+    const reference::SpecularPrior prior{glm::dvec3(0.04), 0.2, unit / (0.15 * 0.15), unit / (1.3 * 1.3), unit};
+    records.resize(blur2.size());
+    const Ward want = reference_fit(records, prior, blur2);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want.ks)), 2e-4);
+    EXPECT_NEAR(got.ks_alpha.w, want.alpha, 2e-4);
 }
 
 TEST_F(FitWardTest, KeepsThePriorWhereNoObservationTells) {

@@ -42,7 +42,7 @@ double unclipped_mean(const FittedVoxel& voxel, int channel) {
 }
 
 void add(Line& line, const FittedVoxel& voxel, double alpha, int channel) {
-    const Ward gloss{glm::dvec3(0), glm::dvec3(1), alpha};
+    const Ward gloss{glm::dvec3(0), glm::dvec3(1), std::sqrt(alpha * alpha + voxel.blur2)};
     const double least_clipped = unclipped_mean(voxel, channel), weight = weight_of(voxel);
     std::vector<double> lobe, color;
     double lobe_sum = 0, color_sum = 0;

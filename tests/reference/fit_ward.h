@@ -11,6 +11,7 @@ struct FittedVoxel {
     SurfacePoint point;
     std::vector<SeenColor> observations;
     std::vector<ReceivedLight> lights;
+    double blur2 = 0;  ///< its highlights are those of a material whose alpha^2 is larger by this, its ks the same
 };
 
 /// What is thought of a material before anything is seen of it.
