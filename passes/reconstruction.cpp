@@ -208,8 +208,7 @@ float Reconstruction::far_m() const {
 }
 
 float Reconstruction::reach_m(const Intrinsics& camera) const {
-    const float seen_m = view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, far_m());
-    return std::min(settings_.fusion.max_depth_m, seen_m);
+    return view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, settings_.fusion.max_depth_m);
 }
 
 bool Reconstruction::add(const RgbdFrame& frame) {

@@ -200,7 +200,7 @@ std::optional<std::string> SequenceFusion::reach_warning() const {
     const double wanted_m = std::min<double>(settings().fusion.max_depth_m, info_.max_metres);
     if (reach_m >= wanted_m) return std::nullopt;
     return fmt::format(
-        "with voxels of {} m the view reaches {:.1f} m, not {:.1f} m: what lies farther is left out; raise "
+        "with voxels of {} m the view reaches {:.2f} m, not {:.2f} m: what lies farther is left out; raise "
         "map.voxel_m, or lower fusion.max_depth_m",
         settings().map.voxel_m, reach_m, wanted_m);
 }

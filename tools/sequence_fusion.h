@@ -87,7 +87,7 @@ class SequenceFusion {
     std::string gains_text();
     const HeldOut& held_out() const { return held_out_; }
     uint32_t blocks_used();
-    /// Says that surfaces are left out that are nearer than fusion.max_depth_m, where that is so.
+    /// Says that surfaces are left out that fusion.max_depth_m and the sequence would have, where that is so.
     std::optional<std::string> reach_warning() const;
     /// How each frame that was read was tracked; empty where poses are given.
     const std::vector<TrackedFrame>& tracked() const { return tracked_; }

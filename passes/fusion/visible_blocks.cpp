@@ -10,8 +10,10 @@ namespace patina {
 
 namespace {
 
-/// The view grid's most cells: 128 MiB, which every device can bind.
-constexpr uint64_t kMaxGridCells = uint64_t{1} << 25;
+/// The view grid's most cells along an edge: 128 MiB in all, which every device can bind.
+constexpr uint64_t kMaxGridEdge = 322;
+/// Beside those of the frustum: for blocks that reach into it by their margin alone, and for rounding.
+constexpr uint64_t kGridMargin = 4;
 
 /// The camera's centre and where the corners of its image lie at far_m, in camera coordinates (metres).
 std::array<glm::dvec3, 5> frustum_points(const gpu::ViewParams& params) {
@@ -27,16 +29,20 @@ std::array<glm::dvec3, 5> frustum_points(const gpu::ViewParams& params) {
 
 double block_edge_m(const gpu::ViewParams& params) { return double(params.grid.voxel_m) * gpu::kBlockEdge; }
 
-/// Cells enough for the frustum however the camera is turned, so that frames keep their shape: a cube as wide as its
-/// two points farthest apart. One block more on each side, for blocks that reach into the frustum by their margin
-/// alone.
-uint64_t cells_for_any_pose(const gpu::ViewParams& params) {
+/// How far apart any two points of the frustum are at most.
+double widest_m(const gpu::ViewParams& params) {
     double widest_m = 0;
     const auto points = frustum_points(params);
     for (const glm::dvec3& a : points) {
         for (const glm::dvec3& b : points) widest_m = std::max(widest_m, glm::length(a - b));
     }
-    const auto edge = static_cast<uint64_t>(widest_m / block_edge_m(params)) + 4;
+    return widest_m;
+}
+
+/// Cells enough for the frustum however the camera is turned, so that frames keep their shape: a cube as wide as its
+/// two points farthest apart.
+uint64_t cells_for_any_pose(const gpu::ViewParams& params) {
+    const auto edge = static_cast<uint64_t>(widest_m(params) / block_edge_m(params)) + kGridMargin;
     return edge * edge * edge;
 }
 
@@ -62,9 +68,9 @@ float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m) {
     gpu::ViewParams params{};
     params.grid.voxel_m = voxel_m;
     params.camera = camera;
-    params.far_m = far_m;
-    while (cells_for_any_pose(params) > kMaxGridCells) params.far_m *= 0.9f;
-    return params.far_m;
+    params.far_m = 1;
+    const double most_m = (kMaxGridEdge - kGridMargin) * block_edge_m(params) / widest_m(params);
+    return std::min(far_m, static_cast<float>(most_m));
 }
 
 VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,

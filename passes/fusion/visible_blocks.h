@@ -18,7 +18,7 @@ struct VisibleBlocks {
 };
 
 /// How far a camera sees at most, metres along its optical axis: far_m, or less where the grid of blocks around the
-/// frustum would take more than 128 MiB (with voxels of 5 mm beyond some 7 m).
+/// frustum would take more than 128 MiB (of a Kinect v2, with voxels of 5 mm, beyond 7 m).
 float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m);
 
 /// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, or view_reach_m() where

@@ -5,7 +5,7 @@ namespace patina {
 WardFits::WardFits(vulkan::Device& device, uint32_t labels)
     : labels_(labels),
       fits_(device.create_buffer({"specular.fits", labels * sizeof(gpu::WardFit)})),
-      curves_(device.create_buffer({"specular.curves", uint64_t{labels} * gpu::kFitAlphas * sizeof(gpu::FitSums)})),
+      curves_(device.create_buffer({"specular.curves", uint64_t{labels} * gpu::kFitAlphas * sizeof(gpu::FitCurve)})),
       progress_(device.create_buffer({"specular.progress", labels * sizeof(gpu::SegmentProgress)})) {}
 
 void WardFits::reset(graph::Frame& frame) const {

@@ -11,7 +11,7 @@ namespace patina {
 /// Versions of the fits' buffers within one frame.
 struct WardFitIds {
     graph::BufferId fits;      ///< gpu::WardFit per label
-    graph::BufferId curves;    ///< gpu::FitSums[gpu::kFitAlphas] per label
+    graph::BufferId curves;    ///< gpu::FitCurve[gpu::kFitAlphas] per label
     graph::BufferId progress;  ///< gpu::SegmentProgress per label
 };
 

@@ -32,6 +32,8 @@ void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const Segmen
     choose.read("Counts", inputs.sample_ids.counts).read("Kept", inputs.sample_ids.kept);
     choose.read("Visibility", records.visibility).read("Status", inputs.status);
     choose.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
+    choose.read("Fits", fits.fits).read("Curves", fits.curves);
+    const graph::BufferId before = choose.create("Before", batch.capacity * gpu::kFitAlphas * sizeof(glm::vec4));
     const graph::BufferId voxels = choose.create("Voxels", voxel_count * sizeof(gpu::FitVoxel));
     choose.dispatch_indirect(arguments);
 
@@ -40,20 +42,19 @@ void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const Segmen
     weigh.read("Records", records.records).read("Visibility", records.visibility).read("Fits", fits.fits);
     weigh.read("Directions", records.directions).read("Colors", records.colors);
     weigh.specialise("kVoxelChunks", inputs.map.chunks());
-    const graph::BufferId weights = weigh.create("Weights", voxel_count * gpu::kMaxObservations * sizeof(uint32_t));
+    const graph::BufferId weights = weigh.create("Weights", voxel_count * gpu::kMaxObservations * sizeof(float));
     weigh.dispatch_indirect(arguments, sizeof(glm::uvec4));
 
     auto sum = frame.compute("specular.sum_lobes", spirv::sum_lobes);
     sum.read("Lights", inputs.lights).read("Voxels", voxels).read("Records", records.records).push(params);
-    sum.read("Visibility", records.visibility).read("Weights", weights);
+    sum.read("Visibility", records.visibility).read("Weights", weights).read("Before", before);
     sum.read("Directions", records.directions).read("Colors", records.colors);
     sum.specialise("kVoxelChunks", inputs.map.chunks());
     const graph::BufferId sums = sum.create("Sums", uint64_t{batch.capacity} * gpu::kFitAlphas * sizeof(gpu::FitSums));
-    const graph::BufferId totals = sum.create("Totals", batch.capacity * sizeof(glm::vec4));
     sum.dispatch_indirect(arguments, 2 * sizeof(glm::uvec4));
 
     auto solve = frame.compute("specular.solve_ward", spirv::solve_ward);
-    solve.read("Batch", batch.list).read("Sums", sums).read("Totals", totals).read("Network", inputs.network);
+    solve.read("Batch", batch.list).read("Sums", sums).read("Network", inputs.network);
     solve.push(params);
     fits.curves = solve.modify("Curves", fits.curves);
     fits.fits = solve.modify("Fits", fits.fits);

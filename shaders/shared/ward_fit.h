@@ -19,19 +19,26 @@ INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that ch
 // A voxel that is fitted.
 struct FitVoxel {
     uint record;  // kNoRecord: a gap
-    float blur2;  // what its highlights seem to have more than alpha^2
+    float blur2;  // what blur adds to the alpha^2 of its highlights
 };
 
 // For one alpha, sums over observations without the mean of their voxel, weighted.
 struct FitSums {
     vec4 lobe2;    // rgb: the square of what ks multiplies, by channel; w: voxels seen near its peak
     vec4 product;  // rgb: that times the colour
+    vec4 color2;   // rgb: the square of the colour; w: how many, by channel
+};
+
+// What is kept of them by label.
+struct FitCurve {
+    FitSums sums;
+    vec4 ks;  // rgb: what they give
 };
 
 // What is known of a segment's specular material.
 struct WardFit {
     vec4 ks_alpha;       // rgb, roughness
-    vec4 color2_weight;  // rgb: weighted sum of the squared colours, as in FitSums; w: how many, by channel
+    vec4 color2_weight;  // FitSums::color2 of the alpha that is most likely
     float confidence;    // 0 to 1
     float deviation;     // of observations from the model, in units of what is expected of them
     uint estimates;      // 0: none yet

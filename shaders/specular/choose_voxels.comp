@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment of a batch: which of the records that it keeps are fitted, in an order that is the same in
 // every run, so that sums over them are, too, and how blurred their highlights are. Records left out leave gaps.
+// Hands on what the fits before found for each alpha.
 #include "lib/reflectance.glsl"
 #include "shared/ward_fit.h"
 
@@ -16,6 +17,11 @@ layout(std430, binding = 6) readonly buffer Keys { uvec4 keys[]; };
 layout(std430, binding = 7) readonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 8) readonly buffer RecordTable { uint record_table[]; };
 layout(std430, binding = 9) writeonly buffer Voxels { FitVoxel voxels[]; };  // kSegmentSamples per segment
+layout(std430, binding = 10) readonly buffer Fits { WardFit fits[]; };
+layout(std430, binding = 11) readonly buffer Curves { FitCurve curves[]; };  // kFitAlphas per label
+layout(std430, binding = 12) writeonly buffer Before {
+    vec4 ks_before[];
+};  // kFitAlphas per segment; w: 1, or 0 for none
 layout(push_constant) uniform Push { FitParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
@@ -32,8 +38,9 @@ bool is_lit(uint record) {
 bool is_before(uvec2 a, uvec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
 
 // Where a surface bends, an observation is a mean over the normals of about a pixel, and the voxel's own is less exact:
-// its highlight is that of a rougher material (Toksvig 2005). How much it bends tell the normals of the voxels beside
-// it. Balls of known materials, 3 m away, show kFitBlurM; interpolation between pixels of 8 mm alone makes 0.005.
+// its highlight is that of a rougher material (Toksvig 2005). The normals of the voxels beside it tell how much
+// it bends. Balls of known materials, seen from 3 m with pixels of 8 mm, show kFitBlurM; interpolation between pixels
+// alone makes 5 mm. No farther than one voxel: their normals err, too.
 float blur2_of(VoxelRecord record) {
     const ivec3 voxel =
         voxel_of_record(block_of_key(params.records, record.block_key), voxel_in_block(record), params.edge_shift);
@@ -50,7 +57,7 @@ float blur2_of(VoxelRecord record) {
         sum += known ? dot(apart, apart) : 0.0;
         count += known ? 1.0 : 0.0;
     }
-    const float steps = kFitBlurM / params.records.voxel_m;
+    const float steps = min(kFitBlurM / params.records.voxel_m, 1.0);
     return steps * steps * sum / max(count, 1.0);
 }
 
@@ -62,6 +69,9 @@ void main() {
         const VoxelRecord record = records[kept[label * kSegmentSamples + i]];
         places[i] = uvec2(record.block_key, voxel_in_block(record));
     }
+    const bool fitted = label < params.labels && fits[min(label, params.labels - 1u)].estimates > 0u;
+    for (uint a = gl_LocalInvocationIndex; a < kFitAlphas; a += kDrawGroup)
+        ks_before[segment * kFitAlphas + a] = fitted ? vec4(curves[label * kFitAlphas + a].ks.rgb, 1.0) : vec4(0.0);
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < kSegmentSamples; i += kDrawGroup) {
         uint rank = i;

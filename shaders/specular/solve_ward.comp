@@ -12,11 +12,10 @@
 layout(local_size_x = kFitGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels
 layout(std430, binding = 1) readonly buffer Sums { FitSums sums[]; };
-layout(std430, binding = 2) readonly buffer Totals { vec4 totals[]; };
-layout(std430, binding = 3) readonly buffer Network { WardMaterial network[]; };
-layout(std430, binding = 4) buffer Curves { FitSums curves[]; };  // kFitAlphas per label
-layout(std430, binding = 5) buffer Fits { WardFit fits[]; };
-layout(std430, binding = 6) buffer Materials { SegmentMaterial materials[]; };
+layout(std430, binding = 2) readonly buffer Network { WardMaterial network[]; };
+layout(std430, binding = 3) buffer Curves { FitCurve curves[]; };  // kFitAlphas per label
+layout(std430, binding = 4) buffer Fits { WardFit fits[]; };
+layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
 const float kLeastDeviation = 0.1;  // of observations, for the prior's weight
@@ -43,6 +42,7 @@ struct Prior {
 shared vec4 ks_misfit[kFitAlphas];  // the weighted sum of squared errors
 shared float score[kFitAlphas];     // likelihood and prior: -2 log of it, in units of the misfit
 shared float known[kFitAlphas];     // the share of ks that observations tell
+shared vec4 observed[kFitAlphas];   // FitSums::color2
 
 Prior prior_of(uint label, float unit) {
     const WardMaterial said = network[label];
@@ -53,13 +53,13 @@ Prior prior_of(uint label, float unit) {
 }
 
 // `unit`: of the misfit, what is as unlikely as one deviation of one independent observation.
-void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior, float unit) {
+vec3 solve_alpha(uint a, FitSums sum, Prior prior, float unit) {
     const float alpha = fit_alpha(float(a)), scale = lobe_scale(alpha);
     const float seen = clamp((sum.lobe2.w - kIgnoredVoxels) / (kSeenVoxels - kIgnoredVoxels), 0.0, 1.0);
     const vec3 lobe2 = seen * scale * scale * sum.lobe2.rgb, product = seen * scale * sum.product.rgb;
     const vec3 stiffness = lobe2 + prior.ks_weight;
     const vec3 ks = max((product + prior.ks_weight * kKsBefore) / stiffness, 0.0);
-    const vec3 off = ks - kKsBefore, misfit = color2 - 2.0 * ks * product + ks * ks * lobe2;
+    const vec3 off = ks - kKsBefore, misfit = sum.color2.rgb - 2.0 * ks * product + ks * ks * lobe2;
     const float octaves = log2(alpha / prior.alpha);
     ks_misfit[a] = vec4(ks, dot(misfit, vec3(1.0)));
     // Over all ks, the likelihood's integral: the better an alpha would show ks, the less of it is left.
@@ -67,6 +67,8 @@ void solve_alpha(uint a, FitSums sum, vec3 color2, Prior prior, float unit) {
     score[a] = ks_misfit[a].w + dot(prior.ks_weight * off * off, vec3(1.0)) + prior.alpha_weight * octaves * octaves +
                unit * narrowed;
     known[a] = dot(lobe2 / stiffness, vec3(1.0 / 3.0));
+    observed[a] = sum.color2;
+    return ks;
 }
 
 uint best_alpha() {
@@ -118,25 +120,25 @@ void main() {
     if (label >= params.labels) return;
     WardFit fit = fits[label];
     const float kept = fit.estimates > 0u ? params.memory : 0.0;
-    fit.color2_weight = totals[segment] + (kept > 0.0 ? kept * fit.color2_weight : vec4(0.0));
     const float deviation = max(fit.estimates > 0u ? fit.deviation : 1.0, kLeastDeviation);
     const float unit = kCorrelated * deviation * deviation;
     const Prior prior = prior_of(label, unit);
     if (a < kFitAlphas) {
         FitSums sum = sums[segment * kFitAlphas + a];
         if (kept > 0.0) {
-            const vec4 before = kept * curves[label * kFitAlphas + a].lobe2;
-            sum.lobe2 = vec4(sum.lobe2.rgb + before.rgb, max(sum.lobe2.w, before.w));
-            sum.product += kept * curves[label * kFitAlphas + a].product;
+            const FitSums before = curves[label * kFitAlphas + a].sums;
+            sum.lobe2 = vec4(sum.lobe2.rgb + kept * before.lobe2.rgb, max(sum.lobe2.w, kept * before.lobe2.w));
+            sum.product += kept * before.product;
+            sum.color2 += kept * before.color2;
         }
-        curves[label * kFitAlphas + a] = sum;
-        solve_alpha(a, sum, fit.color2_weight.rgb, prior, unit);
+        curves[label * kFitAlphas + a] = FitCurve(sum, vec4(solve_alpha(a, sum, prior, unit), 0.0));
     }
     barrier();
     // Without an observation only the prior is known; it may change before there is one.
     if (a != 0u) return;
     const uint best = best_alpha();
     const Estimate estimate = averaged(best, unit);
+    fit.color2_weight = observed[best];
     fit.ks_alpha = estimate.ks_alpha;
     fit.confidence = estimate.confidence;
     fit.deviation = sqrt(max(ks_misfit[best].w, 0.0) / max(fit.color2_weight.w, 1.0));

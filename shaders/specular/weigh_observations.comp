@@ -1,11 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance,
-// and which of its channels. What is far off the segment's estimate so far, with the voxel's own diffuse part, counts
-// less (Geman and McClure). A clipped channel is at least as bright as it was recorded: it counts where that estimate
-// is darker, and says nothing where it is not. Left out altogether, only those of a sharp highlight's observations
-// would remain that missed its peak.
+// One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance.
+// What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure). A
+// clipped channel is at least as bright as it was recorded: here it counts where that estimate is darker.
 #include "lib/fit_alphas.glsl"
 #include "lib/mean.glsl"
 #include "lib/reflectance.glsl"
@@ -26,12 +24,9 @@ layout(std430, binding = 6) readonly buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
 layout(std430, binding = 11) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
-layout(std430, binding = 16) writeonly buffer Weights {
-    uint weights[];
-};  // lib/fit_weights.glsl; by segment, observation and voxel
+layout(std430, binding = 16) writeonly buffer Weights { float weights[]; };  // by segment, observation and voxel
 layout(push_constant) uniform Push { FitParams params; };
 #include "lib/fit_lights.glsl"
-#include "lib/fit_weights.glsl"
 #include "lib/record_colors.glsl"
 #include "lib/record_directions.glsl"
 
@@ -162,6 +157,5 @@ void main() {
     const bool glossy = any(greaterThan(fit.ks_alpha.rgb, vec3(kTrustedKs)));
     if (fit.confidence >= kTrustedConfidence && glossy) reweight(max(fit.deviation, kLeastDeviation));
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k)
-        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] =
-            pack_fit_weight(trust[k] * robust[k], bvec3(channels[k]));
+        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = trust[k] * robust[k];
 }

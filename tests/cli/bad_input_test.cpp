@@ -206,7 +206,7 @@ TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
                                     "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("with voxels of 0.0025 m the view reaches 3."));
-    EXPECT_THAT(record_of(out())["warnings"].dump(), HasSubstr("not 6.0 m: what lies farther is left out"));
+    EXPECT_THAT(record_of(out())["warnings"].dump(), HasSubstr("not 6.00 m: what lies farther is left out"));
 }
 
 TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {

@@ -291,7 +291,7 @@ TEST_F(FitWardTest, AgreesWithTheReferenceOnNoise) {
 }
 
 TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
-    // All voxels of a cap of a ball, each seen with the mean over normals that spread as its blur says.
+    // Voxels of a ball, many side by side, each seen with the mean over normals that spread as its blur says.
     const Ward truth{{}, glm::dvec3(0.05), 0.07};
     std::vector<FilledRecord> records = sphere(1, truth, 200, 0.16f);
     const std::vector<double> blur2 = blur2_of(records);
@@ -330,7 +330,7 @@ TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
     fill(records);
     const gpu::WardFit unaware = fit({1})[1];
     EXPECT_GT(unaware.ks_alpha.w, 1.08 * truth.alpha) << "without its neighbours a voxel knows no better";
-    enter(static_cast<uint32_t>(records.size()));
+    ASSERT_NO_FATAL_FAILURE(enter(static_cast<uint32_t>(records.size())));
     graph::Frame frame = runner().begin();
     table_.reset(frame);
     run(std::move(frame));
@@ -410,6 +410,29 @@ TEST_F(FitWardTest, ClippedChannelsAndWildObservationsChangeLittle) {
     const glm::vec4 got = fit({1}, 25)[1].ks_alpha;
     EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - truth.ks)), 0.01);
     EXPECT_NEAR(got.w, truth.alpha, 0.01);
+}
+
+TEST_F(FitWardTest, TheFlanksOfClippedHighlightsTellTheirPeaks) {
+    // Peaks are many times as bright as what the camera records. Taken as recorded they would hold ks down to 0.12.
+    const Ward truth{{}, {0.3, 0.25, 0.2}, 0.06};
+    std::vector<FilledRecord> records = sphere(1, truth, 200);
+    size_t clipped = 0;
+    for (FilledRecord& record : records) {
+        for (FilledObservation& seen : record.observations) {
+            for (glm::length_t c = 0; c < 3; ++c) {
+                seen.clipped[static_cast<size_t>(c)] = seen.rgb[c] > 0.6f;
+                seen.rgb[c] = std::min(seen.rgb[c], 0.6f);
+                clipped += seen.clipped[static_cast<size_t>(c)];
+            }
+        }
+    }
+    ASSERT_GT(clipped, 300u);
+    fill(records);
+    for (const uint32_t times : {2u, 20u}) {
+        const glm::vec4 got = fit({1}, times)[1].ks_alpha;
+        EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - truth.ks) / truth.ks), 0.02) << times;
+        EXPECT_NEAR(got.w, truth.alpha, 0.01 * truth.alpha) << times;
+    }
 }
 
 TEST_F(FitWardTest, RoughNormalsAndClippedPeaksTellKs) {

@@ -95,10 +95,10 @@ TEST_F(VisibleBlocksTest, WhatTheCameraSeesIsListedOnceAndItsDepthsAreBounded) {
 TEST_F(VisibleBlocksTest, SmallVoxelsShortenTheView) {
     const gpu::Camera camera = make_camera({{512, 424}, 365, 365, 255.5, 211.5, {}}, RigidTransform(1));
     EXPECT_EQ(view_reach_m(camera, 0.005f, 6), 6.0f);
-    // The frustum's corners are 1.82 m apart in a distance of 1 m; a cube of 2^25 cells has 322 of 2 cm on an edge.
-    const float reach_m = view_reach_m(camera, 0.0025f, 6);
-    EXPECT_LT(reach_m, 322 * 0.02 / 1.82);
-    EXPECT_GT(reach_m, 0.85 * 322 * 0.02 / 1.82);
+    // The frustum's corners are 1.8213 m apart in a distance of 1 m; a cube of 2^25 cells has 322 of 2 cm on an edge,
+    // of which 318 serve the frustum.
+    EXPECT_NEAR(view_reach_m(camera, 0.0025f, 6), 318 * 0.02 / 1.8213, 2e-3);
+    EXPECT_EQ(view_reach_m(camera, 0.0025f, 12), view_reach_m(camera, 0.0025f, 6));
 }
 
 TEST_F(VisibleBlocksTest, RangesAreNoWiderThanTheBlocks) {

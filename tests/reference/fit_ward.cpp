@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace patina::reference {
 
@@ -30,25 +29,13 @@ double weight_of(const FittedVoxel& voxel) {
     return count > 0 ? std::pow(0.004 + 0.05 * brightness / count, -2) : 0;
 }
 
-/// The mean of a channel's unclipped colours; infinite where there are none.
-double unclipped_mean(const FittedVoxel& voxel, int channel) {
-    double sum = 0, count = 0;
-    for (const SeenColor& seen : voxel.observations) {
-        if (seen.clipped[static_cast<size_t>(channel)] || is_flat(voxel, seen)) continue;
-        sum += seen.rgb[channel];
-        ++count;
-    }
-    return count > 0 ? sum / count : std::numeric_limits<double>::infinity();
-}
-
 void add(Line& line, const FittedVoxel& voxel, double alpha, int channel) {
     const Ward gloss{glm::dvec3(0), glm::dvec3(1), std::sqrt(alpha * alpha + voxel.blur2)};
-    const double least_clipped = unclipped_mean(voxel, channel), weight = weight_of(voxel);
+    const double weight = weight_of(voxel);
     std::vector<double> lobe, color;
     double lobe_sum = 0, color_sum = 0;
     for (const SeenColor& seen : voxel.observations) {
-        const bool tells = !seen.clipped[static_cast<size_t>(channel)] || seen.rgb[channel] > least_clipped;
-        if (!tells || is_flat(voxel, seen)) continue;
+        if (seen.clipped[static_cast<size_t>(channel)] || is_flat(voxel, seen)) continue;
         lobe.push_back(shade(gloss, voxel.point, voxel.lights, glm::dvec3(0), seen.to_viewer)[channel]);
         color.push_back(seen.rgb[channel]);
         lobe_sum += lobe.back();

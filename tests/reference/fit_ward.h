@@ -24,8 +24,7 @@ struct SpecularPrior {
 };
 
 /// The means of ks and log(alpha) over how likely they are, kd being free for each voxel and channel; alpha from 0.02
-/// to 0.6. Views below a cosine of 0.15 are left out, and clipped channels that are no brighter than the mean of the
-/// voxel's others.
+/// to 0.6. Views below a cosine of 0.15 are left out, and clipped channels.
 Ward fit_ward(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior);
 
 }  // namespace patina::reference
