@@ -119,7 +119,9 @@ VisibleBlocks Reconstruction::add_passes(graph::Frame& graph, VoxelMapIds& ids, 
     if (keyframes_) keyframes_->add_keep(graph, input.depth_m, input.color, frame.world_from_depth, frames_);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.camera);
 
-    const FusionSettings& fusion = settings_.fusion;
+    // What the view does not reach would take blocks that no frame fuses into.
+    FusionSettings fusion = settings_.fusion;
+    fusion.max_depth_m = reach_m(frame.depth.camera);
     const gpu::FusionParams values =
         make_fusion_params(map_, fusion, depth_camera, color_camera, frames_, color_frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "passes/fusion/visible_blocks.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -18,10 +17,10 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.color_camera = color_camera;
     params.truncation_m = std::max(settings.truncation_m, 3 * voxel_m);
     params.truncation_slope = settings.truncation_slope;
-    params.max_depth_m = std::min(settings.max_depth_m, view_reach_m(depth_camera, voxel_m, settings.max_depth_m));
+    params.max_depth_m = settings.max_depth_m;
     const float widest_m = params.truncation_m + params.truncation_slope * params.max_depth_m;
     if (widest_m > gpu::kSdfRangeVox * voxel_m) {
-        throw Error("the truncation band is ", widest_m, " m wide at ", params.max_depth_m, " m, voxels of ", voxel_m,
+        throw Error("the truncation band is ", widest_m, " m wide at ", settings.max_depth_m, " m, voxels of ", voxel_m,
                     " m hold at most ", gpu::kSdfRangeVox * voxel_m, " m");
     }
     constexpr uint32_t kMostSamples = UINT16_MAX / gpu::kWeightOne;
