@@ -27,9 +27,9 @@ struct FitWardInputs {
 /// Given alpha, the model is linear in kd, per voxel, and in ks: kd drops out with the mean over a voxel's
 /// observations, and ks follows in closed form for each alpha of a grid (variable projection). The result is the mean
 /// over these by how likely they are, or, where one step of the grid holds all that is likely, the best between its
-/// steps. Flat views and voxels whose lights are not known, or all hidden, are left out; outliers of the estimate before
-/// count less. A clipped channel counts, for each alpha, where what the fit before found for it is darker. Where the
-/// normals of records beside a voxel's show that the surface bends, its highlights are taken for blurred: alpha^2 +
+/// steps. Flat views and voxels whose lights are not known, or all hidden, are left out; outliers of the estimate
+/// before count less. A clipped channel counts, for each alpha, where what the fit before found for it is darker. Where
+/// the normals of records beside a voxel's show that the surface bends, its highlights are taken for blurred: alpha^2 +
 /// blur^2 in place of alpha^2 (Toksvig 2005). Sums are kept by label, `memory` of them from one fit to the next. Where
 /// observations do not tell, priors hold: ks 0.04, and the network's alpha, else 0.2. `fits` is brought up to date, and
 /// `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the material does.
