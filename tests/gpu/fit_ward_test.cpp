@@ -9,8 +9,7 @@
 #include <set>
 
 #include "shared/reflectance.h"
-#include "shared/test_voxel_map.h"
-#include "spirv/shaders.h"
+#include "tests/gpu/entered_records.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/reflectance_rig.h"
 #include "tests/reference/fit_ward.h"
@@ -105,46 +104,6 @@ class FitWardTest : public GpuTest {
             SegmentSamples::keep(frame, sampled);
             return add_list_records(frame, static_cast<uint32_t>(records.size()));
         });
-    }
-
-    /// Enters records into the map's table, by which voxels find those beside them.
-    void enter(uint32_t count) {
-        graph::Frame frame = runner().begin();
-        const graph::Readback written = frame.read_back(map_.import(frame).records);
-        run(std::move(frame));
-        std::vector<gpu::VoxelRecord> records = written.as<gpu::VoxelRecord>();
-        records.resize(count);
-        std::map<uint32_t, uint32_t> block_of_key;
-        for (const gpu::VoxelRecord& record : records)
-            block_of_key.try_emplace(record.block_key, static_cast<uint32_t>(block_of_key.size()));
-        ASSERT_LE(block_of_key.size(), map_.settings().capacity_blocks);
-        std::vector<uint32_t> keys;
-        for (const auto& [key, block] : block_of_key) keys.push_back(key);
-
-        frame = runner().begin();
-        ObservationMapIds ids = map_.import(frame);
-        auto insert = frame.compute("test.insert_keys", spirv::test_insert_keys);
-        insert.read("List", frame.upload<uint32_t>("list", keys));
-        ids.keys = insert.modify("Keys", ids.keys);
-        const auto out = insert.create("Insertions", keys.size() * sizeof(glm::uvec2));
-        insert.push(gpu::TestMapParams{map_.grid(), static_cast<uint32_t>(keys.size()), 0, 0, 0});
-        insert.dispatch_covering(static_cast<uint32_t>(keys.size()));
-        frame.keep(ids.keys);
-        const graph::Readback insertions = frame.read_back(out);
-        run(std::move(frame));
-
-        const uint32_t shift = 3 * map_.edge_shift();
-        std::vector<uint32_t> blocks((map_.grid().bucket_mask + 1) * gpu::kBucketSlots, gpu::kNoBlock);
-        std::vector<uint32_t> table(size_t{map_.settings().capacity_blocks} << shift, gpu::kNoRecord);
-        const auto slots = insertions.as<glm::uvec2>();
-        for (size_t i = 0; i < keys.size(); ++i) blocks[slots[i].x] = block_of_key.at(keys[i]);
-        for (uint32_t i = 0; i < count; ++i)
-            table[block_of_key.at(records[i].block_key) << shift | (records[i].state >> 5 & 63u)] = i;
-        frame = runner().begin();
-        ids = map_.import(frame);
-        frame.keep(frame.upload_bytes(ids.blocks, 0, std::as_bytes(std::span(blocks)), true));
-        frame.keep(frame.upload_bytes(ids.record_table, 0, std::as_bytes(std::span(table)), true));
-        run(std::move(frame));
     }
 
     /// What no light reaches.
@@ -330,7 +289,7 @@ TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
     fill(records);
     const gpu::WardFit unaware = fit({1})[1];
     EXPECT_GT(unaware.ks_alpha.w, 1.08 * truth.alpha) << "without its neighbours a voxel knows no better";
-    ASSERT_NO_FATAL_FAILURE(enter(static_cast<uint32_t>(records.size())));
+    enter_records(runner(), map_, records);
     graph::Frame frame = runner().begin();
     table_.reset(frame);
     run(std::move(frame));

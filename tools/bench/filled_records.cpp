@@ -42,23 +42,28 @@ float offset_vox(const ObservationMap& map, const FilledRecord& record) {
 }
 
 gpu::VoxelRecord packed_record(const ObservationMap& map, const FilledRecord& record) {
-    const glm::ivec3 voxel = voxel_of(map, record);
-    const int shift = static_cast<int>(map.edge_shift());
-    const glm::uvec3 block(glm::ivec3(voxel.x >> shift, voxel.y >> shift, voxel.z >> shift) -
-                           glm::ivec3(map.grid().origin_block) + glm::ivec3(1024, 512, 1024));
-    const glm::uvec3 within = glm::uvec3(voxel) & ((1u << map.edge_shift()) - 1);
-    const uint32_t number = within.x | within.y << map.edge_shift() | within.z << 2 * map.edge_shift();
+    const FilledPlace place = place_of(map, record);
     const glm::vec2 normal = to_octahedral(record.normal);
     gpu::VoxelRecord result{};
-    result.block_key = block.x | block.y << 11 | block.z << 21;
+    result.block_key = place.block_key;
     result.normal = packed(normal.x, 32767, 0xffff) | packed(normal.y, 32767, 0xffff) << 16;
-    result.state = static_cast<uint32_t>(record.observations.size()) | number << 5 | 1u << 11 |
+    result.state = static_cast<uint32_t>(record.observations.size()) | place.voxel << 5 | 1u << 11 |
                    packed(std::clamp(offset_vox(map, record), -1.f, 1.f), 32767, 0xffff) << 16;
     result.label = record.label | 255u << 16;
     return result;
 }
 
 }  // namespace
+
+FilledPlace place_of(const ObservationMap& map, const FilledRecord& record) {
+    const glm::ivec3 voxel = voxel_of(map, record);
+    const int shift = static_cast<int>(map.edge_shift());
+    const glm::uvec3 block(glm::ivec3(voxel.x >> shift, voxel.y >> shift, voxel.z >> shift) -
+                           glm::ivec3(map.grid().origin_block) + glm::ivec3(1024, 512, 1024));
+    const glm::uvec3 within = glm::uvec3(voxel) & ((1u << map.edge_shift()) - 1);
+    return {block.x | block.y << 11 | block.z << 21,
+            within.x | within.y << map.edge_shift() | within.z << 2 * map.edge_shift()};
+}
 
 glm::vec3 kept_point_m(const ObservationMap& map, const FilledRecord& record) {
     const glm::vec3 center_vox = glm::vec3(voxel_of(map, record)) + 0.5f;

@@ -26,6 +26,13 @@ struct FilledRecord {
     std::vector<FilledObservation> observations;  ///< at most gpu::kMaxObservations
 };
 
+/// Where a record is in the map: the key of its block, and the voxel's number within it.
+struct FilledPlace {
+    uint32_t block_key = 0;
+    uint32_t voxel = 0;
+};
+FilledPlace place_of(const ObservationMap& map, const FilledRecord& record);
+
 /// The surface point as the record keeps it: `point_m` moved within the tangent plane, below the voxel's centre.
 glm::vec3 kept_point_m(const ObservationMap& map, const FilledRecord& record);
 
