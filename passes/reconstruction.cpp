@@ -210,7 +210,11 @@ float Reconstruction::far_m() const {
 }
 
 float Reconstruction::reach_m(const Intrinsics& camera) const {
-    return view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, settings_.fusion.max_depth_m);
+    const float seen_m = view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, far_m());
+    if (seen_m >= far_m()) return settings_.fusion.max_depth_m;
+    // Behind a surface there is room for its truncation band.
+    const float truncation_m = std::max(settings_.fusion.truncation_m, 3 * settings_.map.voxel_m);
+    return (seen_m - truncation_m) / (1 + settings_.fusion.truncation_slope);
 }
 
 bool Reconstruction::add(const RgbdFrame& frame) {

@@ -7,6 +7,7 @@
 namespace patina {
 
 static_assert(gpu::kFitAlphas % gpu::kFitAlphasPerGroup == 0 && gpu::kFitAlphas <= gpu::kFitGroup);
+static_assert(gpu::kFitAlphasPerGroup % 4 == 0, "four are added up at once");
 static_assert(gpu::kFitGroup == gpu::kBatchGroup && gpu::kSegmentSamples % gpu::kFitGroup == 0);
 
 void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,

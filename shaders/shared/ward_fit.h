@@ -6,12 +6,12 @@
 #include "shared/segment_samples.h"
 INTEROP_BEGIN
 
-INTEROP_CONST uint kFitAlphas = 40u;          // tried for each segment
-INTEROP_CONST uint kFitAlphasPerGroup = 8u;   // in one workgroup
-INTEROP_CONST uint kFitAlphaSteps = 8u;       // from an alpha to half of it
-INTEROP_CONST float kFitMostAlpha = 0.6f;     // the first; the last is 0.02
-INTEROP_CONST float kFitBlurM = 0.0076f;      // metres of a bent surface that an observation shows at once
-INTEROP_CONST uint kFitGroup = 64u;           // invocations over the voxels of a segment
+INTEROP_CONST uint kFitAlphas = 40u;         // tried for each segment
+INTEROP_CONST uint kFitAlphasPerGroup = 8u;  // in one workgroup
+INTEROP_CONST uint kFitAlphaSteps = 8u;      // from an alpha to half of it
+INTEROP_CONST float kFitMostAlpha = 0.6f;    // the first; the last is 0.02
+INTEROP_CONST float kFitBlurM = 0.0076f;  // metres of a bent surface that an observation shows at once; a voxel at most
+INTEROP_CONST uint kFitGroup = 64u;       // invocations over the voxels of a segment
 INTEROP_CONST float kFitLeastCosine = 0.15f;  // of observations, to the viewer: what is flatter does not count
 
 INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that chooses
@@ -32,7 +32,7 @@ struct FitSums {
 // What is kept of them by label.
 struct FitCurve {
     FitSums sums;
-    vec4 ks;  // rgb: what they give
+    vec4 ks;  // rgb: what they give, with the prior; 0.04 where no peak was seen
 };
 
 // What is known of a segment's specular material.

@@ -34,7 +34,7 @@ layout(push_constant) uniform Push { FitParams params; };
 #include "lib/record_directions.glsl"
 
 const uint kAlphas = kFitAlphasPerGroup;
-const uint kAlphasAtOnce = 4u;  // added up: the rows of more would not fit 16 KiB
+const uint kAlphasAtOnce = 4u;  // added up: the rows of all would not fit 16 KiB
 const uint kRowsPerAlpha = 11u;
 const uint kRows = kAlphasAtOnce * kRowsPerAlpha;
 
@@ -181,11 +181,13 @@ void add_voxel(Voxel voxel, bool fitted) {
     nearest_tan2 = kFarTan2;
     add_unclipped(voxel, seen);
     add_clipped(voxel, seen);
+    const float told = any(greaterThan(seen.weight, vec3(0.0))) ? 1.0 : 0.0;
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         const VoxelSums own = voxel_sums[a];
         const vec3 mean_lobe = own.lobe / max(own.weight, kNoWeight);
         const vec3 mean_color = own.color / max(own.weight, kNoWeight);
-        const float peak = exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
+        // A clipped view of a peak tells it, too, but not where nothing is known of the voxel's other views.
+        const float peak = told * exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
         segment_sums[a].lobe2 += vec4(max(own.lobe2 - mean_lobe * own.lobe, 0.0), min(peak * (1.0 / kSeenLobe), 1.0));
         segment_sums[a].product += vec4(own.product - mean_color * own.lobe, 0.0);
         segment_sums[a].color2 += vec4(max(own.color2 - mean_color * own.color, 0.0), own.count);
@@ -238,9 +240,9 @@ void main() {
                         visibility[chosen.record]),
                   fitted);
     }
-    [[unroll]] for (uint half_of = 0u; half_of < 2u; ++half_of) {
+    [[unroll]] for (uint part = 0u; part < kAlphas / kAlphasAtOnce; ++part) {
         FitSums own[kAlphasAtOnce];
-        [[unroll]] for (uint a = 0u; a < kAlphasAtOnce; ++a) own[a] = segment_sums[half_of * kAlphasAtOnce + a];
-        write_sums(segment, first_alpha + half_of * kAlphasAtOnce, own);
+        [[unroll]] for (uint a = 0u; a < kAlphasAtOnce; ++a) own[a] = segment_sums[part * kAlphasAtOnce + a];
+        write_sums(segment, first_alpha + part * kAlphasAtOnce, own);
     }
 }

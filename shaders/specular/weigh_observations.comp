@@ -156,6 +156,8 @@ void main() {
     take_clipped();
     const bool glossy = any(greaterThan(fit.ks_alpha.rgb, vec3(kTrustedKs)));
     if (fit.confidence >= kTrustedConfidence && glossy) reweight(max(fit.deviation, kLeastDeviation));
-    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k)
-        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = trust[k] * robust[k];
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        const float weight = trust[k] * robust[k];
+        weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = weight > 0.0 ? weight : 0.0;  // nor NaN
+    }
 }
