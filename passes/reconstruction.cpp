@@ -205,7 +205,7 @@ void Reconstruction::relight(std::span<const PointLight> lights, glm::vec3 ambie
 
 float Reconstruction::far_m() const {
     const FusionSettings& fusion = settings_.fusion;
-    const float truncation_m = std::max(fusion.truncation_m, 3 * settings_.map.voxel_m);
+    const float truncation_m = least_truncation_m(fusion, settings_.map.voxel_m);
     return fusion.max_depth_m + truncation_m + fusion.truncation_slope * fusion.max_depth_m;
 }
 
@@ -213,7 +213,7 @@ float Reconstruction::reach_m(const Intrinsics& camera) const {
     const float seen_m = view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, far_m());
     if (seen_m >= far_m()) return settings_.fusion.max_depth_m;
     // Behind a surface there is room for its truncation band.
-    const float truncation_m = std::max(settings_.fusion.truncation_m, 3 * settings_.map.voxel_m);
+    const float truncation_m = least_truncation_m(settings_.fusion, settings_.map.voxel_m);
     return (seen_m - truncation_m) / (1 + settings_.fusion.truncation_slope);
 }
 

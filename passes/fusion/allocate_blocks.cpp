@@ -15,7 +15,7 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.grid = map.grid();
     params.depth_camera = depth_camera;
     params.color_camera = color_camera;
-    params.truncation_m = std::max(settings.truncation_m, 3 * voxel_m);
+    params.truncation_m = least_truncation_m(settings, voxel_m);
     params.truncation_slope = settings.truncation_slope;
     params.max_depth_m = settings.max_depth_m;
     const float widest_m = params.truncation_m + params.truncation_slope * params.max_depth_m;

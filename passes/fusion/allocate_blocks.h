@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "engine/graph/frame.h"
@@ -21,6 +22,11 @@ struct FusionSettings {
     bool color = true;                  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
 };
+
+/// The truncation band of a reading right before the camera, metres: no narrower than three voxels.
+inline float least_truncation_m(const FusionSettings& settings, float voxel_m) {
+    return std::max(settings.truncation_m, 3 * voxel_m);
+}
 
 /// The parameters that one frame's fusion passes share. `color_camera` may be the depth camera where there is no
 /// colour; `color_frame` counts the frames before this one whose colour was fused. Throws Error when the truncation
