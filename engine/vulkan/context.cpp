@@ -63,6 +63,7 @@ void Context::open_device(uint32_t index) {
     v13.robustImageAccess = true;  // shaders may load beyond an image and get zero
     vk::PhysicalDeviceVulkan12Features v12;
     v12.timelineSemaphore = true;
+    v12.shaderFloat16 = caps_.float16;
     v12.pNext = &v13;
     vk::DeviceCreateInfo info({}, queue);
     info.pEnabledFeatures = &features;

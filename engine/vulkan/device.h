@@ -42,6 +42,7 @@ struct DeviceCaps {
     uint64_t max_texel_elements = 0;
     uint64_t max_allocation = 0;  ///< bytes
     uint64_t device_memory = 0;   ///< bytes of the largest device-local heap
+    bool float16 = false;         ///< shaders may compute in 16-bit floats
     bool timestamps = false;
     double timestamp_period_ns = 0;
 

@@ -143,6 +143,9 @@ DeviceCaps caps_of(const vk::raii::PhysicalDevice& physical) {
     caps.max_storage_range = properties.limits.maxStorageBufferRange;
     caps.max_texel_elements = properties.limits.maxTexelBufferElements;
     caps.max_allocation = v11.maxMemoryAllocationSize;
+    caps.float16 = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>()
+                       .get<vk::PhysicalDeviceVulkan12Features>()
+                       .shaderFloat16;
     for (const auto& heap : physical.getMemoryProperties().memoryHeaps) {
         if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
             caps.device_memory = std::max<uint64_t>(caps.device_memory, heap.size);

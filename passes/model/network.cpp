@@ -1,6 +1,9 @@
 #include "passes/model/network.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
 #include "shared/network.h"
@@ -56,6 +59,15 @@ Network::Place pack(const NetworkLayer& layer, const ActivationShape& before, st
     return {static_cast<uint32_t>(first / 4), static_cast<uint32_t>(biases / 4)};
 }
 
+/// In 16-bit floats, two in a word. Of an even number.
+std::vector<uint32_t> in_halves(const std::vector<float>& values) {
+    std::vector<uint32_t> words(values.size() / 2);
+    for (size_t i = 0; i < words.size(); ++i) words[i] = glm::packHalf2x16({values[2 * i], values[2 * i + 1]});
+    return words;
+}
+
+constexpr float kLargestHalf = 65504;
+
 }  // namespace
 
 ActivationShape shape_after(const NetworkDescription& network, const NetworkLayer& layer,
@@ -99,23 +111,33 @@ std::vector<ActivationShape> activation_shapes(const NetworkDescription& network
 }
 
 Network::Network(vulkan::Device& device, NetworkDescription description)
-    : description_(std::move(description)),
+    : device_(&device),
+      description_(std::move(description)),
       shapes_(activation_shapes(description_)),
       places_(description_.layers.size()) {
     for (size_t i = 0; i < places_.size(); ++i) {
         const NetworkLayer& layer = description_.layers[i];
         if (is_weighted(layer.kind)) places_[i] = pack(layer, shapes_[i], packed_);
     }
-    weights_ = device.create_buffer({.name = "network.weights", .bytes = std::max<size_t>(packed_.size(), 4) * 4});
 }
 
-graph::BufferId Network::import(graph::Frame& frame) {
-    graph::BufferId id = frame.import(weights_);
-    if (packed_.empty()) return id;
-    id = frame.upload_bytes(id, 0, std::as_bytes(std::span(packed_)), true);
+graph::BufferId Network::import(graph::Frame& frame, bool halves) {
+    vulkan::BufferRef& weights = halves ? halves_ : floats_;
+    if (weights) return frame.import(weights);
+    const std::vector<uint32_t> words = halves ? in_halves(packed_) : std::vector<uint32_t>{};
+    const auto bytes = halves ? std::as_bytes(std::span(words)) : std::as_bytes(std::span(packed_));
+    weights = device_->create_buffer({.name = "network.weights", .bytes = std::max<size_t>(bytes.size(), 16)});
+    graph::BufferId id = frame.import(weights);
+    if (bytes.empty()) return id;
+    id = frame.upload_bytes(id, 0, bytes, true);
     frame.keep(id);
-    packed_ = {};
     return id;
 }
+
+bool Network::fits_halves() const {
+    return std::all_of(packed_.begin(), packed_.end(), [](float weight) { return std::abs(weight) <= kLargestHalf; });
+}
+
+uint64_t Network::bytes() const { return (floats_ ? floats_->bytes() : 0) + (halves_ ? halves_->bytes() : 0); }
 
 }  // namespace patina

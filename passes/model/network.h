@@ -65,11 +65,12 @@ std::vector<ActivationShape> activation_shapes(const NetworkDescription& network
 /// A network on the device. Lives as long as the reconstruction; specular/run_network.h runs it.
 class Network {
   public:
-    /// Throws Error as activation_shapes(), and when memory runs out.
+    /// Throws Error as activation_shapes(). `device` outlives it.
     Network(vulkan::Device& device, NetworkDescription description);
 
-    /// The weights, packed as shared/network.h says; uploads them the first time.
-    graph::BufferId import(graph::Frame& frame);
+    /// The weights, packed as shared/network.h says, in 32- or 16-bit floats; uploads them the first time.
+    /// Throws Error when memory runs out.
+    graph::BufferId import(graph::Frame& frame, bool halves);
 
     /// Where a layer's weights are, in quads.
     struct Place {
@@ -81,14 +82,19 @@ class Network {
     /// One more than there are layers.
     const std::vector<ActivationShape>& shapes() const { return shapes_; }
     Place place(size_t layer) const { return places_[layer]; }
-    uint64_t bytes() const { return weights_->bytes(); }
+    uint64_t weight_quads() const { return packed_.size() / 4; }
+    /// Whether 16-bit floats hold all weights; larger ones would be infinite.
+    bool fits_halves() const;
+    /// Of device memory, once the weights were imported.
+    uint64_t bytes() const;
 
   private:
+    vulkan::Device* device_;
     NetworkDescription description_;
     std::vector<ActivationShape> shapes_;
     std::vector<Place> places_;
-    std::vector<float> packed_;  ///< empty once uploaded
-    vulkan::BufferRef weights_;
+    std::vector<float> packed_;
+    vulkan::BufferRef floats_, halves_;  ///< null until they are asked for
 };
 
 /// Quads that hold so many channels.

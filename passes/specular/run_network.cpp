@@ -96,23 +96,41 @@ void check_images(const Network& network, uint32_t capacity, uint64_t bytes) {
                 " segments takes ", needed);
 }
 
-const vulkan::Shader& shader_of(LayerKind kind, bool texel) {
-    switch (kind) {
-        case LayerKind::kConv: return texel ? spirv::convolve_texel : spirv::convolve;
-        case LayerKind::kMaxPool: return spirv::max_pool;
-        case LayerKind::kSamplePool: return spirv::pool_samples;
-        case LayerKind::kFull: break;
+/// One shader of each kind of layer.
+struct LayerShaders {
+    const vulkan::Shader &conv, &max_pool, &sample_pool, &full;
+
+    const vulkan::Shader& of(LayerKind kind) const {
+        switch (kind) {
+            case LayerKind::kConv: return conv;
+            case LayerKind::kMaxPool: return max_pool;
+            case LayerKind::kSamplePool: return sample_pool;
+            case LayerKind::kFull: break;
+        }
+        return full;
     }
-    return texel ? spirv::connect_texel : spirv::connect;
+};
+
+LayerShaders shaders_of(NetworkFormat format) {
+    using namespace spirv;
+    switch (format) {
+        case NetworkFormat::kFloats: break;
+        case NetworkFormat::kTexels: return {convolve_texel, max_pool, pool_samples, connect_texel};
+        case NetworkFormat::kHalves: return {convolve_half, max_pool_half, pool_samples_half, connect_half};
+    }
+    return {convolve, max_pool, pool_samples, connect};
 }
 
 }  // namespace
 
 NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity) {
-    if (!caps.software()) return {MapAccess::kStorage, kBusyInvocations};
-    uint64_t most = network.bytes() / 16;
+    if (!caps.software()) {
+        const bool halves = caps.float16 && network.fits_halves();
+        return {halves ? NetworkFormat::kHalves : NetworkFormat::kFloats, kBusyInvocations};
+    }
+    uint64_t most = network.weight_quads();
     for (const ActivationShape& shape : network.shapes()) most = std::max(most, capacity * quads_in_segment(shape));
-    return {most <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage, 0};
+    return {most <= caps.max_texel_elements ? NetworkFormat::kTexels : NetworkFormat::kFloats, 0};
 }
 
 graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
@@ -124,11 +142,14 @@ graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::Bu
     for (const Step& step : steps) work.push_back(step.work);
     const graph::BufferId arguments = add_plan_batch(frame, batch, work);
 
-    const graph::BufferId weights = network.import(frame);
+    const bool halves = variant.format == NetworkFormat::kHalves;
+    const LayerShaders shaders = shaders_of(variant.format);
+    const graph::BufferId weights = network.import(frame, halves);
     graph::BufferId activations = images;
     for (size_t i = 0; i < steps.size(); ++i) {
         const Step& step = steps[i];
-        const vulkan::Shader& shader = shader_of(step.kind, variant.access == MapAccess::kTexel);
+        const vulkan::Shader& shader = shaders.of(step.kind);
+        const bool last = i + 1 == steps.size();
         auto pass = frame.compute(text(shader.name, "_", i + 1), shader);
         pass.read("Batch", batch.list).read("Inputs", activations).push(step.params);
         if (shader.find_binding("Weights")) pass.read("Weights", weights);
@@ -139,7 +160,8 @@ graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::Bu
             pass.specialise("kOutputQuads", step.params.output_quads);
             pass.specialise("kQuadInputs", step.quad_inputs);
         }
-        activations = pass.create("Outputs", batch.capacity * step.output_quads * 16);
+        if (halves) pass.specialise("kWideInputs", i == 0).specialise("kWideOutputs", last);
+        activations = pass.create("Outputs", batch.capacity * step.output_quads * (halves && !last ? 8 : 16));
         pass.dispatch_indirect(arguments, i * sizeof(glm::uvec4));
     }
     return activations;

@@ -17,23 +17,23 @@ layout(constant_id = 7) const uint kQuadInputs = 4u;  // of a quad, that are use
 
 const uint kWindow = kTileWidth + kKernelSide - 1u;  // columns of the input that a tile's row needs
 
-vec4 sums[kTileImages * kTileHeight * kTileWidth];
-mat4 kernel[kKernelSide];  // a row of it, from a quad of inputs
+Quad sums[kTileImages * kTileHeight * kTileWidth];
+Quads kernel[kKernelSide];  // a row of it, from a quad of inputs
 
 void load_kernel(uint first) {
     [[unroll]] for (uint kx = 0u; kx < kKernelSide; ++kx) {
         const uint at = first + kx * params.input_quads * 4u * kOutputQuads;
-        kernel[kx] =
-            mat4(WEIGHT(at), WEIGHT(at + kOutputQuads), WEIGHT(at + 2u * kOutputQuads), WEIGHT(at + 3u * kOutputQuads));
+        kernel[kx] = Quads(WEIGHT(at), WEIGHT(at + kOutputQuads), WEIGHT(at + 2u * kOutputQuads),
+                           WEIGHT(at + 3u * kOutputQuads));
     }
 }
 
 // Adds what one input pixel gives to the pixels of its row, as far as they are in the tile.
-void add_products(vec4 value, uint row, uint column) {
+void add_products(Quad value, uint row, uint column) {
     [[unroll]] for (uint kx = 0u; kx < kKernelSide; ++kx) {
         if (column < kx || column >= kTileWidth + kx) continue;
         const uint at = row * kTileWidth + column - kx;
-        vec4 sum = sums[at] + value.x * kernel[kx][0];
+        Quad sum = sums[at] + value.x * kernel[kx][0];
         if (kQuadInputs > 1u) sum += value.y * kernel[kx][1];
         if (kQuadInputs > 2u) sum += value.z * kernel[kx][2];
         if (kQuadInputs > 3u) sum += value.w * kernel[kx][3];
@@ -54,18 +54,18 @@ void add_rows(uint first_image, ivec2 corner, uint quad) {
                 ((image * params.input_side + y) * params.input_side + uint(corner.x)) * params.input_quads + quad;
             [[unroll]] for (uint column = 0u; column < kWindow; ++column) {
                 const bool inside = uint(corner.x) + column < columns;
-                const vec4 value = INPUT(inside ? at : 0u);
-                add_products(inside ? value : vec4(0.0), i * kTileHeight + row, column);
+                const Quad value = INPUT(inside ? at : 0u);
+                add_products(inside ? value : Quad(0.0), i * kTileHeight + row, column);
                 at += params.input_quads;
             }
         }
     }
 }
 
-void store(uint image, uvec2 pixel, uint quad, vec4 value) {
+void store(uint image, uvec2 pixel, uint quad, Quad value) {
     if (max(pixel.x, pixel.y) >= params.output_side) return;
-    outputs[((image * params.output_side + pixel.y) * params.output_side + pixel.x) * kOutputQuads + quad] =
-        activated(value);
+    const uint at = (image * params.output_side + pixel.y) * params.output_side + pixel.x;
+    OUTPUT(at * kOutputQuads + quad, activated(value));
 }
 
 void store_tile(uint first_image, uvec2 tile, uint quad) {
@@ -75,7 +75,7 @@ void store_tile(uint first_image, uvec2 tile, uint quad) {
         [[unroll]] for (uint row = 0u; row < kTileHeight; row += step) {
             [[unroll]] for (uint x = 0u; x < kTileWidth; x += step) {
                 const uint at = (i * kTileHeight + row) * kTileWidth + x;
-                vec4 value = sums[at];
+                Quad value = sums[at];
                 if (kPooled != 0u) {
                     value = max(max(value, sums[at + 1u]), max(sums[at + kTileWidth], sums[at + kTileWidth + 1u]));
                 }
@@ -91,7 +91,7 @@ void main() {
     const uvec2 at = uvec2(tile % kTilesPerRow, tile_row % kTileRows);
     const uint first_image = tile_row / kTileRows * kTileImages;
     if (first_image >= images_in_batch()) return;
-    const vec4 bias = WEIGHT(params.biases + quad);
+    const Quad bias = WEIGHT(params.biases + quad);
     [[unroll]] for (uint i = 0u; i < kTileImages * kTileHeight * kTileWidth; ++i) sums[i] = bias;
     const ivec2 corner = ivec2(at * uvec2(kTileWidth, kTileHeight)) - int(params.pad);
     [[dont_unroll]] for (uint ky = 0u; ky < kKernelSide; ++ky) {

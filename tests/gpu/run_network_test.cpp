@@ -50,6 +50,10 @@ NetworkLayer conv(uint32_t outputs, uint32_t pad, bool relu = true) {
 }
 const NetworkLayer kMaxPool{LayerKind::kMaxPool, "max_pool"}, kSamplePool{LayerKind::kSamplePool, "sample_pool"};
 
+/// Of the largest output, in 16-bit floats, after some hundred sums of 2^-11 each at worst.
+constexpr double kHalfError = 4e-3;
+const NetworkVariant kHalves{NetworkFormat::kHalves, 0};
+
 class RunNetwork : public GpuTest {
   protected:
     /// Runs `segments` segments in a batch that has room for `capacity`.
@@ -93,15 +97,17 @@ class RunNetwork : public GpuTest {
         const Activations images = random_images(network, segments, 3), want = expected(network, images);
         const Activations got = run_on_gpu(network, images, segments, std::max(segments, 1u), variant);
         ASSERT_EQ(got.values.size(), want.values.size());
+        const bool halves = variant.format == NetworkFormat::kHalves;
         double largest = 0, worst = 0;
         for (const double value : want.values) largest = std::max(largest, std::abs(value));
         for (size_t i = 0; i < want.values.size(); ++i) {
             // What cancels out has the rounding errors of its terms.
-            const double scale = std::max(std::abs(want.values[i]), 0.05 * largest);
+            const double scale = halves ? largest : std::max(std::abs(want.values[i]), 0.05 * largest);
             worst = std::max(worst, std::abs(got.values[i] - want.values[i]) / scale);
         }
-        EXPECT_LT(worst, 1e-4) << "side " << network.side << ", channels " << network.channels << ", segments "
-                               << segments << (variant.access == MapAccess::kTexel ? ", texel" : ", storage");
+        EXPECT_LT(worst, halves ? kHalfError : 1e-4)
+            << "side " << network.side << ", channels " << network.channels << ", segments " << segments << ", format "
+            << static_cast<int>(variant.format);
     }
     void expect_agreement(const NetworkDescription& network, uint32_t segments) {
         expect_agreement(network, segments, preferred(network, std::max(segments, 1u)));
@@ -160,7 +166,7 @@ TEST_F(RunNetwork, ManyInvocationsOfSmallTilesGiveTheSameBytes) {
     const NetworkDescription network = random_hemi_network(3);
     const Activations images = random_images(network, 2, 7);
     const auto with = [&](uint32_t least_invocations) {
-        return run_on_gpu(network, images, 2, 2, {MapAccess::kStorage, least_invocations}).values;
+        return run_on_gpu(network, images, 2, 2, {NetworkFormat::kFloats, least_invocations}).values;
     };
     const auto large_tiles = with(0);
     ASSERT_EQ(large_tiles.size(), 14u);
@@ -169,10 +175,39 @@ TEST_F(RunNetwork, ManyInvocationsOfSmallTilesGiveTheSameBytes) {
 }
 
 TEST_F(RunNetwork, SmallTilesAgreeWithTheReferenceOnAwkwardShapes) {
-    const NetworkVariant small{MapAccess::kStorage, 1u << 30};
+    const NetworkVariant small{NetworkFormat::kFloats, 1u << 30};
     expect_agreement(network_of(2, 7, 1, {conv(33, 1, false)}), 1, small);
     expect_agreement(network_of(1, 17, 3, {conv(4, 1), kMaxPool}), 1, small);
     expect_agreement(network_of(3, 1, 33, {conv(5, 1)}), 31, small);
+}
+
+TEST_F(RunNetwork, HalvesAgreeWithTheReferenceOnAwkwardShapes) {
+    if (!device().caps().float16) GTEST_SKIP() << "the device has no 16-bit floats";
+    expect_agreement(network_of(3, 1, 33, {conv(5, 1)}), 31, kHalves);
+    expect_agreement(network_of(2, 7, 1, {conv(33, 1, false)}), 1, kHalves);
+    expect_agreement(network_of(3, 15, 33, {kMaxPool, kMaxPool}), 2, kHalves);
+    expect_agreement(network_of(25, 1, 33, {kSamplePool}), 31, kHalves);
+    expect_agreement(network_of(2, 16, 5, {conv(8, 1), kMaxPool, conv(5, 0), kMaxPool, kMaxPool}), 3, kHalves);
+    for (const uint32_t least_invocations : {0u, 1u << 30})
+        expect_agreement(random_hemi_network(1), 2, {NetworkFormat::kHalves, least_invocations});
+}
+
+TEST_F(RunNetwork, WeightsThatHalvesCannotHoldAreTold) {
+    NetworkDescription network = network_of(5, 1, 4, {kSamplePool, {LayerKind::kFull, "full", 7}});
+    EXPECT_TRUE(Network(device(), network).fits_halves());
+    network.layers[1].bias[3] = -65505;
+    EXPECT_FALSE(Network(device(), network).fits_halves());
+}
+
+TEST_F(RunNetwork, HardwareTakesHalvesWhereItHasThem) {
+    const Network network(device(), random_hemi_network(1));
+    vulkan::DeviceCaps caps = device().caps();
+    caps.type = vulkan::DeviceType::kDiscrete;
+    for (const bool float16 : {false, true}) {
+        caps.float16 = float16;
+        EXPECT_EQ(preferred_network_variant(caps, network, 4).format,
+                  float16 ? NetworkFormat::kHalves : NetworkFormat::kFloats);
+    }
 }
 
 TEST_F(RunNetwork, TheOrderOfSamplesDoesNotMatterAndCopiesOfOneAreAsOne) {

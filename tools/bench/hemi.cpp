@@ -1,7 +1,9 @@
 // patina_hemi_bench: how long HemiImages, the network and the fusion of its estimates take, on segments that are made
 // up. See docs/benchmarks.md.
+#include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -24,13 +26,16 @@ namespace patina::bench {
 
 namespace {
 
+const std::map<std::string, NetworkFormat> kFormats{
+    {"floats", NetworkFormat::kFloats}, {"texels", NetworkFormat::kTexels}, {"halves", NetworkFormat::kHalves}};
+
 struct Options {
     tools::DeviceArguments device;
     std::vector<uint32_t> segments{1, 8, 64};
     uint32_t voxels = 256;
     uint32_t frames = 15;
     uint32_t warmup = 2;
-    bool storage = false;
+    std::string format;  ///< a key of kFormats; empty: what suits the device
 };
 
 /// Voxels of `segments` segments, each seen from random directions.
@@ -63,7 +68,7 @@ class Bench {
           network_(device, random_hemi_network(1)),
           variant_(preferred_network_variant(device.caps(), network_, segments)),
           runner_(device) {
-        if (options.storage) variant_.access = MapAccess::kStorage;
+        if (!options.format.empty()) variant_.format = kFormats.at(options.format);
         graph::Frame frame = runner_.begin();
         map_.reset(frame, glm::dvec3(0));
         estimates_.reset(frame);
@@ -93,7 +98,7 @@ class Bench {
         runner_.wait();
     }
 
-    MapAccess access() const { return variant_.access; }
+    NetworkFormat format() const { return variant_.format; }
     graph::Runner& runner() { return runner_; }
 
   private:
@@ -134,8 +139,9 @@ void run(vulkan::Device& device, const Options& options, uint32_t segments) {
         bench.estimate();
         processor.push_back(static_cast<float>(processor_ms() - start) / 2);
     }
-    fmt::print("\n{} segments, {} access, {} frames\n", segments,
-               bench.access() == MapAccess::kTexel ? "texel" : "storage", options.frames);
+    const auto format = std::find_if(kFormats.begin(), kFormats.end(),
+                                     [&](const auto& entry) { return entry.second == bench.format(); });
+    fmt::print("\n{} segments, {}, {} frames\n", segments, format->first, options.frames);
     fmt::print("{:<34} {:>9} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %", "a segment");
     float sum = 0;
     for (const graph::Timing& timing : bench.runner().pass_timings()) {
@@ -163,7 +169,8 @@ int main(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
     app.add_option("--warmup", options.warmup, "How many to run before")->capture_default_str();
-    app.add_flag("--storage", options.storage, "Storage buffers, even where texel buffers would be faster");
+    app.add_option("--format", options.format, "Of activations and weights: floats, texels or halves")
+        ->check(CLI::IsMember(patina::bench::kFormats));
     options.device.add_to(app);
     CLI11_PARSE(app, argc, argv);
     try {

@@ -24,6 +24,7 @@ void print(const vulkan::DeviceReport& device) {
     // The default pool's chunks of distances have 2^25 voxels.
     const bool texels = caps.software() && caps.max_texel_elements >= (1u << 25);
     fmt::print("  map access        {}\n", texels ? "texel buffers (faster on software devices)" : "storage buffers");
+    fmt::print("  16-bit floats     {}\n", caps.float16 ? "yes" : "no");
     fmt::print("  pass times        {}\n",
                caps.timestamps ? "measured" : "not available: the device has no timestamps");
     if (device.missing.empty()) {
