@@ -182,8 +182,9 @@ class FitWardTest : public GpuTest {
         return blur2;
     }
 
-    Ward reference_fit(const std::vector<FilledRecord>& records, const reference::SpecularPrior& prior,
-                       const std::vector<double>& blur2 = {}) const {
+    /// What the reference finds with each of so many fits.
+    std::vector<Ward> reference_fits(const std::vector<FilledRecord>& records, uint32_t times = 1,
+                                     const std::vector<double>& blur2 = {}) const {
         std::vector<reference::FittedVoxel> voxels;
         for (const FilledRecord& record : records) {
             voxels.push_back({{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)}, {}, received()});
@@ -191,7 +192,10 @@ class FitWardTest : public GpuTest {
             for (const FilledObservation& seen : record.observations)
                 voxels.back().observations.push_back({glm::dvec3(seen.to_viewer), glm::dvec3(seen.rgb), seen.clipped});
         }
-        return reference::fit_ward(voxels, prior);
+        reference::WardFitSeries series({});
+        std::vector<Ward> fits;
+        for (uint32_t i = 0; i < times; ++i) fits.push_back(series.fit(voxels));
+        return fits;
     }
 
     std::mt19937 random_{1};
@@ -241,13 +245,13 @@ TEST_F(FitWardTest, AgreesWithTheReferenceOnNoise) {
         }
     }
     fill(records);
-    // As the first estimate has it: deviations as expected, 50 observations as good as one.
-    const double unit = 50;
-    const Ward want = reference_fit(records, {glm::dvec3(0.04), 0.2, unit / (0.15 * 0.15), unit / (1.3 * 1.3), unit});
-    const glm::vec4 got = fit({3})[3].ks_alpha;
-    EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - want.ks)), 2e-4);
-    EXPECT_NEAR(got.w, want.alpha, 2e-4);
-    EXPECT_GT(max_of(want.ks), 0.05) << "a highlight was there to be found";
+    const std::vector<Ward> want = reference_fits(records, 3);
+    EXPECT_GT(max_of(want[0].ks), 0.05) << "a highlight was there to be found";
+    for (size_t i = 0; i < want.size(); ++i) {
+        const glm::vec4 got = fit({3})[3].ks_alpha;
+        EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - want[i].ks)), 2e-4) << i;
+        EXPECT_NEAR(got.w, want[i].alpha, 2e-4) << i;
+    }
 }
 
 TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
@@ -298,14 +302,16 @@ TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
     EXPECT_NEAR(got.ks_alpha.w, truth.alpha, 0.03 * truth.alpha);
     EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - truth.ks)), 0.05 * 0.05);
 
-    EXPECT_NEAR(fit({1}, 5)[1].ks_alpha.w, truth.alpha, 0.03 * truth.alpha) << "when the estimate tells outliers, too";
-
-    const double unit = 50;
-    const reference::SpecularPrior prior{glm::dvec3(0.04), 0.2, unit / (0.15 * 0.15), unit / (1.3 * 1.3), unit};
     records.resize(blur2.size());
-    const Ward want = reference_fit(records, prior, blur2);
-    EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want.ks)), 2e-4);
-    EXPECT_NEAR(got.ks_alpha.w, want.alpha, 2e-4);
+    const std::vector<Ward> want = reference_fits(records, 3, blur2);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want[0].ks)), 2e-4);
+    EXPECT_NEAR(got.ks_alpha.w, want[0].alpha, 2e-4);
+    // Were the highlights that weights are about not blurred, these would be 1.0e-4 and 1.2e-4.
+    const glm::vec4 later = fit({1}, 2)[1].ks_alpha;
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(later) - want[2].ks)), 7.5e-5);
+    EXPECT_NEAR(later.w, want[2].alpha, 9e-5);
+
+    EXPECT_NEAR(fit({1}, 3)[1].ks_alpha.w, truth.alpha, 0.03 * truth.alpha) << "when the estimate tells outliers, too";
 }
 
 TEST_F(FitWardTest, KeepsThePriorWhereNoObservationTells) {
@@ -392,6 +398,31 @@ TEST_F(FitWardTest, TheFlanksOfClippedHighlightsTellTheirPeaks) {
         const glm::vec4 got = fit({1}, times)[1].ks_alpha;
         EXPECT_LT(max_of(glm::abs(glm::dvec3(got) - truth.ks) / truth.ks), 0.02) << times;
         EXPECT_NEAR(got.w, truth.alpha, 0.01 * truth.alpha) << times;
+    }
+}
+
+TEST_F(FitWardTest, LaterFitsAgreeWithTheReferenceOnClippedAndWildObservations) {
+    constexpr float kClip = 0.2f;
+    const Ward truth{{}, {0.3, 0.25, 0.2}, 0.06};
+    std::vector<FilledRecord> records = sphere(1, truth, 15);
+    std::normal_distribution<float> noise(0, 0.03f);
+    for (FilledRecord& record : records) {
+        for (FilledObservation& seen : record.observations) {
+            seen.rgb *= 1 + noise(random_);
+            if (random_() % 15 == 0) seen.rgb *= 1.7f;
+            for (glm::length_t c = 0; c < 3; ++c) {
+                seen.clipped[static_cast<size_t>(c)] = seen.rgb[c] > kClip;
+                seen.rgb[c] = std::min(seen.rgb[c], kClip);
+            }
+        }
+    }
+    fill(records);
+    const std::vector<Ward> want = reference_fits(records, 4);
+    EXPECT_GT(max_of(glm::abs(want[1].ks - want[0].ks)), 0.015) << "clipped channels count from the second on";
+    for (size_t i = 0; i < want.size(); ++i) {
+        const gpu::WardFit got = fit({1})[1];
+        EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want[i].ks)), 2.5e-3) << i;
+        EXPECT_NEAR(got.ks_alpha.w, want[i].alpha, 2.5e-4) << i;
     }
 }
 

@@ -7,89 +7,186 @@ namespace patina::reference {
 
 namespace {
 
-/// One channel of all voxels, for one alpha: residuals are color - ks * lobe, each without its voxel's weighted mean.
-struct Line {
-    double lobe2 = 0, product = 0, color2 = 0;
-};
-
+// So fine that sums are integrals.
+constexpr int kSteps = 500;
 constexpr double kLeast = 0.02, kMost = 0.6;
 
-bool is_flat(const FittedVoxel& voxel, const SeenColor& seen) {
-    return glm::dot(seen.to_viewer, voxel.point.normal) < 0.15;
-}
+double alpha_of(double step) { return kMost * std::pow(kLeast / kMost, step / kSteps); }
 
-/// What all of a voxel's observations weigh.
-double weight_of(const FittedVoxel& voxel) {
-    double brightness = 0, count = 0;
-    for (const SeenColor& seen : voxel.observations) {
-        if (is_flat(voxel, seen)) continue;
-        brightness += (seen.rgb.r + seen.rgb.g + seen.rgb.b) / 3;
-        ++count;
-    }
-    return count > 0 ? std::pow(0.004 + 0.05 * brightness / count, -2) : 0;
-}
+double mean_of(glm::dvec3 v) { return (v.x + v.y + v.z) / 3; }
+double max_of(glm::dvec3 v) { return std::max({v.x, v.y, v.z}); }
 
-void add(Line& line, const FittedVoxel& voxel, double alpha, int channel) {
+glm::dvec3 lobe_of(const FittedVoxel& voxel, double alpha, const SeenColor& seen) {
     const Ward gloss{glm::dvec3(0), glm::dvec3(1), std::sqrt(alpha * alpha + voxel.blur2)};
-    const double weight = weight_of(voxel);
-    std::vector<double> lobe, color;
-    double lobe_sum = 0, color_sum = 0;
-    for (const SeenColor& seen : voxel.observations) {
-        if (seen.clipped[static_cast<size_t>(channel)] || is_flat(voxel, seen)) continue;
-        lobe.push_back(shade(gloss, voxel.point, voxel.lights, glm::dvec3(0), seen.to_viewer)[channel]);
-        color.push_back(seen.rgb[channel]);
-        lobe_sum += lobe.back();
-        color_sum += color.back();
-    }
-    const double count = static_cast<double>(lobe.size());
-    for (size_t k = 0; k < lobe.size(); ++k) {
-        const double l = lobe[k] - lobe_sum / count, c = color[k] - color_sum / count;
-        line.lobe2 += weight * l * l;
-        line.product += weight * l * c;
-        line.color2 += weight * c * c;
-    }
+    return shade(gloss, voxel.point, voxel.lights, glm::dvec3(0), seen.to_viewer);
 }
 
-struct Solution {
-    glm::dvec3 ks{0};
-    double score = 0;  ///< -2 log of how likely the alpha is, times the prior's unit
+/// The weighted mean of what counts.
+struct Mean {
+    double sum = 0, weight = 0;
+    void add(double value, double by) {
+        sum += by * value;
+        weight += by;
+    }
+    double value() const { return weight > 0 ? sum / weight : 0; }
 };
-
-Solution solve(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior, double alpha) {
-    Solution best;
-    best.score = prior.alpha_weight * std::pow(std::log2(alpha / prior.alpha), 2);
-    for (int c = 0; c < 3; ++c) {
-        Line line;
-        for (const FittedVoxel& voxel : voxels) add(line, voxel, alpha, c);
-        const double bend = line.lobe2 + prior.ks_weight;
-        if (bend > 0) best.ks[c] = std::max((line.product + prior.ks_weight * prior.ks[c]) / bend, 0.0);
-        best.score += line.color2 - 2 * best.ks[c] * line.product + std::pow(best.ks[c], 2) * line.lobe2 +
-                      prior.ks_weight * std::pow(best.ks[c] - prior.ks[c], 2);
-        // The integral over ks of a normal distribution is as its width.
-        best.score += prior.unit * std::log(bend / prior.ks_weight);
-    }
-    return best;
-}
 
 }  // namespace
 
-Ward fit_ward(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior) {
-    // So fine that sums are integrals.
-    constexpr int kSteps = 500;
-    std::vector<Solution> all;
-    for (int i = 0; i <= kSteps; ++i)
-        all.push_back(solve(voxels, prior, kMost * std::pow(kLeast / kMost, static_cast<double>(i) / kSteps)));
-    const double least = std::ranges::min(all, {}, &Solution::score).score;
-    double sum = 0, place = 0;
+/// A voxel with the observations that are not flat, and what each weighs.
+struct WardFitSeries::Weighed {
+    FittedVoxel voxel;
+    std::vector<double> weights;
+};
+
+WardFitSeries::WardFitSeries(const SpecularPrior& prior) : prior_(prior), lines_(kSteps + 1), solutions_(kSteps + 1) {}
+
+/// An inverse variance: what all of a voxel's observations have in common, and a part of the highlight that the
+/// estimate predicts; less, by Geman and McClure, of what is far off it.
+WardFitSeries::Weighed WardFitSeries::weigh(const FittedVoxel& voxel) const {
+    Weighed result{voxel, {}};
+    std::vector<SeenColor>& seen = result.voxel.observations;
+    std::erase_if(seen, [&](const SeenColor& each) { return glm::dot(each.to_viewer, voxel.point.normal) < 0.15; });
+    double brightness = 0;
+    for (const SeenColor& each : seen) brightness += mean_of(each.rgb) / static_cast<double>(seen.size());
+    std::vector<glm::dvec3> rest;
+    for (const SeenColor& each : seen) {
+        const glm::dvec3 highlight = fits_ == 0 ? glm::dvec3(0) : estimate_.ks * lobe_of(voxel, estimate_.alpha, each);
+        rest.push_back(each.rgb - highlight);
+        result.weights.push_back(1 / (std::pow(0.004 + 0.05 * brightness, 2) + std::pow(0.3 * mean_of(highlight), 2)));
+    }
+    if (confidence_ < 0.5 || max_of(estimate_.ks) <= 0.01) return result;
+
+    const std::vector<double> trust = result.weights;
+    const auto means = [&](const std::vector<std::array<bool, 3>>& counts) {
+        std::array<Mean, 3> mean;
+        for (size_t k = 0; k < seen.size(); ++k) {
+            for (size_t c = 0; c < 3; ++c)
+                if (counts[k][c]) mean[c].add(rest[k][static_cast<int>(c)], result.weights[k]);
+        }
+        return mean;
+    };
+    std::vector<std::array<bool, 3>> counts;
+    for (const SeenColor& each : seen) counts.push_back({!each.clipped[0], !each.clipped[1], !each.clipped[2]});
+    const std::array<Mean, 3> unclipped = means(counts);
+    for (size_t k = 0; k < seen.size(); ++k) {
+        for (size_t c = 0; c < 3; ++c) {
+            const bool brighter = rest[k][static_cast<int>(c)] > unclipped[c].value();
+            counts[k][c] = counts[k][c] || (unclipped[c].weight > 0 && brighter);
+        }
+    }
+    for (int step = 0; step < 2; ++step) {
+        const std::array<Mean, 3> mean = means(counts);
+        for (size_t k = 0; k < seen.size(); ++k) {
+            double off2 = 0, channels = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                if (!counts[k][c]) continue;
+                off2 += std::pow(rest[k][static_cast<int>(c)] - mean[c].value(), 2);
+                ++channels;
+            }
+            const double scale = 2 * std::max(deviation_, 1.0);
+            const double far2 = off2 * trust[k] / (scale * scale) / std::max(channels, 1.0);
+            result.weights[k] = trust[k] / ((1 + far2) * (1 + far2));
+        }
+    }
+    return result;
+}
+
+std::array<WardFitSeries::Line, 3> WardFitSeries::sum(const std::vector<Weighed>& voxels, size_t step) const {
+    const double alpha = alpha_of(static_cast<double>(step));
+    std::array<Line, 3> lines{};
+    for (const Weighed& weighed : voxels) {
+        const std::vector<SeenColor>& seen = weighed.voxel.observations;
+        std::vector<glm::dvec3> lobes;
+        for (const SeenColor& each : seen) lobes.push_back(lobe_of(weighed.voxel, alpha, each));
+        for (int c = 0; c < 3; ++c) {
+            const auto clipped = [&](size_t k) { return seen[k].clipped[static_cast<size_t>(c)]; };
+            Mean lobe, color;
+            for (size_t k = 0; k < seen.size(); ++k) {
+                if (clipped(k)) continue;
+                lobe.add(lobes[k][c], weighed.weights[k]);
+                color.add(seen[k].rgb[c], weighed.weights[k]);
+            }
+            std::vector<size_t> counted;
+            for (size_t k = 0; k < seen.size(); ++k) {
+                const double predicted = color.value() + solutions_[step].ks[c] * (lobes[k][c] - lobe.value());
+                if (!clipped(k) || (fits_ > 0 && lobe.weight > 0 && seen[k].rgb[c] > predicted)) counted.push_back(k);
+            }
+            Mean all_lobes, all_colors;
+            for (const size_t k : counted) {
+                all_lobes.add(lobes[k][c], weighed.weights[k]);
+                all_colors.add(seen[k].rgb[c], weighed.weights[k]);
+            }
+            Line& line = lines[static_cast<size_t>(c)];
+            for (const size_t k : counted) {
+                const double l = lobes[k][c] - all_lobes.value(), v = seen[k].rgb[c] - all_colors.value();
+                line.lobe2 += weighed.weights[k] * l * l;
+                line.product += weighed.weights[k] * l * v;
+                line.color2 += weighed.weights[k] * v * v;
+                ++line.count;
+            }
+        }
+    }
+    return lines;
+}
+
+WardFitSeries::Solution WardFitSeries::solve(const std::array<Line, 3>& lines, double alpha) const {
+    Solution best;
+    best.score = unit_ * std::pow(std::log2(alpha / prior_.alpha) / prior_.alpha_deviation, 2);
+    const double weight = unit_ / (prior_.ks_deviation * prior_.ks_deviation);
+    for (int c = 0; c < 3; ++c) {
+        const Line& line = lines[static_cast<size_t>(c)];
+        const double bend = line.lobe2 + weight;
+        best.ks[c] = std::max((line.product + weight * prior_.ks[c]) / bend, 0.0);
+        best.misfit += line.color2 - 2 * best.ks[c] * line.product + std::pow(best.ks[c], 2) * line.lobe2;
+        best.score += weight * std::pow(best.ks[c] - prior_.ks[c], 2);
+        // The integral over ks of a normal distribution is as its width.
+        best.score += unit_ * std::log(bend / weight);
+        best.told += line.lobe2 / bend / 3;
+    }
+    best.score += best.misfit;
+    return best;
+}
+
+void WardFitSeries::set_estimate() {
+    const auto best = std::ranges::min_element(solutions_, {}, &Solution::score);
+    double sum = 0, place = 0, place2 = 0, told = 0;
     glm::dvec3 ks(0);
     for (int i = 0; i <= kSteps; ++i) {
-        const Solution& at = all[static_cast<size_t>(i)];
-        const double likely = std::exp((least - at.score) / (2 * prior.unit));
+        const Solution& at = solutions_[static_cast<size_t>(i)];
+        const double likely = std::exp((best->score - at.score) / (2 * unit_));
         sum += likely;
         place += likely * i;
+        place2 += likely * i * i;
         ks += likely * at.ks;
+        told += likely * at.told;
     }
-    return {glm::dvec3(0), ks / sum, kMost * std::pow(kLeast / kMost, place / sum / kSteps)};
+    estimate_ = {glm::dvec3(0), ks / sum, alpha_of(place / sum)};
+    const double octaves_per_step = std::log2(kMost / kLeast) / kSteps;
+    const double spread2 = (place2 / sum - std::pow(place / sum, 2)) * octaves_per_step * octaves_per_step;
+    confidence_ = told / sum / (max_of(estimate_.ks) < 0.01 ? 1 : 1 + spread2 / (0.3 * 0.3));
+    double count = 0;
+    for (const Line& line : lines_[static_cast<size_t>(best - solutions_.begin())]) count += line.count;
+    deviation_ = std::sqrt(std::max(best->misfit, 0.0) / std::max(count, 1.0));
+}
+
+Ward WardFitSeries::fit(const std::vector<FittedVoxel>& voxels) {
+    std::vector<Weighed> weighed;
+    for (const FittedVoxel& voxel : voxels) weighed.push_back(weigh(voxel));
+    unit_ = prior_.correlated * std::pow(std::max(fits_ == 0 ? 1 : deviation_, 0.1), 2);
+    for (size_t step = 0; step < lines_.size(); ++step) {
+        const std::array<Line, 3> now = sum(weighed, step);
+        for (size_t c = 0; c < 3; ++c) {
+            Line& kept = lines_[step][c];
+            const double memory = fits_ == 0 ? 0 : 0.93;
+            kept = {now[c].lobe2 + memory * kept.lobe2, now[c].product + memory * kept.product,
+                    now[c].color2 + memory * kept.color2, now[c].count + memory * kept.count};
+        }
+        solutions_[step] = solve(lines_[step], alpha_of(static_cast<double>(step)));
+    }
+    set_estimate();
+    ++fits_;
+    return estimate_;
 }
 
 }  // namespace patina::reference

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "tests/reference/refine_albedo.h"
@@ -16,15 +17,51 @@ struct FittedVoxel {
 
 /// What is thought of a material before anything is seen of it.
 struct SpecularPrior {
-    glm::dvec3 ks{0};
+    glm::dvec3 ks{0.04};
     double alpha = 0.2;
-    double ks_weight = 1;     ///< of squared differences from ks, beside squared errors over their variances
-    double alpha_weight = 0;  ///< and of squared octaves from alpha
-    double unit = 1;          ///< of these sums, what is as unlikely as one deviation of one independent observation
+    double ks_deviation = 0.15;
+    double alpha_deviation = 1.3;  ///< octaves
+    double correlated = 50;        ///< so many observations are as good as one that is independent
 };
 
-/// The means of ks and log(alpha) over how likely they are, kd being free for each voxel and channel; alpha from 0.02
-/// to 0.6. Views below a cosine of 0.15 are left out, and clipped channels.
-Ward fit_ward(const std::vector<FittedVoxel>& voxels, const SpecularPrior& prior);
+/// Fits of one segment, each told by those before it: kd is free for each voxel and channel, the result the means of ks
+/// and log(alpha) over how likely they are, alpha from 0.02 to 0.6. Views below a cosine of 0.15 are left out.
+class WardFitSeries {
+  public:
+    explicit WardFitSeries(const SpecularPrior& prior);
+
+    /// One more fit; 93 % of what the one before summed up counts beside it. Clipped channels are left out of the
+    /// first; later they count, for each alpha, where the ks that was found for it predicts less than was recorded.
+    Ward fit(const std::vector<FittedVoxel>& voxels);
+
+  private:
+    /// One channel of all voxels, for one alpha: residuals are color - ks * lobe, each without its voxel's mean.
+    struct Line {
+        double lobe2 = 0, product = 0, color2 = 0, count = 0;
+    };
+    struct Solution {
+        glm::dvec3 ks{0};
+        double score = 0;   ///< -2 log of how likely the alpha is, times the unit
+        double misfit = 0;  ///< the weighted sum of squared errors
+        double told = 0;    ///< the share of ks that observations tell
+    };
+    struct Weighed;
+
+    Weighed weigh(const FittedVoxel& voxel) const;
+    std::array<Line, 3> sum(const std::vector<Weighed>& voxels, size_t step) const;
+    Solution solve(const std::array<Line, 3>& lines, double alpha) const;
+    void set_estimate();
+
+    SpecularPrior prior_;
+    int fits_ = 0;
+    // By alpha:
+    std::vector<std::array<Line, 3>> lines_;
+    std::vector<Solution> solutions_;
+    // What the fits so far say:
+    Ward estimate_{};
+    double deviation_ = 1;
+    double confidence_ = 0;
+    double unit_ = 1;  ///< of sums, what is as unlikely as one deviation of one independent observation
+};
 
 }  // namespace patina::reference
