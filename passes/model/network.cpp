@@ -126,11 +126,14 @@ graph::BufferId Network::import(graph::Frame& frame, bool halves) {
     if (weights) return frame.import(weights);
     const std::vector<uint32_t> words = halves ? in_halves(packed_) : std::vector<uint32_t>{};
     const auto bytes = halves ? std::as_bytes(std::span(words)) : std::as_bytes(std::span(packed_));
-    weights = device_->create_buffer({.name = "network.weights", .bytes = std::max<size_t>(bytes.size(), 16)});
-    graph::BufferId id = frame.import(weights);
-    if (bytes.empty()) return id;
-    id = frame.upload_bytes(id, 0, bytes, true);
-    frame.keep(id);
+    const vulkan::BufferRef buffer =
+        device_->create_buffer({.name = "network.weights", .bytes = std::max<size_t>(bytes.size(), 16)});
+    graph::BufferId id = frame.import(buffer);
+    if (!bytes.empty()) {
+        id = frame.upload_bytes(id, 0, bytes, true);
+        frame.keep(id);
+    }
+    weights = buffer;
     return id;
 }
 

@@ -82,6 +82,7 @@ class Network {
     /// One more than there are layers.
     const std::vector<ActivationShape>& shapes() const { return shapes_; }
     Place place(size_t layer) const { return places_[layer]; }
+    /// Quads of four weights or biases.
     uint64_t weight_quads() const { return packed_.size() / 4; }
     /// Whether 16-bit floats hold all weights; larger ones would be infinite.
     bool fits_halves() const;

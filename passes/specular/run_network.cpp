@@ -96,6 +96,14 @@ void check_images(const Network& network, uint32_t capacity, uint64_t bytes) {
                 " segments takes ", needed);
 }
 
+/// Of weights and activations, quads.
+uint64_t largest_buffer(const Network& network, uint32_t capacity) {
+    uint64_t largest = network.weight_quads();
+    for (const ActivationShape& shape : network.shapes())
+        largest = std::max(largest, capacity * quads_in_segment(shape));
+    return largest;
+}
+
 /// One shader of each kind of layer.
 struct LayerShaders {
     const vulkan::Shader &conv, &max_pool, &sample_pool, &full;
@@ -128,9 +136,27 @@ NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const N
         const bool halves = caps.float16 && network.fits_halves();
         return {halves ? NetworkFormat::kHalves : NetworkFormat::kFloats, kBusyInvocations};
     }
-    uint64_t most = network.weight_quads();
-    for (const ActivationShape& shape : network.shapes()) most = std::max(most, capacity * quads_in_segment(shape));
-    return {most <= caps.max_texel_elements ? NetworkFormat::kTexels : NetworkFormat::kFloats, 0};
+    const bool texels = largest_buffer(network, capacity) <= caps.max_texel_elements;
+    return {texels ? NetworkFormat::kTexels : NetworkFormat::kFloats, 0};
+}
+
+NetworkVariant network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity,
+                               NetworkFormat format) {
+    const std::string& source = network.description().source;
+    if (format == NetworkFormat::kHalves && !caps.float16) {
+        throw Error("the device '", caps.name, "' has no 16-bit floats to run ", source, " in");
+    }
+    if (format == NetworkFormat::kHalves && !network.fits_halves()) {
+        throw Error(source, " has weights that 16-bit floats cannot hold");
+    }
+    const uint64_t largest = largest_buffer(network, capacity);
+    if (format == NetworkFormat::kTexels && largest > caps.max_texel_elements) {
+        throw Error("the device '", caps.name, "' has texel buffers of at most ", caps.max_texel_elements,
+                    " elements, to run ", source, " takes ", largest);
+    }
+    NetworkVariant variant = preferred_network_variant(caps, network, capacity);
+    variant.format = format;
+    return variant;
 }
 
 graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,

@@ -15,7 +15,7 @@ enum class NetworkFormat : uint8_t {
 };
 
 /// How a network is run. What comes out is the same, but in 16-bit floats: there the trained network's outputs are off
-/// by up to 0.002.
+/// by up to 0.002. Images and activations beyond 65504 are taken for that.
 struct NetworkVariant {
     NetworkFormat format = NetworkFormat::kFloats;
     /// A convolution has so many invocations at least, if its batch has the pixels: each computes fewer of them where
@@ -26,10 +26,15 @@ struct NetworkVariant {
 /// The variant that is fastest for batches of so many segments, within the device's limits; on hardware not measured.
 NetworkVariant preferred_network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity);
 
+/// The same in another format. Throws Error where the device lacks it, or it cannot hold the weights.
+NetworkVariant network_variant(const vulkan::DeviceCaps& caps, const Network& network, uint32_t capacity,
+                               NetworkFormat format);
+
 /// Runs a network on the images of all segments of a batch. `images`: vec4 [segment][sample][y][x], three channels and
 /// an unused one for a network of three; quads_of(channels) vec4 a pixel in general. Returns the last layer's
 /// activations, vec4 [segment][sample][y][x][quad] as far as they are there, in every format; undefined beyond the
-/// segments of the batch. Throws Error when `images` or the batch's capacity do not fit.
+/// segments of the batch. The device has to have the variant's format. Throws Error when `images` or the batch's
+/// capacity do not fit, or memory for the weights runs out.
 graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
                                 const SegmentBatch& batch, const NetworkVariant& variant);
 

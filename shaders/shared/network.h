@@ -6,8 +6,10 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kKernelSide = 3u;  // of convolutions
 
-// What one layer reads and writes. Activations are vec4 [image][y][x][quad]: four channels of one pixel are a quad, and
-// channels beyond the last are 0. Weights are vec4 of four outputs: [ky][kx][input][output quad], then the biases.
+// What one layer reads and writes. Activations are quads [image][y][x][quad] of four channels of one pixel; those
+// beyond the last do not count, as their weights are 0. Weights are quads of four outputs: [ky][kx][input][output
+// quad], then the biases. A quad is a vec4 or, in 16-bit floats, a uvec2 of halves; but for the images that go into the
+// first layer and what the last one gives, which are always vec4.
 struct LayerParams {
     uint images;       // per segment; 1 once the samples are pooled
     uint input_side;   // pixels

@@ -1,8 +1,11 @@
 // Activations in 16-bit floats, two in a word, and arithmetic in them. What goes into the first layer, and what comes
-// out of the last, is in 32-bit floats (wide). Needs shaderFloat16, but no 16-bit storage.
+// out of the last, is in 32-bit floats (wide). None is kept that is larger than kLargestHalf: an infinite one would
+// become NaN. Needs shaderFloat16, but no 16-bit storage.
 #define Quad f16vec4
 #define Quads f16mat4
 #include "specular/layer_common.glsl"
+
+const float kLargestHalf = 65504.0;
 
 layout(constant_id = 8) const uint kWideInputs = 0u;
 layout(constant_id = 9) const uint kWideOutputs = 0u;
@@ -14,10 +17,12 @@ f16vec4 unpacked(uvec2 words) { return f16vec4(unpackFloat2x16(words.x), unpackF
 
 f16vec4 input_quad(uint i) {
     if (kWideInputs == 0u) return unpacked(inputs[i]);
-    return f16vec4(vec4(uintBitsToFloat(inputs[2u * i]), uintBitsToFloat(inputs[2u * i + 1u])));
+    const vec4 wide = vec4(uintBitsToFloat(inputs[2u * i]), uintBitsToFloat(inputs[2u * i + 1u]));
+    return f16vec4(clamp(wide, -kLargestHalf, kLargestHalf));
 }
 
-void store_quad(uint i, f16vec4 quad) {
+void store_quad(uint i, f16vec4 sum) {
+    const f16vec4 quad = clamp(sum, f16vec4(-kLargestHalf), f16vec4(kLargestHalf));
     if (kWideOutputs == 0u) {
         outputs[i] = uvec2(packFloat2x16(quad.xy), packFloat2x16(quad.zw));
         return;

@@ -81,27 +81,15 @@ class FitWardTest : public GpuTest {
 
     /// Puts voxels into the map; each label keeps its own, in the order of `kept`.
     void fill(const std::vector<FilledRecord>& records) {
-        std::vector<gpu::SegmentSampleCount> counts(kLabels);
-        std::vector<uint32_t> kept(kLabels * gpu::kSegmentSamples, gpu::kNoRecord);
-        for (uint32_t i = 0; i < records.size(); ++i) {
-            const uint32_t label = records[i].label;
-            kept[label * gpu::kSegmentSamples + counts[label].kept++] = i;
-        }
-        if (backwards_) {
-            for (uint32_t label = 0; label < kLabels; ++label) {
-                const auto first = kept.begin() + label * gpu::kSegmentSamples;
-                std::reverse(first, first + counts[label].kept);
-            }
-        }
+        std::vector<std::vector<uint32_t>> kept(kLabels);
+        for (uint32_t i = 0; i < records.size(); ++i) kept[records[i].label].push_back(i);
+        if (backwards_) std::ranges::for_each(kept, [](auto& of_label) { std::ranges::reverse(of_label); });
         ReflectanceSettings settings;
         settings.shadows = false;
         settings.first_marched_records = 1u << 20;
         rig_.update(settings, [&](graph::Frame& frame, ObservationMapIds& ids) {
             add_fill_records(frame, map_, ids, records);
-            SegmentSampleIds sampled = samples_.import(frame);
-            sampled.counts = frame.upload_bytes(sampled.counts, 0, std::as_bytes(std::span(counts)), true);
-            sampled.kept = frame.upload_bytes(sampled.kept, 0, std::as_bytes(std::span(kept)), true);
-            SegmentSamples::keep(frame, sampled);
+            add_keep_records(frame, samples_, kept);
             return add_list_records(frame, static_cast<uint32_t>(records.size()));
         });
     }

@@ -93,6 +93,23 @@ void add_fill_records(graph::Frame& frame, const ObservationMap& map, Observatio
     ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(packed_records)), false);
 }
 
+void add_keep_records(graph::Frame& frame, const SegmentSamples& samples,
+                      const std::vector<std::vector<uint32_t>>& kept) {
+    PATINA_ASSERT(kept.size() <= samples.labels(), kept.size(), " labels of ", samples.labels());
+    std::vector<gpu::SegmentSampleCount> counts(samples.labels());
+    std::vector<uint32_t> slots(size_t{samples.labels()} * gpu::kSegmentSamples, gpu::kNoRecord);
+    for (size_t label = 0; label < kept.size(); ++label) {
+        PATINA_ASSERT(kept[label].size() <= gpu::kSegmentSamples, kept[label].size(), " records of ", label);
+        counts[label].kept = counts[label].eligible = static_cast<uint32_t>(kept[label].size());
+        std::copy(kept[label].begin(), kept[label].end(),
+                  slots.begin() + static_cast<ptrdiff_t>(label * gpu::kSegmentSamples));
+    }
+    SegmentSampleIds ids = samples.import(frame);
+    ids.counts = frame.upload_bytes(ids.counts, 0, std::as_bytes(std::span(counts)), true);
+    ids.kept = frame.upload_bytes(ids.kept, 0, std::as_bytes(std::span(slots)), true);
+    SegmentSamples::keep(frame, ids);
+}
+
 RecordList add_list_records(graph::Frame& frame, uint32_t count) {
     std::vector<uint32_t> list(1 + count);
     list[0] = count;

@@ -1,9 +1,7 @@
 // patina_hemi_bench: how long HemiImages, the network and the fusion of its estimates take, on segments that are made
 // up. See docs/benchmarks.md.
-#include <algorithm>
 #include <cmath>
 #include <exception>
-#include <map>
 #include <numeric>
 #include <random>
 
@@ -18,6 +16,7 @@
 #include "shared/hemi_images.h"
 #include "tools/bench/distribution.h"
 #include "tools/bench/filled_records.h"
+#include "tools/bench/network_format.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/random_network.h"
 #include "tools/commands/commands.h"
@@ -26,16 +25,13 @@ namespace patina::bench {
 
 namespace {
 
-const std::map<std::string, NetworkFormat> kFormats{
-    {"floats", NetworkFormat::kFloats}, {"texels", NetworkFormat::kTexels}, {"halves", NetworkFormat::kHalves}};
-
 struct Options {
     tools::DeviceArguments device;
     std::vector<uint32_t> segments{1, 8, 64};
     uint32_t voxels = 256;
     uint32_t frames = 15;
     uint32_t warmup = 2;
-    std::string format;  ///< a key of kFormats; empty: what suits the device
+    std::string format;  ///< a key of kNetworkFormats; empty: what suits the device
 };
 
 /// Voxels of `segments` segments, each seen from random directions.
@@ -66,9 +62,8 @@ class Bench {
           samples_(device, segments + 1),
           estimates_(device, segments + 1),
           network_(device, random_hemi_network(1)),
-          variant_(preferred_network_variant(device.caps(), network_, segments)),
+          variant_(named_variant(device.caps(), network_, segments, options.format)),
           runner_(device) {
-        if (!options.format.empty()) variant_.format = kFormats.at(options.format);
         graph::Frame frame = runner_.begin();
         map_.reset(frame, glm::dvec3(0));
         estimates_.reset(frame);
@@ -103,16 +98,11 @@ class Bench {
 
   private:
     void fill_samples(graph::Frame& frame, uint32_t voxels) {
-        std::vector<gpu::SegmentSampleCount> counts(segments_ + 1);
-        std::vector<uint32_t> kept((segments_ + 1) * gpu::kSegmentSamples);
-        for (uint32_t label = 1; label <= segments_; ++label) {
-            counts[label].kept = counts[label].eligible = voxels;
-            for (uint32_t i = 0; i < voxels; ++i) kept[label * gpu::kSegmentSamples + i] = (label - 1) * voxels + i;
-        }
-        SegmentSampleIds ids = samples_.import(frame);
-        ids.counts = frame.upload_bytes(ids.counts, 0, std::as_bytes(std::span(counts)), true);
-        ids.kept = frame.upload_bytes(ids.kept, 0, std::as_bytes(std::span(kept)), true);
-        SegmentSamples::keep(frame, ids);
+        std::vector<std::vector<uint32_t>> kept(segments_ + 1, std::vector<uint32_t>(voxels));
+        kept[0].clear();
+        for (uint32_t label = 1; label <= segments_; ++label)
+            std::iota(kept[label].begin(), kept[label].end(), (label - 1) * voxels);
+        add_keep_records(frame, samples_, kept);
     }
 
     uint32_t segments_, seed_ = 0;
@@ -139,9 +129,7 @@ void run(vulkan::Device& device, const Options& options, uint32_t segments) {
         bench.estimate();
         processor.push_back(static_cast<float>(processor_ms() - start) / 2);
     }
-    const auto format = std::find_if(kFormats.begin(), kFormats.end(),
-                                     [&](const auto& entry) { return entry.second == bench.format(); });
-    fmt::print("\n{} segments, {}, {} frames\n", segments, format->first, options.frames);
+    fmt::print("\n{} segments, {}, {} frames\n", segments, name_of(bench.format()), options.frames);
     fmt::print("{:<34} {:>9} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %", "a segment");
     float sum = 0;
     for (const graph::Timing& timing : bench.runner().pass_timings()) {
@@ -170,7 +158,7 @@ int main(int argc, char** argv) {
         ->check(CLI::PositiveNumber);
     app.add_option("--warmup", options.warmup, "How many to run before")->capture_default_str();
     app.add_option("--format", options.format, "Of activations and weights: floats, texels or halves")
-        ->check(CLI::IsMember(patina::bench::kFormats));
+        ->check(CLI::IsMember(bench::kNetworkFormats));
     options.device.add_to(app);
     CLI11_PARSE(app, argc, argv);
     try {
