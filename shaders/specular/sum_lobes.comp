@@ -181,13 +181,12 @@ void add_voxel(Voxel voxel, bool fitted) {
     nearest_tan2 = kFarTan2;
     add_unclipped(voxel, seen);
     add_clipped(voxel, seen);
-    const float told = any(greaterThan(seen.weight, vec3(0.0))) ? 1.0 : 0.0;
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         const VoxelSums own = voxel_sums[a];
         const vec3 mean_lobe = own.lobe / max(own.weight, kNoWeight);
         const vec3 mean_color = own.color / max(own.weight, kNoWeight);
-        // A clipped view of a peak tells it, too, but not where nothing is known of the voxel's other views.
-        const float peak = told * exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
+        // A clipped view tells a peak, too, also where all of the voxel's are: it was looked for, and is not missing.
+        const float peak = exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
         segment_sums[a].lobe2 += vec4(max(own.lobe2 - mean_lobe * own.lobe, 0.0), min(peak * (1.0 / kSeenLobe), 1.0));
         segment_sums[a].product += vec4(own.product - mean_color * own.lobe, 0.0);
         segment_sums[a].color2 += vec4(max(own.color2 - mean_color * own.color, 0.0), own.count);

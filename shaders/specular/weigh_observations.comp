@@ -34,7 +34,8 @@ const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB
 const float kRelativeNoise = 0.05;  // and that of bright ones: lights and colours are estimates
 const float kHighlightError = 0.3;  // what of a predicted highlight may be wrong, as normals are estimates
 const float kRobustScale = 2.0;     // deviations at which a weight is a quarter
-const float kLeastDeviation = 1.0;  // where everything fits, ever more of a highlight would be taken for outliers
+const float kLeastOutlierDeviation =
+    1.0;  // where everything fits, ever more of a highlight would be taken for outliers
 // Of an estimate that tells outliers: to one without a highlight, the first view of it would be one.
 const float kTrustedConfidence = 0.5;
 const float kTrustedKs = 0.01;
@@ -155,7 +156,7 @@ void main() {
     set_trust(observation_count(known));
     take_clipped();
     const bool glossy = any(greaterThan(fit.ks_alpha.rgb, vec3(kTrustedKs)));
-    if (fit.confidence >= kTrustedConfidence && glossy) reweight(max(fit.deviation, kLeastDeviation));
+    if (fit.confidence >= kTrustedConfidence && glossy) reweight(max(fit.deviation, kLeastOutlierDeviation));
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         const float weight = trust[k] * robust[k];
         weights[(segment * kMaxObservations + k) * kSegmentSamples + slot] = weight > 0.0 ? weight : 0.0;  // nor NaN
