@@ -35,12 +35,14 @@ void SpecularModel::add(graph::Frame& frame, ReflectanceModel& reflectance, cons
     SpecularEstimateIds estimates = estimates_.import(frame);
     WardFitIds fits = fits_.import(frame);
     SpecularMaterialIds ids{estimates, fits, inputs.materials};
-    const SegmentBatch batch =
+    const ChosenSegments chosen =
         add_choose_segments(frame,
                             {inputs.records.records, changed, segmentation.table().import(frame).labels, samples.counts,
                              fits_.labels(), inputs.material_count, frame_index + 1},
                             settings_.segments_per_frame, ids);
     if (network_) {
+        // Of the network the fit takes a prior, which hardly matters where observations tell enough.
+        const SegmentBatch& batch = settings_.fit ? chosen.doubtful : chosen.all;
         const HemiImages hemi = add_hemi_images(frame, inputs.map, inputs.records, segmentation.samples(), samples,
                                                 batch, network_->description().map, settings_.seed + frame_index);
         const graph::BufferId w = add_run_network(frame, *network_, hemi.images, batch, network_variant_);
@@ -51,9 +53,9 @@ void SpecularModel::add(graph::Frame& frame, ReflectanceModel& reflectance, cons
                                 inputs.lights,   inputs.position_version, segmentation.samples(),
                                 samples,         ids.estimates.materials, inputs.material_count,
                                 settings_.memory};
-        add_fit_ward(frame, fit, batch, fits_, ids.fits, ids.materials);
+        add_fit_ward(frame, fit, chosen.all, fits_, ids.fits, ids.materials);
     } else {
-        add_adopt_estimates(frame, batch, inputs.material_count, ids);
+        add_adopt_estimates(frame, chosen.all, inputs.material_count, ids);
     }
     SpecularEstimates::keep(frame, ids.estimates);
     WardFits::keep(frame, ids.fits);

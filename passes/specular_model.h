@@ -24,7 +24,8 @@ struct SpecularSettings {
 
 /// Specular materials of the map's segments: HemiCNN's estimate (paper, Section 3.6) where there is a network, and a
 /// fit of Ward's model. In each frame the segments whose observations changed most are estimated, and in turn those
-/// that have waited longest. Lives as long as the segments.
+/// that have waited longest; beside the fit the network estimates those of them that it is not sure of. Lives as long
+/// as the segments.
 class SpecularModel {
   public:
     /// Throws Error for settings that cannot be met, a network that does not estimate materials, or lack of memory.

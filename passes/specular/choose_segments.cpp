@@ -4,8 +4,8 @@
 
 namespace patina {
 
-SegmentBatch add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
-                                 SpecularMaterialIds& ids) {
+ChosenSegments add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
+                                   SpecularMaterialIds& ids) {
     const gpu::ChooseSegmentsParams params{inputs.stamp, inputs.label_count, inputs.materials, capacity};
     auto count = frame.compute("specular.count_changes", spirv::count_changes);
     count.read("Changed", inputs.changed.list).read("Records", inputs.records).push(params);
@@ -19,9 +19,10 @@ SegmentBatch add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs
     ids.estimates.means = choose.modify("Means", ids.estimates.means);
     ids.estimates.materials = choose.modify("Estimates", ids.estimates.materials);
     ids.materials = choose.modify("Materials", ids.materials);
-    const graph::BufferId list = choose.create("Batch", (1 + uint64_t{capacity}) * sizeof(uint32_t));
+    const uint64_t bytes = (1 + uint64_t{capacity}) * sizeof(uint32_t);
+    const graph::BufferId all = choose.create("Batch", bytes), doubtful = choose.create("Doubtful", bytes);
     choose.dispatch(1);
-    return {list, capacity};
+    return {{all, capacity}, {doubtful, capacity}};
 }
 
 void add_adopt_estimates(graph::Frame& frame, const SegmentBatch& batch, uint32_t materials, SpecularMaterialIds& ids) {

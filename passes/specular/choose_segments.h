@@ -25,11 +25,17 @@ struct ChooseSegmentsInputs {
     uint32_t stamp = 0;        ///< the frame's index + 1
 };
 
+/// What a frame estimates.
+struct ChosenSegments {
+    SegmentBatch all;
+    SegmentBatch doubtful;  ///< of these, those that the Ward fit was not sure of so far (gpu::kSureConfidence)
+};
+
 /// The segments that a frame estimates, at most `capacity`: by turns the one of which most observations changed since
 /// it was estimated last, and the one that has waited longest, so that none starves. Only segments that keep samples
 /// and changed at all are taken. What is known of labels that were handed out anew since is forgotten.
-SegmentBatch add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
-                                 SpecularMaterialIds& ids);
+ChosenSegments add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
+                                   SpecularMaterialIds& ids);
 
 /// The network's estimates of a batch's segments become their materials as they are.
 void add_adopt_estimates(graph::Frame& frame, const SegmentBatch& batch, uint32_t materials, SpecularMaterialIds& ids);

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The segments that a frame estimates: by turns the one that changed most, and the one that has waited longest, of
-// those that changed at all and have samples. Forgets what is known of labels that were handed out anew. One workgroup.
+// those that changed at all and have samples; and which of these the fit is not sure of. Forgets what is known of
+// labels that were handed out anew. One workgroup.
 #include "shared/segment_samples.h"
 #include "shared/segments.h"
 #include "shared/specular_estimates.h"
@@ -15,7 +16,8 @@ layout(std430, binding = 3) buffer Fits { WardFit fits[]; };
 layout(std430, binding = 4) buffer Means { PerceptualMaterial means[]; };
 layout(std430, binding = 5) buffer Estimates { WardMaterial estimates[]; };
 layout(std430, binding = 6) buffer Materials { SegmentMaterial materials[]; };
-layout(std430, binding = 7) writeonly buffer Batch { uint batch[]; };  // count, then labels
+layout(std430, binding = 7) writeonly buffer Batch { uint batch[]; };        // count, then labels
+layout(std430, binding = 8) writeonly buffer Doubtful { uint doubtful[]; };  // likewise, of those
 layout(push_constant) uniform Push { ChooseSegmentsParams params; };
 
 const uint kGroup = kChooseSegmentsGroup;
@@ -70,7 +72,7 @@ uvec2 most_urgent(bool by_age) {
 
 void main() {
     renew();
-    uint count = 0u;
+    uint count = 0u, doubts = 0u;
     for (uint i = 0u; i < params.capacity; ++i) {
         memoryBarrierBuffer();
         barrier();
@@ -80,8 +82,11 @@ void main() {
             batch[1u + count] = chosen.y;
             progress[chosen.y].changes = 0u;
             progress[chosen.y].estimated = params.stamp;
+            if (fits[chosen.y].confidence < kSureConfidence) doubtful[++doubts] = chosen.y;
         }
         ++count;
     }
-    if (gl_LocalInvocationIndex == 0u) batch[0] = count;
+    if (gl_LocalInvocationIndex != 0u) return;
+    batch[0] = count;
+    doubtful[0] = doubts;
 }

@@ -36,7 +36,7 @@ class ChooseSegmentsTest : public GpuTest {
 
         graph::Frame frame = runner().begin();
         SpecularMaterialIds ids{estimates_.import(frame), table_.import(frame), materials_.import(frame)};
-        const SegmentBatch batch =
+        const ChosenSegments chosen =
             add_choose_segments(frame,
                                 {frame.upload<gpu::VoxelRecord>("records", records),
                                  {frame.upload<uint32_t>("list", list), frame.upload<uint32_t>("groups", groups)},
@@ -49,21 +49,27 @@ class ChooseSegmentsTest : public GpuTest {
         SpecularEstimates::keep(frame, ids.estimates);
         WardFits::keep(frame, ids.fits);
         frame.keep(ids.materials);
-        const graph::Readback read = frame.read_back(batch.list), fits = frame.read_back(ids.fits.fits),
-                              means = frame.read_back(ids.estimates.means), materials = frame.read_back(ids.materials);
+        const graph::Readback read = frame.read_back(chosen.all.list), doubts = frame.read_back(chosen.doubtful.list),
+                              fits = frame.read_back(ids.fits.fits), means = frame.read_back(ids.estimates.means),
+                              materials = frame.read_back(ids.materials);
         runner().submit(std::move(frame));
         runner().wait();
         fits_ = fits.as<gpu::WardFit>();
         means_ = means.as<gpu::PerceptualMaterial>();
         set_ = materials.as<gpu::SegmentMaterial>();
-        const auto words = read.as<uint32_t>();
+        doubtful_ = labels_in(doubts);
+        return labels_in(read);
+    }
+
+    static std::vector<uint32_t> labels_in(const graph::Readback& list) {
+        const auto words = list.as<uint32_t>();
         return {words.begin() + 1, words.begin() + 1 + words[0]};
     }
 
     /// Something to be forgotten.
-    void estimate(uint32_t label) {
+    void estimate(uint32_t label, float confidence = 1) {
         graph::Frame frame = runner().begin();
-        const gpu::WardFit fit{glm::vec4(1), glm::vec4(1), 1, 1, 5, 0};
+        const gpu::WardFit fit{glm::vec4(1), glm::vec4(1), confidence, 1, 5, 0};
         const gpu::PerceptualMaterial mean{glm::vec4(1), glm::vec4(1)};
         frame.keep(frame.upload_bytes(table_.import(frame).fits, label * sizeof(fit), std::as_bytes(std::span(&fit, 1)),
                                       false));
@@ -77,6 +83,7 @@ class ChooseSegmentsTest : public GpuTest {
     }
 
     uint32_t stamp_ = 1;
+    std::vector<uint32_t> doubtful_;  ///< of those that were chosen last
     std::vector<gpu::SegmentLabel> labels_;
     std::vector<gpu::SegmentSampleCount> counts_;
     std::vector<gpu::WardFit> fits_;
@@ -115,6 +122,27 @@ TEST_F(ChooseSegmentsTest, NoneStarves) {
     }
     for (uint32_t label = 1; label <= 20; ++label) EXPECT_GE(times[label], 1u) << label;
     EXPECT_GT(times[1], times[20]);
+}
+
+TEST_F(ChooseSegmentsTest, WhatTheFitIsSureOfIsNotDoubtful) {
+    std::map<uint32_t, uint32_t> changes;
+    for (uint32_t label = 1; label <= 4; ++label) {
+        start(label);
+        counts_[label].kept = 40;
+        changes[label] = 10 * label;
+    }
+    choose(changes, 4);
+    EXPECT_EQ(doubtful_.size(), 4u) << "nothing was fitted yet";
+    estimate(1, 0.5f * gpu::kSureConfidence);
+    estimate(2, 1.01f * gpu::kSureConfidence);
+    estimate(4, gpu::kSureConfidence);
+    EXPECT_EQ(choose(changes, 4), (std::vector<uint32_t>{4, 1, 3, 2}));
+    EXPECT_EQ(doubtful_, (std::vector<uint32_t>{1, 3}));
+    EXPECT_EQ(choose({{2, 1}, {4, 2}}, 4).size(), 2u);
+    EXPECT_TRUE(doubtful_.empty());
+    start(4);
+    EXPECT_EQ(choose({{2, 1}, {4, 2}}, 4).size(), 2u);
+    EXPECT_EQ(doubtful_, std::vector<uint32_t>{4}) << "another object has its label";
 }
 
 TEST_F(ChooseSegmentsTest, ALabelThatIsHandedOutAnewForgets) {
