@@ -28,7 +28,7 @@ struct ChooseSegmentsInputs {
 /// What a frame estimates.
 struct ChosenSegments {
     SegmentBatch all;
-    SegmentBatch doubtful;  ///< of these, those that the Ward fit was not sure of so far (gpu::kSureConfidence)
+    SegmentBatch doubtful;  ///< of these, those that the Ward fit was not sure of so far (gpu::kAskedBelowConfidence)
 };
 
 /// The segments that a frame estimates, at most `capacity`: by turns the one of which most observations changed since

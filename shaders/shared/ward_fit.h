@@ -14,8 +14,9 @@ INTEROP_CONST float kFitBlurM = 0.0076f;  // metres of a bent surface that an ob
 INTEROP_CONST uint kFitGroup = 64u;       // invocations over the voxels of a segment
 INTEROP_CONST float kFitLeastCosine = 0.15f;  // of observations, to the viewer: what is flatter does not count
 
-// What the fit is as sure of hardly depends on its prior.
-INTEROP_CONST float kSureConfidence = 0.9f;
+// The network is asked below it. From there on its word, a prior of alpha, hardly changes what is fitted, but for the
+// alpha of what has next to no highlight, which does not show; the last it said remains.
+INTEROP_CONST float kAskedBelowConfidence = 0.9f;
 
 INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that chooses
 

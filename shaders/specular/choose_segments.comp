@@ -12,7 +12,7 @@ layout(local_size_x = kChooseSegmentsGroup) in;
 layout(std430, binding = 0) readonly buffer Labels { SegmentLabel labels[]; };
 layout(std430, binding = 1) readonly buffer Counts { SegmentSampleCount counts[]; };
 layout(std430, binding = 2) coherent buffer Progress { SegmentProgress progress[]; };
-layout(std430, binding = 3) buffer Fits { WardFit fits[]; };
+layout(std430, binding = 3) coherent buffer Fits { WardFit fits[]; };
 layout(std430, binding = 4) buffer Means { PerceptualMaterial means[]; };
 layout(std430, binding = 5) buffer Estimates { WardMaterial estimates[]; };
 layout(std430, binding = 6) buffer Materials { SegmentMaterial materials[]; };
@@ -82,7 +82,7 @@ void main() {
             batch[1u + count] = chosen.y;
             progress[chosen.y].changes = 0u;
             progress[chosen.y].estimated = params.stamp;
-            if (fits[chosen.y].confidence < kSureConfidence) doubtful[++doubts] = chosen.y;
+            if (!(fits[chosen.y].confidence >= kAskedBelowConfidence)) doubtful[++doubts] = chosen.y;
         }
         ++count;
     }

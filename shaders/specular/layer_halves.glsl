@@ -1,6 +1,6 @@
 // Activations in 16-bit floats, two in a word, and arithmetic in them. What goes into the first layer, and what comes
-// out of the last, is in 32-bit floats (wide). None is kept that is larger than kLargestHalf: an infinite one would
-// become NaN. Needs shaderFloat16, but no 16-bit storage.
+// out of the last, is in 32-bit floats (wide). Images and activations beyond kLargestHalf are taken for that; what the
+// last layer gives may be infinite or NaN, which whoever takes it refuses. Needs shaderFloat16, but no 16-bit storage.
 #define Quad f16vec4
 #define Quads f16mat4
 #include "specular/layer_common.glsl"
@@ -22,7 +22,7 @@ f16vec4 input_quad(uint i) {
 }
 
 void store_quad(uint i, f16vec4 sum) {
-    const f16vec4 quad = clamp(sum, f16vec4(-kLargestHalf), f16vec4(kLargestHalf));
+    const f16vec4 quad = kWideOutputs == 0u ? clamp(sum, f16vec4(-kLargestHalf), f16vec4(kLargestHalf)) : sum;
     if (kWideOutputs == 0u) {
         outputs[i] = uvec2(packFloat2x16(quad.xy), packFloat2x16(quad.zw));
         return;

@@ -185,7 +185,8 @@ void add_voxel(Voxel voxel, bool fitted) {
         const VoxelSums own = voxel_sums[a];
         const vec3 mean_lobe = own.lobe / max(own.weight, kNoWeight);
         const vec3 mean_color = own.color / max(own.weight, kNoWeight);
-        // A clipped view tells a peak, too, also where all of the voxel's are: it was looked for, and is not missing.
+        // Views count as near a peak where they are clipped, too, even if all of the voxel's are: that it is bright is
+        // known, though not how bright.
         const float peak = exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
         segment_sums[a].lobe2 += vec4(max(own.lobe2 - mean_lobe * own.lobe, 0.0), min(peak * (1.0 / kSeenLobe), 1.0));
         segment_sums[a].product += vec4(own.product - mean_color * own.lobe, 0.0);

@@ -34,8 +34,8 @@ const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB
 const float kRelativeNoise = 0.05;  // and that of bright ones: lights and colours are estimates
 const float kHighlightError = 0.3;  // what of a predicted highlight may be wrong, as normals are estimates
 const float kRobustScale = 2.0;     // deviations at which a weight is a quarter
-const float kLeastOutlierDeviation =
-    1.0;  // where everything fits, ever more of a highlight would be taken for outliers
+// Where everything fits, ever more of a highlight would be taken for outliers.
+const float kLeastOutlierDeviation = 1.0;
 // Of an estimate that tells outliers: to one without a highlight, the first view of it would be one.
 const float kTrustedConfidence = 0.5;
 const float kTrustedKs = 0.01;

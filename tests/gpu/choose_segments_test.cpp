@@ -133,13 +133,17 @@ TEST_F(ChooseSegmentsTest, WhatTheFitIsSureOfIsNotDoubtful) {
     }
     choose(changes, 4);
     EXPECT_EQ(doubtful_.size(), 4u) << "nothing was fitted yet";
-    estimate(1, 0.5f * gpu::kSureConfidence);
-    estimate(2, 1.01f * gpu::kSureConfidence);
-    estimate(4, gpu::kSureConfidence);
+    estimate(1, 0.5f * gpu::kAskedBelowConfidence);
+    estimate(2, 1.01f * gpu::kAskedBelowConfidence);
+    estimate(4, gpu::kAskedBelowConfidence);
     EXPECT_EQ(choose(changes, 4), (std::vector<uint32_t>{4, 1, 3, 2}));
     EXPECT_EQ(doubtful_, (std::vector<uint32_t>{1, 3}));
     EXPECT_EQ(choose({{2, 1}, {4, 2}}, 4).size(), 2u);
     EXPECT_TRUE(doubtful_.empty());
+    estimate(2, 0.5f);
+    EXPECT_EQ(choose({{2, 1}, {4, 2}}, 4).size(), 2u);
+    EXPECT_EQ(doubtful_, std::vector<uint32_t>{2}) << "it is not sure any more";
+    estimate(2);
     start(4);
     EXPECT_EQ(choose({{2, 1}, {4, 2}}, 4).size(), 2u);
     EXPECT_EQ(doubtful_, std::vector<uint32_t>{4}) << "another object has its label";

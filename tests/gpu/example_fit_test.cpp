@@ -53,6 +53,11 @@ TEST_F(ExampleFitTest, FindsTheMaterialsOfCleanScenes) {
         if (glm::max(off.x, glm::max(off.y, off.z)) < 0.005f && std::abs(fits[i].ks_alpha.w - 0.3f) < 0.005f) ++right;
     }
     EXPECT_GE(right, 6u) << "of " << count - 1;
+
+    // Without the one before, every label is another scene's, the first's too.
+    const std::vector<ExampleScene> lit(scenes.begin() + 1, scenes.end());
+    const std::vector<gpu::WardFit> again = fit.fit(render_examples(renderer, 9, 1, lit), {}, 4);
+    for (size_t i = 0; i < lit.size(); ++i) EXPECT_NEAR(again[i].ks_alpha.w, fits[i + 1].ks_alpha.w, 0.01f) << i;
 }
 
 }  // namespace

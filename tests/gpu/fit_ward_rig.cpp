@@ -8,6 +8,12 @@ namespace patina {
 
 using reference::Ward;
 
+namespace {
+
+constexpr float kBlurM = 0.0076f;  // of a bent surface that an observation shows at once
+
+}  // namespace
+
 const std::vector<PointLight> FitWardTest::kLights = {
     {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
 
@@ -151,14 +157,14 @@ std::vector<double> FitWardTest::blur2_of(const std::vector<FilledRecord>& recor
                 ++count;
             }
         }
-        blur2.push_back(
-            count == 0 ? 0 : std::pow(std::min(gpu::kFitBlurM / map_.settings().voxel_m, 1.0f), 2) * sum / count);
+        blur2.push_back(count == 0 ? 0 : std::pow(std::min(kBlurM / map_.settings().voxel_m, 1.0f), 2) * sum / count);
     }
     return blur2;
 }
 
-std::vector<Ward> FitWardTest::reference_fits(const std::vector<FilledRecord>& records, uint32_t times,
-                                              const std::vector<double>& blur2) const {
+std::vector<FitWardTest::ReferenceFit> FitWardTest::reference_fits(const std::vector<FilledRecord>& records,
+                                                                   uint32_t times, const std::vector<double>& blur2,
+                                                                   const reference::SpecularPrior& prior) const {
     std::vector<reference::FittedVoxel> voxels;
     for (const FilledRecord& record : records) {
         voxels.push_back({{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)}, {}, received()});
@@ -166,10 +172,20 @@ std::vector<Ward> FitWardTest::reference_fits(const std::vector<FilledRecord>& r
         for (const FilledObservation& seen : record.observations)
             voxels.back().observations.push_back({glm::dvec3(seen.to_viewer), glm::dvec3(seen.rgb), seen.clipped});
     }
-    reference::WardFitSeries series({});
-    std::vector<Ward> fits;
-    for (uint32_t i = 0; i < times; ++i) fits.push_back(series.fit(voxels));
+    reference::WardFitSeries series(prior);
+    std::vector<ReferenceFit> fits;
+    for (uint32_t i = 0; i < times; ++i) {
+        const Ward material = series.fit(voxels);
+        fits.push_back({material, series.confidence()});
+    }
     return fits;
+}
+
+void FitWardTest::expect_agreement(const gpu::WardFit& got, const ReferenceFit& want, double ks, double alpha,
+                                   double confidence) {
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want.material.ks)), ks);
+    EXPECT_NEAR(got.ks_alpha.w, want.material.alpha, alpha);
+    EXPECT_NEAR(got.confidence, want.confidence, confidence);
 }
 
 }  // namespace patina

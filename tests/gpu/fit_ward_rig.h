@@ -52,9 +52,18 @@ class FitWardTest : public GpuTest {
     /// FittedVoxel::blur2 of each record, from the records of the same face whose voxels touch.
     std::vector<double> blur2_of(const std::vector<FilledRecord>& records) const;
 
-    /// What the reference finds with each of so many fits.
-    std::vector<reference::Ward> reference_fits(const std::vector<FilledRecord>& records, uint32_t times = 1,
-                                                const std::vector<double>& blur2 = {}) const;
+    /// What the reference finds.
+    struct ReferenceFit {
+        reference::Ward material;
+        double confidence = 0;
+    };
+    /// With each of so many fits.
+    std::vector<ReferenceFit> reference_fits(const std::vector<FilledRecord>& records, uint32_t times = 1,
+                                             const std::vector<double>& blur2 = {},
+                                             const reference::SpecularPrior& prior = {}) const;
+    /// Within the largest difference of ks, of alpha, and of the confidence.
+    static void expect_agreement(const gpu::WardFit& got, const ReferenceFit& want, double ks, double alpha,
+                                 double confidence);
 
     std::mt19937 random_{1};
     std::set<std::array<int, 3>> used_;  // a voxel has one record

@@ -224,6 +224,11 @@ TEST_F(RunNetwork, FormatsThatADeviceLacksAreRefused) {
                 ::testing::ThrowsMessage<Error>(::testing::HasSubstr("has no 16-bit floats")));
     EXPECT_THAT([&] { network_variant(caps, network, 4, NetworkFormat::kTexels); },
                 ::testing::ThrowsMessage<Error>(::testing::HasSubstr("texel buffers of at most 1 ")));
+    caps.float16 = true;
+    NetworkDescription large = random_hemi_network(1);
+    large.layers.back().bias[0] = 1e5f;
+    EXPECT_THAT([&] { network_variant(caps, Network(device(), large), 4, NetworkFormat::kHalves); },
+                ::testing::ThrowsMessage<Error>(::testing::HasSubstr("weights that 16-bit floats cannot hold")));
 }
 
 TEST_F(RunNetwork, TheOrderOfSamplesDoesNotMatterAndCopiesOfOneAreAsOne) {

@@ -47,8 +47,7 @@ class TrainedNetwork : public GpuTest {
         graph::Frame frame = runner().begin();
         const SegmentBatch batch{frame.upload<uint32_t>("batch", list), segments};
         const graph::BufferId images = frame.upload<glm::vec4>("images", check_images(segments));
-        NetworkVariant variant = preferred_network_variant(device().caps(), network, segments);
-        variant.format = format;
+        const NetworkVariant variant = network_variant(device().caps(), network, segments, format);
         const graph::Readback result = frame.read_back(add_run_network(frame, network, images, batch, variant));
         run(std::move(frame));
         const auto got = result.as<gpu::PerceptualMaterial>();

@@ -21,6 +21,23 @@ glm::dvec3 lobe_of(const FittedVoxel& voxel, double alpha, const SeenColor& seen
     return shade(gloss, voxel.point, voxel.lights, glm::dvec3(0), seen.to_viewer);
 }
 
+/// 1 if a view of the voxel lies within half of the peak of a light's lobe as it is seen, less farther off; whether or
+/// not it is clipped.
+double peak_seen(const FittedVoxel& voxel, double alpha) {
+    const double seen_alpha2 = alpha * alpha + voxel.blur2;
+    double most = 0;
+    for (const SeenColor& seen : voxel.observations) {
+        for (const ReceivedLight& light : voxel.lights) {
+            const glm::dvec3 to_light = glm::normalize(light.position_m - voxel.point.position_m);
+            if (glm::dot(to_light, voxel.point.normal) <= 0) continue;
+            const double cosine = glm::dot(glm::normalize(to_light + seen.to_viewer), voxel.point.normal);
+            const double tan2 = 1 / (cosine * cosine) - 1;
+            most = std::max(most, alpha * alpha / seen_alpha2 * std::exp(-tan2 / seen_alpha2));
+        }
+    }
+    return std::min(most / 0.5, 1.0);
+}
+
 /// The weighted mean of what counts.
 struct Mean {
     double sum = 0, weight = 0;
@@ -39,7 +56,8 @@ struct WardFitSeries::Weighed {
     std::vector<double> weights;
 };
 
-WardFitSeries::WardFitSeries(const SpecularPrior& prior) : prior_(prior), lines_(kSteps + 1), solutions_(kSteps + 1) {}
+WardFitSeries::WardFitSeries(const SpecularPrior& prior)
+    : prior_(prior), lines_(kSteps + 1), seen_(kSteps + 1), solutions_(kSteps + 1) {}
 
 /// An inverse variance: what all of a voxel's observations have in common, and a part of the highlight that the
 /// estimate predicts; less, by Geman and McClure, of what is far off it.
@@ -130,22 +148,26 @@ std::array<WardFitSeries::Line, 3> WardFitSeries::sum(const std::vector<Weighed>
     return lines;
 }
 
-WardFitSeries::Solution WardFitSeries::solve(const std::array<Line, 3>& lines, double alpha) const {
-    Solution best;
-    best.score = unit_ * std::pow(std::log2(alpha / prior_.alpha) / prior_.alpha_deviation, 2);
+WardFitSeries::Solution WardFitSeries::solve(size_t step) const {
+    const double alpha = alpha_of(static_cast<double>(step));
+    // Of a peak that two voxels or fewer were seen near nothing is known, from six on all.
+    const double known = std::clamp((seen_[step] - 2) / 4, 0.0, 1.0);
+    Solution result;
+    result.score = unit_ * std::pow(std::log2(alpha / prior_.alpha) / prior_.alpha_deviation, 2);
     const double weight = unit_ / (prior_.ks_deviation * prior_.ks_deviation);
     for (int c = 0; c < 3; ++c) {
-        const Line& line = lines[static_cast<size_t>(c)];
-        const double bend = line.lobe2 + weight;
-        best.ks[c] = std::max((line.product + weight * prior_.ks[c]) / bend, 0.0);
-        best.misfit += line.color2 - 2 * best.ks[c] * line.product + std::pow(best.ks[c], 2) * line.lobe2;
-        best.score += weight * std::pow(best.ks[c] - prior_.ks[c], 2);
+        const Line& line = lines_[step][static_cast<size_t>(c)];
+        const double lobe2 = known * line.lobe2, product = known * line.product, bend = lobe2 + weight;
+        const double ks = std::max((product + weight * prior_.ks[c]) / bend, 0.0);
+        result.ks[c] = ks;
+        result.misfit += line.color2 - 2 * ks * product + ks * ks * lobe2;
+        result.score += weight * std::pow(ks - prior_.ks[c], 2);
         // The integral over ks of a normal distribution is as its width.
-        best.score += unit_ * std::log(bend / weight);
-        best.told += line.lobe2 / bend / 3;
+        result.score += unit_ * std::log(bend / weight);
+        result.told += lobe2 / bend / 3;
     }
-    best.score += best.misfit;
-    return best;
+    result.score += result.misfit;
+    return result;
 }
 
 void WardFitSeries::set_estimate() {
@@ -176,13 +198,16 @@ Ward WardFitSeries::fit(const std::vector<FittedVoxel>& voxels) {
     unit_ = prior_.correlated * std::pow(std::max(fits_ == 0 ? 1 : deviation_, 0.1), 2);
     for (size_t step = 0; step < lines_.size(); ++step) {
         const std::array<Line, 3> now = sum(weighed, step);
+        const double memory = fits_ == 0 ? 0 : 0.93;
+        double near = 0;
+        for (const Weighed& each : weighed) near += peak_seen(each.voxel, alpha_of(static_cast<double>(step)));
+        seen_[step] = std::max(near, memory * seen_[step]);
         for (size_t c = 0; c < 3; ++c) {
             Line& kept = lines_[step][c];
-            const double memory = fits_ == 0 ? 0 : 0.93;
             kept = {now[c].lobe2 + memory * kept.lobe2, now[c].product + memory * kept.product,
                     now[c].color2 + memory * kept.color2, now[c].count + memory * kept.count};
         }
-        solutions_[step] = solve(lines_[step], alpha_of(static_cast<double>(step)));
+        solutions_[step] = solve(step);
     }
     set_estimate();
     ++fits_;

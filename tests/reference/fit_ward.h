@@ -34,6 +34,9 @@ class WardFitSeries {
     /// first; later they count, for each alpha, where the ks that was found for it predicts less than was recorded.
     Ward fit(const std::vector<FittedVoxel>& voxels);
 
+    /// How sure the last one is: the share of ks that observations tell, less where alpha is spread.
+    double confidence() const { return confidence_; }
+
   private:
     /// One channel of all voxels, for one alpha: residuals are color - ks * lobe, each without its voxel's mean.
     struct Line {
@@ -49,13 +52,14 @@ class WardFitSeries {
 
     Weighed weigh(const FittedVoxel& voxel) const;
     std::array<Line, 3> sum(const std::vector<Weighed>& voxels, size_t step) const;
-    Solution solve(const std::array<Line, 3>& lines, double alpha) const;
+    Solution solve(size_t step) const;
     void set_estimate();
 
     SpecularPrior prior_;
     int fits_ = 0;
     // By alpha:
     std::vector<std::array<Line, 3>> lines_;
+    std::vector<double> seen_;  ///< voxels near its peak
     std::vector<Solution> solutions_;
     // What the fits so far say:
     Ward estimate_{};

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "engine/core/error.h"
 #include "passes/specular/run_network.h"
 
 namespace patina::bench {
@@ -15,7 +16,8 @@ inline std::string name_of(NetworkFormat format) {
     for (const auto& [name, named] : kNetworkFormats) {
         if (named == format) return name;
     }
-    return "?";
+    PATINA_ASSERT(false, static_cast<int>(format));
+    return {};
 }
 
 /// The variant of a format's name; of an empty one, the variant that suits the device. Throws Error as
