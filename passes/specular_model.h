@@ -42,6 +42,8 @@ class SpecularModel {
 
     /// gpu::WardFit per label.
     graph::BufferId fits(graph::Frame& frame) const { return fits_.import(frame).fits; }
+    /// gpu::PerceptualMaterial per label: the mean of what the network said.
+    graph::BufferId means(graph::Frame& frame) const { return estimates_.import(frame).means; }
 
     std::vector<VoxelMap::PoolBytes> memory() const;
     const SpecularSettings& settings() const { return settings_; }

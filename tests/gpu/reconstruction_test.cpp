@@ -194,6 +194,32 @@ TEST_F(ReconstructionTest, SpecularMaterialsFollowTheNetwork) {
     EXPECT_THAT([&] { Reconstruction(device(), settings); }, refusal("there are no segments"));
 }
 
+TEST_F(ReconstructionTest, TheNetworkIsNotAskedOfWhatTheFitIsSureOf) {
+    const LabelledCubes cubes(device(), 24);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular.emplace();
+    settings.network = random_hemi_network(1);
+    Reconstruction reconstruction(device(), settings);
+    reconstruction.reflectance()->set_lights(cubes.lights);
+    for (uint32_t i = 0; i < 24; ++i) reconstruction.add(cubes.frame(i));
+    graph::Frame frame = reconstruction.runner().begin();
+    const graph::Readback read_fits = frame.read_back(reconstruction.specular()->fits(frame));
+    const graph::Readback read_means = frame.read_back(reconstruction.specular()->means(frame));
+    reconstruction.runner().submit(std::move(frame));
+    reconstruction.runner().wait();
+    const auto fits = read_fits.as<gpu::WardFit>();
+    const auto means = read_means.as<gpu::PerceptualMaterial>();
+    uint32_t spared = 0, asked = 0;
+    for (size_t label = 0; label < fits.size(); ++label) {
+        const auto times = static_cast<uint32_t>(means[label].cgb_d_weight.w);
+        EXPECT_LE(times, fits[label].estimates) << label;
+        if (fits[label].confidence >= gpu::kAskedBelowConfidence && times + 3 < fits[label].estimates) ++spared;
+        if (times > 0) ++asked;
+    }
+    EXPECT_GT(spared, 0u);
+    EXPECT_GT(asked, 2u);
+}
+
 TEST_F(ReconstructionTest, LabelsOfAnotherSizeAreRefused) {
     Reconstruction reconstruction(device(), small_settings_with_reflectance());
     RgbdFrame frame = tools::to_rgbd(cubes_.info, cubes_.frames[0]);
