@@ -28,7 +28,9 @@ ColorCorrection::ColorCorrection(vulkan::Device& device, const VoxelMap& map, co
       access_(access),
       last_(device.create_buffer({.name = "colour gains", .bytes = sizeof(gpu::ColorGains)})) {}
 
-void ColorCorrection::reset(graph::Frame& frame) const {
+void ColorCorrection::reset(graph::Frame& frame) {
+    pending_.clear();
+    gains_.clear();
     const gpu::ColorGains none{glm::vec4(1), glm::uvec4(0)};
     frame.keep(frame.upload_bytes(frame.import(last_), 0, std::as_bytes(std::span(&none, 1)), true));
 }

@@ -18,8 +18,8 @@ class ColorCorrection {
     /// Throws Error when memory runs out.
     ColorCorrection(vulkan::Device& device, const VoxelMap& map, const GainSettings& settings, MapAccess access);
 
-    /// Sets the gains to 1; the first thing done with it.
-    void reset(graph::Frame& frame) const;
+    /// Sets the gains to 1 and forgets those so far; the first thing done with it.
+    void reset(graph::Frame& frame);
 
     /// Estimates the gains of a frame whose linear colours are `color_linear`, seen by `camera`, before it is fused.
     /// Surface between near_m and far_m counts. Returns the colours divided by them.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/core/error.h"
+#include "engine/core/seed.h"
 #include "passes/lighting/sample_surface.h"
 
 namespace patina {
@@ -19,7 +20,8 @@ std::vector<gpu::LightSample> draw_samples(Reconstruction& reconstruction) {
     reconstruction.wait();  // so that all frames are fused
     graph::Frame frame = reconstruction.runner().begin();
     const ObservationMap& map = reflectance->observations();
-    const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame)));
+    const uint32_t seed = seed_of_draw(0, reconstruction.settings().seed);
+    const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame), seed));
     reconstruction.runner().submit(std::move(frame));
     reconstruction.wait();
     return samples.as<gpu::LightSample>();

@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/seed.h"
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/measure_slope.h"
@@ -87,12 +88,28 @@ Reconstruction::Reconstruction(vulkan::Device& device, const ReconstructionSetti
       map_(device, settings.map),
       access_(preferred_map_access(device.caps(), map_)) {
     if (settings.gains) color_correction_.emplace(device, map_, *settings.gains, access_);
-    if (settings.reflectance) reflectance_.emplace(device, map_, *settings.reflectance);
-    if (settings.segmentation) segmentation_.emplace(device, map_, *settings.segmentation, access_);
-    if (settings.specular)
-        specular_.emplace(device, *settings.specular, settings.segmentation->capacity_labels, settings.network);
+    if (settings.segmentation) {
+        SegmentationSettings segmentation = *settings.segmentation;
+        segmentation.sample_seed = seed_of_draw(segmentation.sample_seed, settings.seed);
+        segmentation_.emplace(device, map_, segmentation, access_);
+    }
+    if (settings.reflectance) {
+        if (segmentation_) settings_.reflectance->capacity_labels = segmentation_->table().capacity();
+        reflectance_.emplace(device, map_, *settings_.reflectance);
+    }
+    if (settings.specular) {
+        SpecularSettings specular = *settings.specular;
+        specular.seed = seed_of_draw(specular.seed, settings.seed);
+        specular_.emplace(device, specular, segmentation_->table().capacity(), settings.network);
+    }
     if (settings.tracking) tracking_.emplace(device, *settings.tracking);
-    if (settings.keyframes) keyframes_.emplace(device, *settings.keyframes);
+    if (settings.keyframes) {
+        KeyframeSettings keyframes = *settings.keyframes;
+        keyframes.store.seed = seed_of_draw(keyframes.store.seed, settings.seed);
+        keyframes_.emplace(device, keyframes);
+    }
+    pools_.emplace(device, map_, segmentation_ ? &*segmentation_ : nullptr, reflectance_ ? &*reflectance_ : nullptr,
+                   specular_ ? &*specular_ : nullptr);
 }
 
 void Reconstruction::check(const RgbdFrame& frame) const {
@@ -122,6 +139,7 @@ VisibleBlocks Reconstruction::add_passes(graph::Frame& graph, VoxelMapIds& ids, 
     // What the view does not reach would take blocks that no frame fuses into.
     FusionSettings fusion = settings_.fusion;
     fusion.max_depth_m = reach_m(frame.depth.camera);
+    fusion.seed = seed_of_draw(fusion.seed, settings_.seed);
     const gpu::FusionParams values =
         make_fusion_params(map_, fusion, depth_camera, color_camera, frames_, color_frames_);
     const auto params = graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
@@ -250,22 +268,49 @@ void Reconstruction::start_map(const RgbdFrame& frame) {
     if (specular_) specular_->reset(graph);
     if (keyframes_) keyframes_->reset(graph);
     runner_.submit(std::move(graph));
+    pools_->reset();
+}
+
+/// A frame that fuses; before it, one that lets pools grow where they are short.
+graph::Frame Reconstruction::begin_fusing() {
+    pools_->grow(runner_, frames_);
+    return runner_.begin();
+}
+
+Reconstruction::PendingCounts Reconstruction::submit_posed(graph::Frame graph, const RgbdFrame& frame) {
+    PendingCounts counts =
+        add_fusion(graph, frame, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)});
+    submit_fusion(std::move(graph), counts);
+    return counts;
+}
+
+void Reconstruction::submit_fusion(graph::Frame graph, const PendingCounts& counts) {
+    runner_.submit(std::move(graph));
+    pools_->await(frames_, counts.pools);
+}
+
+/// Nothing is known yet of what the first frame asks for. Where that is more than the pools hold, they grow, and the
+/// frame is fused anew, into an empty model.
+void Reconstruction::fuse_first(const RgbdFrame& frame) {
+    std::optional<PendingCounts> counts;
+    do {
+        start_map(frame);
+        counts = submit_posed(runner_.begin(), frame);
+        runner_.wait();
+    } while (pools_->first_was_refused() && pools_->grow(runner_, 0));
+    note_fused(frame, *std::move(counts));
 }
 
 void Reconstruction::fuse_posed(const RgbdFrame& frame) {
-    if (frames_ == 0) start_map(frame);
-    graph::Frame graph = runner_.begin();
-    PendingCounts counts =
-        add_fusion(graph, frame, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)});
-    runner_.submit(std::move(graph));
-    note_fused(frame, std::move(counts));
+    if (frames_ == 0) return fuse_first(frame);
+    note_fused(frame, submit_posed(begin_fusing(), frame));
 }
 
 void Reconstruction::fuse_waiting() {
     if (!waiting_) return;
-    graph::Frame graph = runner_.begin();
+    graph::Frame graph = begin_fusing();
     PendingCounts counts = add_waiting(graph);
-    runner_.submit(std::move(graph));
+    submit_fusion(std::move(graph), counts);
     note_waiting_fused(std::move(counts));
 }
 
@@ -284,13 +329,12 @@ Reconstruction::PendingCounts Reconstruction::add_fusion(graph::Frame& graph, co
     VoxelMapIds ids = map_.import(graph);
     const VisibleBlocks visible = add_passes(graph, ids, frame, pictures);
     VoxelMap::keep(graph, ids);
-    PendingCounts pending{
-        graph.read_back(ids.counters), graph.read_back(visible.list, 0, sizeof(uint32_t)), {}, {}, {}};
-    if (segmentation_) pending.segments = graph.read_back(segmentation_->table().import(graph).counters);
+    PendingCounts pending{{graph.read_back(ids.counters)}, graph.read_back(visible.list, 0, sizeof(uint32_t))};
+    if (segmentation_) pending.pools.labels = graph.read_back(segmentation_->table().import(graph).counters);
     if (reflectance_) {
         const ObservationMapIds observed = reflectance_->observations().import(graph);
-        pending.observed_blocks = graph.read_back(observed.block_counters);
-        pending.observed_records = graph.read_back(observed.record_counters);
+        pending.pools.observed_blocks = graph.read_back(observed.block_counters);
+        pending.pools.observed_records = graph.read_back(observed.record_counters);
     }
     return pending;
 }
@@ -337,7 +381,8 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
 
 Mesh Reconstruction::extract_surface() {
     if (frames_ == 0) return {};
-    fuse_waiting();
+    wait();
+    runner_.forget_shapes();  // extraction may need the memory of what frames keep between them
     return patina::extract_surface(runner_, map_);
 }
 
@@ -358,18 +403,17 @@ MeshReflectance Reconstruction::sample_reflectance(const Mesh& mesh) {
 }
 
 void Reconstruction::take_counts() {
-    while (!pending_counts_.empty() && pending_counts_.front().counters.ready()) {
-        counters_ = pending_counts_.front().counters.as<gpu::MapCounters>().front();
-        visible_blocks_ = pending_counts_.front().visible_blocks.as<uint32_t>().front();
-        if (const auto& segments = pending_counts_.front().segments) {
-            segment_counters_ = segments->as<gpu::SegmentCounters>().front();
+    for (; !pending_counts_.empty() && pending_counts_.front().visible_blocks.ready(); pending_counts_.pop_front()) {
+        const PendingCounts& counts = pending_counts_.front();
+        counters_ = counts.pools.voxels.as<gpu::MapCounters>().front();
+        visible_blocks_ = counts.visible_blocks.as<uint32_t>().front();
+        if (segmentation_) {
+            segment_counters_ = counts.pools.labels.as<gpu::SegmentCounters>().front();
             label_stability_.add(segment_counters_);
         }
-        if (const auto& blocks = pending_counts_.front().observed_blocks) {
-            observation_counters_.blocks = blocks->as<gpu::MapCounters>().front();
-            observation_counters_.records = pending_counts_.front().observed_records->as<gpu::MapCounters>().front();
-        }
-        pending_counts_.pop_front();
+        if (!reflectance_) continue;
+        observation_counters_.blocks = counts.pools.observed_blocks.as<gpu::MapCounters>().front();
+        observation_counters_.records = counts.pools.observed_records.as<gpu::MapCounters>().front();
     }
 }
 
@@ -391,6 +435,11 @@ const LabelStability& Reconstruction::label_stability() {
 const gpu::SegmentCounters& Reconstruction::segment_counters() {
     take_counts();
     return segment_counters_;
+}
+
+std::vector<PoolState> Reconstruction::pools() {
+    wait();
+    return pools_->states();
 }
 
 uint32_t Reconstruction::visible_blocks() {

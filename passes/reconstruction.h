@@ -13,6 +13,7 @@
 #include "passes/color_correction.h"
 #include "passes/fusion/allocate_blocks.h"
 #include "passes/fusion/raycast.h"
+#include "passes/growing_pools.h"
 #include "passes/input/input.h"
 #include "passes/keyframe_model.h"
 #include "passes/model/voxel_map.h"
@@ -46,6 +47,10 @@ struct ReconstructionSettings {
     std::optional<TrackingSettings> tracking{};
     /// Keyframes of what is fused, by which a camera that tracking lost is found again; empty: none.
     std::optional<KeyframeSettings> keyframes{};
+    /// Of all that is drawn at random: ferns of keyframes, the records that stand for a segment, those that the network
+    /// is shown, the samples that lights are fitted to, and how fused colours are rounded. Each of these has a seed of
+    /// its own, which this one changes; 0 leaves it.
+    uint64_t seed = 0;
     bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
@@ -167,6 +172,11 @@ class Reconstruction {
     /// The observations' counters, likewise; zero without reflectance.
     const ObservationCounters& observation_counters();
 
+    /// How full the pools are, and what keeps them from growing; waits.
+    std::vector<PoolState> pools();
+    /// The same as of two frames ago; does not wait.
+    std::vector<PoolState> recent_pools() const { return pools_->states(); }
+
     /// How many blocks the depth camera saw in the frame that counters() tells of.
     uint32_t visible_blocks();
 
@@ -206,8 +216,8 @@ class Reconstruction {
 
   private:
     struct PendingCounts {
-        graph::Readback counters, visible_blocks;
-        std::optional<graph::Readback> segments, observed_blocks, observed_records;
+        PoolReadbacks pools;
+        graph::Readback visible_blocks;
     };
 
     TrackingReport start_tracking(const RgbdFrame& frame);
@@ -224,6 +234,10 @@ class Reconstruction {
                         const RaycastImages& model, const Intrinsics& camera, const RigidTransform& world_from_depth);
     float far_m() const;
     void start_map(const RgbdFrame& frame);
+    graph::Frame begin_fusing();
+    void fuse_first(const RgbdFrame& frame);
+    PendingCounts submit_posed(graph::Frame graph, const RgbdFrame& frame);
+    void submit_fusion(graph::Frame graph, const PendingCounts& counts);
     void fuse_posed(const RgbdFrame& frame);
     void fuse_waiting();
     PendingCounts add_waiting(graph::Frame& graph);
@@ -250,6 +264,7 @@ class Reconstruction {
     std::optional<SpecularModel> specular_;
     std::optional<TrackingModel> tracking_;
     std::optional<KeyframeModel> keyframes_;
+    std::optional<GrowingPools> pools_;
     Relocaliser relocaliser_;
     struct Waiting {
         RgbdFrame frame;  ///< with its pose; its pictures are in tracking_->pictures()

@@ -60,12 +60,15 @@ TrackingReport Reconstruction::search_again(const RgbdFrame& frame, const RigidT
 /// From where the motion so far leads to; the frame before is fused in the first search's graph.
 TrackingReport Reconstruction::best_search(const RgbdFrame& frame) {
     const std::vector<RigidTransform> starts = tracking_->expected(frame.time);
-    graph::Frame graph = runner_.begin();
+    graph::Frame graph = waiting_ ? begin_fusing() : runner_.begin();
     std::optional<PendingCounts> fused;
     if (waiting_) fused = add_waiting(graph);
     const InputPictures pictures = tracking_->pictures().add(graph, frame.depth, frame.color);
     TrackingReport best = search(std::move(graph), pictures, frame, starts.front());
-    if (fused) note_waiting_fused(*std::move(fused));
+    if (fused) {
+        pools_->await(frames_, fused->pools);
+        note_waiting_fused(*std::move(fused));
+    }
     for (size_t i = 1; i < starts.size() && best.state == TrackingState::kLost; ++i) {
         const TrackingReport report = search_again(frame, starts[i]);
         if (report.state < best.state) best = report;

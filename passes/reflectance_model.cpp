@@ -1,7 +1,5 @@
 #include "passes/reflectance_model.h"
 
-#include <cmath>
-
 #include "passes/shading/pack_records.h"
 #include "shared/voxel_map.h"
 
@@ -14,18 +12,12 @@ ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceMod
     observations.block_m = map.settings().voxel_m * gpu::kBlockEdge;
     observations.capacity_blocks = settings.capacity_blocks;
     observations.capacity_records = settings.capacity_records;
+    observations.limit_blocks = settings.limit_blocks;
+    observations.limit_records = settings.limit_records;
     return observations;
 }
 
 }  // namespace
-
-void set_observation_voxel(ReflectanceModelSettings& settings, float voxel_m) {
-    const ReflectanceModelSettings defaults;
-    const float finer = defaults.voxel_m / voxel_m;
-    settings.voxel_m = voxel_m;
-    settings.capacity_records =
-        static_cast<uint32_t>(std::lround(static_cast<float>(defaults.capacity_records) * finer * finer));
-}
 
 ReflectanceModel::ReflectanceModel(vulkan::Device& device, const VoxelMap& map,
                                    const ReflectanceModelSettings& settings)
@@ -47,6 +39,15 @@ void ReflectanceModel::reset(graph::Frame& frame, glm::dvec3 center_m) {
     state_.reset(frame);
     // Uploaded before a frame that replaces them.
     materials_.import(frame);
+}
+
+void ReflectanceModel::enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks) {
+    observations_.enlarge_blocks(enlargement, blocks);
+}
+
+void ReflectanceModel::enlarge_records(graph::Enlargement& enlargement, uint32_t records) {
+    observations_.enlarge_records(enlargement, records);
+    state_.enlarge(enlargement, records);
 }
 
 RecordList ReflectanceModel::add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,

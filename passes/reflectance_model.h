@@ -15,17 +15,15 @@ namespace patina {
 
 /// Size and settings of the reflectance beside the geometry.
 struct ReflectanceModelSettings {
-    float voxel_m = 0.02f;  ///< of observations: half or a quarter of a voxel block
-    uint32_t capacity_blocks = 65536;
-    uint32_t capacity_records = 262144;
+    float voxel_m = 0.02f;               ///< of observations: half or a quarter of a voxel block
+    uint32_t capacity_blocks = 65536;    ///< at first
+    uint32_t capacity_records = 262144;  ///< at first
+    uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far as buffers and memory allow
+    uint32_t limit_records = 0;          ///< likewise
     ObservationSettings observe;
     ReflectanceSettings refine;
-    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included
+    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at first that of the segments
 };
-
-/// Chooses the size of the observations' voxels, and with it the records that the default's surface takes then: a
-/// surface crosses voxels by the square of their number per metre.
-void set_observation_voxel(ReflectanceModelSettings& settings, float voxel_m);
 
 /// What a camera sees of the reflectance.
 struct PredictedView {
@@ -68,6 +66,12 @@ class ReflectanceModel {
     /// Collects a frame's observations and refines what they change. Returns the records that they changed.
     RecordList add(graph::Frame& frame, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                    const gpu::Camera& depth_camera, const gpu::Camera& color_camera, uint32_t frame_index);
+
+    /// Announce that a pool of the observations grows; see ObservationMap.
+    void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);
+    void enlarge_records(graph::Enlargement& enlargement, uint32_t records);
+    /// Announces that there will be `labels` materials.
+    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) { materials_.enlarge(enlargement, labels); }
 
     /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
     const ObservationMap& observations() const { return observations_; }

@@ -1,7 +1,9 @@
 #include "passes/segmentation_model.h"
 
+#include <algorithm>
 #include <bit>
 
+#include "passes/model/pool_sizes.h"
 #include "passes/segmentation/assign_labels.h"
 #include "passes/segmentation/clear_labels.h"
 #include "passes/segmentation/count_overlaps.h"
@@ -33,6 +35,10 @@ graph::BufferId no_fits(graph::Frame& frame) {
     return frame.fill(frame.create_buffer("segmentation.no_fits", sizeof(gpu::WardFit)), 0);
 }
 
+uint32_t first_labels(const SegmentationSettings& settings) {
+    return std::min(settings.capacity_labels, limit_or_none(settings.limit_labels));
+}
+
 }  // namespace
 
 SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
@@ -41,8 +47,17 @@ SegmentationModel::SegmentationModel(vulkan::Device& device, const VoxelMap& map
       settings_(settings),
       access_(access),
       labels_(device, map),
-      table_(device, settings.capacity_labels),
-      samples_(device, settings.capacity_labels) {}
+      table_(device, first_labels(settings)),
+      samples_(device, table_.capacity()) {}
+
+uint32_t SegmentationModel::most_labels() const {
+    return std::min(limit_or_none(settings_.limit_labels), SegmentTable::kMaxCapacity);
+}
+
+void SegmentationModel::enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) {
+    table_.enlarge(enlargement, labels);
+    samples_.enlarge(enlargement, labels);
+}
 
 void SegmentationModel::reset(graph::Frame& frame) const {
     table_.reset(frame);
@@ -55,7 +70,7 @@ gpu::SegmentationParams SegmentationModel::params(const gpu::Camera& color_camer
     params.color_camera = color_camera;
     params.extent = {extent.width, extent.height};
     params.stamp = frame_index + 1;
-    params.capacity = settings_.capacity_labels;
+    params.capacity = table_.capacity();
     params.overlap_slots = overlap_slots(extent);
     params.given = settings_.given ? 1 : 0;
     params.inherit_share = settings_.inherit_share;

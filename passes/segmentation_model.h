@@ -18,7 +18,8 @@ namespace patina {
 struct SegmentationSettings {
     SegmentSettings frame;            ///< how a frame is divided
     bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
-    uint32_t capacity_labels = 4096;  ///< label 0 included
+    uint32_t capacity_labels = 4096;  ///< at first, label 0 included
+    uint32_t limit_labels = 0;        ///< beyond which the table does not grow; 0: SegmentTable::kMaxCapacity
     float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
     uint32_t inherit_pixels = 15;     ///< and how many at least
     uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
@@ -77,6 +78,13 @@ class SegmentationModel {
 
     /// Forgets everything; the first thing done with it.
     void reset(graph::Frame& frame) const;
+
+    /// Announces that the voxel map's pool grows to `blocks`.
+    void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks) { labels_.enlarge(enlargement, blocks); }
+    /// Announces that there will be `labels`; in the same frame segmentation/grow_labels.h makes use of them.
+    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
+    /// That the table can grow to, memory permitting.
+    uint32_t most_labels() const;
 
     /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::Frame& frame, const VoxelMapIds& voxels) const;

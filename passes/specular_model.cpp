@@ -28,6 +28,11 @@ void SpecularModel::reset(graph::Frame& frame) const {
     fits_.reset(frame);
 }
 
+void SpecularModel::enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) {
+    estimates_.enlarge(enlargement, labels);
+    fits_.enlarge(enlargement, labels);
+}
+
 void SpecularModel::add(graph::Frame& frame, ReflectanceModel& reflectance, const SegmentationModel& segmentation,
                         const RecordList& changed, uint32_t frame_index) {
     const SpecularInputs inputs = reflectance.add_specular_inputs(frame);

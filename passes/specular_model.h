@@ -35,6 +35,9 @@ class SpecularModel {
     /// Forgets everything; the first thing done with it.
     void reset(graph::Frame& frame) const;
 
+    /// Announces that there will be `labels` of them.
+    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
+
     /// Estimates what a frame's observations changed: `changed` is what ReflectanceModel::add returned. Replaces
     /// materials of the reflectance.
     void add(graph::Frame& frame, ReflectanceModel& reflectance, const SegmentationModel& segmentation,

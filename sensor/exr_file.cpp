@@ -2,40 +2,40 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+
+#include "engine/core/input_file.h"
+#include "sensor/exr_input.h"
+#include "sensor/output/exr_stream.h"
 
 namespace patina::sensor {
 namespace {
 
-Extent2D extent_of(const Imath::Box2i& window) {
-    return {static_cast<uint32_t>(window.max.x - window.min.x + 1),
-            static_cast<uint32_t>(window.max.y - window.min.y + 1)};
-}
-
-/// Runs `work` on the opened file; what OpenEXR throws becomes an Error that names the file.
+/// Runs `work` on the opened picture; what OpenEXR throws becomes an Error that names the file.
 template <class Work>
-auto with_exr(const std::filesystem::path& path, Work work) {
+auto with_exr(const std::string& name, std::vector<uint8_t> bytes, Work work) {
     try {
-        Imf::InputFile file(path.c_str());
-        return work(file);
+        ExrInput input(name, std::move(bytes));
+        return work(input);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        throw Error(path.string(), " cannot be decoded: ", error.what());
+        throw Error(name, " cannot be decoded: ", reason_of(error));
     }
 }
 
 /// Reads whole channels into the floats that make up `image`'s pixels, in the order of `channels`.
 template <class Pixel, size_t N>
-Image<Pixel> read_channels(Imf::InputFile& file, const std::array<const char*, N>& channels) {
+Image<Pixel> read_channels(ExrInput& input, const std::array<const char*, N>& channels) {
     static_assert(sizeof(Pixel) == N * sizeof(float));
+    Imf::InputFile& file = input.file();
     const Imath::Box2i window = file.header().dataWindow();
-    Image<Pixel> image(extent_of(window));
+    Image<Pixel> image(input.extent());
     Imf::FrameBuffer target;
     for (size_t i = 0; i < N; ++i) {
         if (!file.header().channels().findChannel(channels[i]))
@@ -50,25 +50,29 @@ Image<Pixel> read_channels(Imf::InputFile& file, const std::array<const char*, N
 
 }  // namespace
 
-Extent2D exr_extent(const std::filesystem::path& path) {
-    return with_exr(path, [](Imf::InputFile& file) { return extent_of(file.header().dataWindow()); });
-}
-
-Image<glm::vec3> read_exr_color(const std::filesystem::path& path) {
-    return with_exr(path, [](Imf::InputFile& file) {
-        return read_channels<glm::vec3>(file, std::array<const char*, 3>{"R", "G", "B"});
+Image<glm::vec3> read_exr_color(const std::string& name, std::vector<uint8_t> bytes) {
+    return with_exr(name, std::move(bytes), [](ExrInput& input) {
+        return read_channels<glm::vec3>(input, std::array<const char*, 3>{"R", "G", "B"});
     });
 }
 
-Image<float> read_exr_depth(const std::filesystem::path& path) {
-    return with_exr(path, [](Imf::InputFile& file) {
+Image<float> read_exr_depth(const std::string& name, std::vector<uint8_t> bytes) {
+    return with_exr(name, std::move(bytes), [](ExrInput& input) {
         for (const char* channel : {"Z", "depth", "Y", "R"}) {
-            if (file.header().channels().findChannel(channel)) {
-                return read_channels<float>(file, std::array<const char*, 1>{channel});
+            if (input.file().header().channels().findChannel(channel)) {
+                return read_channels<float>(input, std::array<const char*, 1>{channel});
             }
         }
-        throw Error(file.fileName(), " has no depth channel: none of Z, depth, Y and R");
+        throw Error(input.file().fileName(), " has no depth channel: none of Z, depth, Y and R");
     });
+}
+
+Image<glm::vec3> read_exr_color(const std::filesystem::path& file) {
+    return read_exr_color(file.string(), read_file(file, limits::kPictureBytes));
+}
+
+Image<float> read_exr_depth(const std::filesystem::path& file) {
+    return read_exr_depth(file.string(), read_file(file, limits::kPictureBytes));
 }
 
 void write_exr_color(const std::filesystem::path& path, const Image<glm::vec3>& image) {
@@ -83,9 +87,15 @@ void write_exr_color(const std::filesystem::path& path, const Image<glm::vec3>& 
         pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, first, header.dataWindow(), sizeof(glm::vec3)));
     }
     try {
-        Imf::OutputFile file(path.c_str(), header);
-        file.setFrameBuffer(pixels);
-        file.writePixels(static_cast<int>(height));
+        ExrStream stream(path);
+        {
+            Imf::OutputFile file(stream, header);
+            file.setFrameBuffer(pixels);
+            file.writePixels(static_cast<int>(height));
+        }
+        stream.close();
+    } catch (const Error&) {
+        throw;
     } catch (const std::exception& error) {
         throw Error(path.string(), " cannot be written: ", error.what());
     }

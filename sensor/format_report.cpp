@@ -1,6 +1,8 @@
 #include <sstream>
 
+#include "engine/core/printable.h"
 #include "sensor/inspect.h"
+#include "sensor/report_lines.h"
 #include "sensor/text_file.h"
 
 namespace patina::sensor {
@@ -9,17 +11,6 @@ namespace {
 constexpr size_t kListedSkips = 10;
 
 std::string percent(double share) { return fixed(100 * share, 1) + " %"; }
-
-std::string camera_line(const Intrinsics& camera, glm::dvec2 view_deg) {
-    return text(camera.extent, ", fx ", camera.fx, " fy ", camera.fy, " cx ", camera.cx, " cy ", camera.cy, ", ",
-                camera.distorted() ? "distorted" : "no distortion", ", field of view ", fixed(view_deg.x, 1), " x ",
-                fixed(view_deg.y, 1), " degrees");
-}
-
-std::string offset_line(const RigidTransform& color_from_depth) {
-    if (color_from_depth == RigidTransform(1.0)) return "registered to depth";
-    return text(fixed(1000 * glm::length(glm::dvec3(color_from_depth[3])), 1), " mm from the depth camera");
-}
 
 std::string color_line(const ColorStatistics& color) {
     const int digits = color.linear ? 4 : 1;
@@ -46,15 +37,15 @@ std::string pose_line(const SequenceReport& report) {
 std::string format_report(const SequenceReport& report) {
     const SequenceInfo& info = report.info;
     std::ostringstream out;
-    const auto line = [&](const char* label, const std::string& value) { out << label << value << "\n"; };
+    const auto line = [&](const char* label, const std::string& value) { out << label << printable(value) << "\n"; };
     line("sequence      ", text(info.name, " (", info.format, ")"));
     line("frames        ",
          text(info.frames, ", ", report.usable_frames, " usable, ", report.skipped.size(), " skipped"));
     line("time          ", text(fixed(report.duration_s, 2), " s at ", info.fps, " frames/s"));
-    line("colour camera ", camera_line(info.color, report.color_view_deg));
+    line("colour camera ", camera_line(info.color));
     line("              ", offset_line(info.color_from_depth));
-    line("depth camera  ", camera_line(info.depth, report.depth_view_deg));
-    line("              ", text(info.metres_per_unit, " m per unit, used up to ", info.max_metres, " m"));
+    line("depth camera  ", camera_line(info.depth));
+    line("              ", depth_units_line(info.metres_per_unit, info.max_metres));
     line("colour        ", color_line(report.color));
     line("depth         ", depth_line(report.depth));
     line("poses         ", pose_line(report));

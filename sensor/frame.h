@@ -44,7 +44,7 @@ struct Frame {
 /// What holds for a whole sequence.
 struct SequenceInfo {
     std::string name;
-    std::string format;  ///< "patina-sequence", "7-scenes", "tum", "synthetic"
+    std::string format;  ///< "patina-sequence", "7-scenes", "tum", "open3d", "synthetic"
     double fps = 30;
     uint32_t frames = 0;
     Intrinsics color;
@@ -55,7 +55,8 @@ struct SequenceInfo {
     bool has_poses = false;
     bool exposure_known = false;  ///< frames tell their exposure; else the camera may have changed it, and its white
                                   ///< balance, by itself
-    bool rendered = false;        ///< pictures of a synthetic scene, each of one instant: nothing is blurred by motion
+    bool motion_blur = true;      ///< colour pictures blur where the camera moves; false: each is of one instant, as
+                                  ///< those of a synthetic scene are
 };
 
 }  // namespace patina::sensor

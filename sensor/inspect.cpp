@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 #include "sensor/plausibility.h"
+#include "sensor/pose_convention.h"
+#include "sensor/report_lines.h"
 
 namespace patina::sensor {
 namespace {
@@ -14,12 +14,6 @@ constexpr uint32_t kSampledFrames = 50;
 /// Percentiles use every 7th valid reading: millions remain, and 7 shares no factor with the grids that registered
 /// depth shows.
 constexpr size_t kReadingStride = 7;
-
-glm::dvec2 field_of_view_deg(const Intrinsics& camera) {
-    const double horizontal = 2 * std::atan(0.5 * camera.extent.width / camera.fx);
-    const double vertical = 2 * std::atan(0.5 * camera.extent.height / camera.fy);
-    return glm::degrees(glm::dvec2(horizontal, vertical));
-}
 
 double quantile(std::vector<float>& values, double q) {
     if (values.empty()) return 0;
@@ -41,9 +35,10 @@ class PixelSampler {
 
     uint32_t frames() const { return frames_; }
 
-    DepthStatistics depth() {
+    DepthStatistics depth() const {
+        std::vector<float> depths_m = depths_m_;
         const double share = depth_pixels_ == 0 ? 0 : static_cast<double>(valid_) / static_cast<double>(depth_pixels_);
-        return {share, quantile(depths_m_, 0.05), quantile(depths_m_, 0.5), quantile(depths_m_, 0.95)};
+        return {share, quantile(depths_m, 0.05), quantile(depths_m, 0.5), quantile(depths_m, 0.95)};
     }
 
     ColorStatistics color() const {
@@ -110,7 +105,7 @@ double rotation_between_deg(const RigidTransform& a, const RigidTransform& b) {
 
 void add_pose(PoseStatistics& poses, const Frame& frame, const std::optional<Frame>& last) {
     if (!frame.world_from_camera) return;
-    ++poses.frames;
+    if (poses.frames++ == 0) poses.first_m = glm::dvec3((*frame.world_from_camera)[3]);
     poses.worst_defect = std::max(poses.worst_defect, frame.pose_defect);
     if (!last || !last->world_from_camera) return;
     const double step_m =
@@ -130,31 +125,57 @@ void compare_to_last(SequenceReport& report, const Frame& frame, const Frame& la
 
 }  // namespace
 
-SequenceReport inspect(Source& source) {
-    SequenceReport report;
-    report.info = source.info();
-    report.color_view_deg = field_of_view_deg(report.info.color);
-    report.depth_view_deg = field_of_view_deg(report.info.depth);
-
-    const uint32_t sample_every = std::max(1u, (report.info.frames + kSampledFrames - 1) / kSampledFrames);
-    PixelSampler pixels(report.info.metres_per_unit);
-    std::optional<Frame> last;
-    while (std::optional<Reading> reading = source.next()) {
-        if (auto* skipped = std::get_if<Skipped>(&*reading)) {
-            report.skipped.push_back(std::move(*skipped));
-            continue;
-        }
-        Frame& frame = std::get<Frame>(*reading);
-        if (report.usable_frames++ % sample_every == 0) pixels.add(frame);
-        add_pose(report.poses, frame, last);
-        if (last) compare_to_last(report, frame, *last);
-        last = std::move(frame);
+struct Inspector::State {
+    State(const SequenceInfo& info, ConventionCheck check)
+        : pixels(info.metres_per_unit),
+          sample_every(std::max(1u, (info.frames + kSampledFrames - 1) / kSampledFrames)) {
+        if (check == ConventionCheck::kOn) convention.emplace(info);
+        report.info = info;
+        report.color_view_deg = field_of_view_deg(info.color);
+        report.depth_view_deg = field_of_view_deg(info.depth);
     }
-    report.sampled_frames = pixels.frames();
-    report.depth = pixels.depth();
-    report.color = pixels.color();
+
+    SequenceReport report;
+    PixelSampler pixels;
+    std::optional<PoseConventionCheck> convention;
+    uint32_t sample_every;
+    std::optional<Frame> last;
+};
+
+Inspector::Inspector(const SequenceInfo& info, ConventionCheck convention)
+    : state_(std::make_unique<State>(info, convention)) {}
+Inspector::~Inspector() = default;
+Inspector::Inspector(Inspector&&) noexcept = default;
+Inspector& Inspector::operator=(Inspector&&) noexcept = default;
+
+void Inspector::add(const Reading& reading) {
+    SequenceReport& report = state_->report;
+    if (const auto* skipped = std::get_if<Skipped>(&reading)) {
+        report.skipped.push_back(*skipped);
+        return;
+    }
+    const Frame& frame = std::get<Frame>(reading);
+    if (report.usable_frames++ % state_->sample_every == 0) state_->pixels.add(frame);
+    add_pose(report.poses, frame, state_->last);
+    if (state_->convention) state_->convention->add(frame);
+    if (state_->last) compare_to_last(report, frame, *state_->last);
+    state_->last = frame;
+}
+
+SequenceReport Inspector::report() const {
+    SequenceReport report = state_->report;
+    report.sampled_frames = state_->pixels.frames();
+    report.depth = state_->pixels.depth();
+    report.color = state_->pixels.color();
+    if (state_->convention) report.poses.convention = state_->convention->complaint();
     report.warnings = implausibilities(report);
     return report;
+}
+
+SequenceReport inspect(Source& source) {
+    Inspector inspector(source.info());
+    while (const std::optional<Reading> reading = source.next()) inspector.add(*reading);
+    return inspector.report();
 }
 
 }  // namespace patina::sensor

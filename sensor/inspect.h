@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,9 +35,11 @@ struct LargestStep {
 struct PoseStatistics {
     uint32_t frames = 0;  ///< with a pose
     double path_length_m = 0;
-    LargestStep translation_m;  ///< between neighbouring indices
-    LargestStep rotation_deg;   ///< between neighbouring indices
-    double worst_defect = 0;    ///< Frame::pose_defect
+    LargestStep translation_m;              ///< between neighbouring indices
+    LargestStep rotation_deg;               ///< between neighbouring indices
+    double worst_defect = 0;                ///< Frame::pose_defect
+    glm::dvec3 first_m{0};                  ///< where the first camera with a pose stands
+    std::optional<std::string> convention;  ///< PoseConventionCheck::complaint(), where it is on
 };
 
 /// How often something was seen, and where first.
@@ -63,8 +66,28 @@ struct SequenceReport {
     std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Reads a source to its end. Poses, timestamps and repetitions are taken from every frame, pixel statistics from at
-/// most about 50, evenly spread. Throws what the source throws.
+/// Whether poses are held against the depth (PoseConventionCheck).
+enum class ConventionCheck : bool { kOff, kOn };
+
+/// Inspects readings as they come. Poses, timestamps and repetitions are taken from every frame, pixel statistics from
+/// at most about 50 of info.frames, evenly spread.
+class Inspector {
+  public:
+    explicit Inspector(const SequenceInfo& info, ConventionCheck convention = ConventionCheck::kOn);
+    ~Inspector();
+    Inspector(Inspector&&) noexcept;
+    Inspector& operator=(Inspector&&) noexcept;
+
+    void add(const Reading& reading);
+    /// Of the readings so far.
+    SequenceReport report() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Inspects a source to its end. Throws what the source throws.
 SequenceReport inspect(Source& source);
 
 /// The report for a person to read: lines of text, warnings last.

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/core/error.h"
-#include "sensor/text_file.h"
+#include "engine/core/input_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -71,6 +71,7 @@ std::string message_of(const json::exception& error) {
 }
 
 json parse_json(const std::string& file, std::span<const uint8_t> bytes) {
+    check_json_depth(file, bytes);
     Progress progress(file);
     try {
         return json::parse(bytes.begin(), bytes.end(), std::ref(progress));
@@ -92,7 +93,9 @@ JsonValue JsonValue::part(std::string key, const json& value) const {
 
 std::string JsonValue::key_of(const std::string& member) const { return key_.empty() ? member : key_ + "." + member; }
 
-JsonValue JsonValue::read(const std::filesystem::path& file) { return parse(file.string(), read_bytes(file)); }
+JsonValue JsonValue::read(const std::filesystem::path& file) {
+    return parse(file.string(), read_file(file, limits::kTextBytes));
+}
 
 JsonValue JsonValue::parse(const std::string& file, std::span<const uint8_t> bytes) {
     return {std::make_shared<std::string>(file), "", std::make_shared<json>(parse_json(file, bytes))};

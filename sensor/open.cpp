@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <vector>
 
+#include "engine/core/did_you_mean.h"
+#include "engine/core/input_file.h"
 #include "sensor/readers/native.h"
+#include "sensor/readers/open3d.h"
 #include "sensor/readers/seven_scenes.h"
 #include "sensor/readers/tum.h"
 
@@ -24,6 +28,7 @@ constexpr std::array kFormats{
     Format{"patina-sequence", "sequence.json", is_native_sequence, open_native},
     Format{"7-scenes", "frame-NNNNNN.depth.png", is_seven_scenes_sequence, open_seven_scenes},
     Format{"tum", "rgb.txt with depth.txt", is_tum_sequence, open_tum},
+    Format{"open3d", "camera_intrinsic.json with color/ and depth/", is_open3d_sequence, open_open3d},
 };
 
 /// All formats' names or contents in one enumeration: "a, b or c".
@@ -44,12 +49,13 @@ const Format* format_of(const fs::path& folder) {
 
 /// The first sub-folder, by name, that is a sequence; empty when there is none.
 fs::path sequence_inside(const fs::path& folder) {
-    fs::path first;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const bool earlier = first.empty() || entry.path() < first;
-        if (entry.is_directory() && earlier && format_of(entry.path())) first = entry.path();
+    for (const fs::path& entry : entries_of(folder)) {
+        try {
+            if (is_folder(entry) && format_of(entry)) return entry;
+        } catch (const Error&) {  // it may not be entered
+        }
     }
-    return first;
+    return {};
 }
 
 const Format& recognised(const fs::path& folder) {
@@ -61,16 +67,20 @@ const Format& recognised(const fs::path& folder) {
 
 const Format& named(const std::string& name) {
     const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.name == name; });
-    if (found == kFormats.end()) throw Error("format '", name, "' is not known, must be ", enumerated(&Format::name));
+    if (found == kFormats.end()) {
+        std::vector<std::string> names;
+        for (const Format& format : kFormats) names.emplace_back(format.name);
+        throw Error("format '", name, "' is not known, must be ", enumerated(&Format::name), did_you_mean(name, names));
+    }
     return *found;
 }
 
 }  // namespace
 
 std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format) {
-    if (!fs::exists(path)) throw Error(path.string(), " does not exist");
+    if (!path_exists(path)) throw Error(path.string(), " does not exist");
     const fs::path folder = path.filename() == "sequence.json" ? fs::absolute(path).parent_path() : path;
-    if (!fs::is_directory(folder)) throw Error(path.string(), " is a file, but a sequence is a folder");
+    if (!is_folder(folder)) throw Error(path.string(), " is a file, but a sequence is a folder");
     return (format.empty() ? recognised(folder) : named(format)).open(folder);
 }
 

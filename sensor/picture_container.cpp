@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstring>
 #include <string_view>
+
+#include "engine/core/input_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -101,13 +105,16 @@ Extent2D check_png(std::span<const uint8_t> bytes, const std::string& file) {
         if (stored != computed) {
             throw Error(file, " is damaged: chunk ", type, " has checksum ", computed, ", but ", stored, " is stored");
         }
-        if (type == "IHDR" && length >= 8) {
+        if (type == "IHDR") {
+            if (extent != Extent2D{}) throw Error(file, " is damaged: it has two IHDR chunks, must have 1");
             ByteReader header(chunk.subspan(4), file);
             extent.width = header.number(4);
             extent.height = header.number(4);
+            check_picture_size(file, extent.width, extent.height);
         }
         ended = type == "IEND";
     }
+    if (extent == Extent2D{}) throw Error(file, " is damaged: it has no IHDR chunk, must have 1");
     return extent;
 }
 
@@ -118,18 +125,166 @@ Extent2D check_jpeg(std::span<const uint8_t> bytes, const std::string& file) {
     bool in_scan = false;
     while (true) {
         const uint32_t marker = next_marker(reader, in_scan);
-        if (marker == 0xd9) return extent;
+        if (marker == 0xd9) break;
         if (stands_alone(marker)) continue;
         const uint32_t length = reader.number(2);
         if (length < 2) throw Error(file, " is damaged: a segment's length is ", length, ", must be at least 2");
         const std::span<const uint8_t> segment = reader.take(length - 2);
-        if (is_frame_header(marker) && segment.size() >= 5) {
-            ByteReader header(segment.subspan(1), file);
+        if (is_frame_header(marker)) {
+            if (extent != Extent2D{}) throw Error(file, " is damaged: it has two frame headers, must have 1");
+            ByteReader header(segment.subspan(std::min<size_t>(segment.size(), 1)), file);
             extent.height = header.number(2);
             extent.width = header.number(2);
+            check_picture_size(file, extent.width, extent.height);
         }
         in_scan = marker == 0xda;
     }
+    if (extent == Extent2D{}) throw Error(file, " is damaged: it has no frame header, must have 1");
+    return extent;
+}
+
+namespace {
+
+/// Walks an OpenEXR file's headers. Numbers are little-endian.
+class ExrHeaders {
+  public:
+    ExrHeaders(std::span<const uint8_t> bytes, const std::string& file)
+        : bytes_(bytes.subspan(0, std::min<size_t>(bytes.size(), limits::kHeaderBytes))),
+          size_(bytes.size()),
+          file_(file),
+          reader_(bytes_, file) {}
+
+    Extent2D check() {
+        reader_.take(kExrSignature.size());
+        const bool several_parts = (number() & 0x1000) != 0;
+        const Extent2D first = part();
+        while (several_parts && !ended()) part();
+        return first;
+    }
+
+  private:
+    /// What a part's header says of what decoding it takes.
+    struct Part {
+        Extent2D extent;
+        uint64_t channels = 0;
+        Extent2D tile;
+    };
+
+    uint32_t number() {
+        uint32_t value = 0;
+        const std::span<const uint8_t> four = reader_.take(4);
+        for (size_t i = 4; i-- > 0;) value = value << 8 | four[i];
+        return value;
+    }
+
+    std::string name() {
+        std::string name;
+        while (const uint32_t letter = reader_.number(1)) name += static_cast<char>(letter);
+        return name;
+    }
+
+    /// An empty header ends the parts.
+    bool ended() {
+        next_ = name();
+        return next_.empty();
+    }
+
+    Extent2D part() {
+        Part part;
+        std::string attribute = next_.empty() ? name() : std::move(next_);
+        next_.clear();
+        for (; !attribute.empty(); attribute = name()) {
+            const std::string type = name();
+            const uint32_t length = number();
+            const std::span<const uint8_t> value = reader_.take(length);
+            if (attribute == "dataWindow" && type == "box2i") part.extent = window(value);
+            if (attribute == "channels" && type == "chlist") part.channels = count_channels(value);
+            if (attribute == "tiles" && type == "tiledesc") part.tile = tile(value);
+        }
+        check(part);
+        return part.extent;
+    }
+
+    Extent2D window(std::span<const uint8_t> value) const {
+        if (value.size() != 16) throw Error(file_, " is damaged: its dataWindow has ", value.size(), " bytes, not 16");
+        std::array<int32_t, 4> edges;
+        std::memcpy(edges.data(), value.data(), sizeof(edges));
+        const int64_t width = int64_t{edges[2]} - edges[0] + 1, height = int64_t{edges[3]} - edges[1] + 1;
+        check_picture_size(file_, static_cast<uint64_t>(std::max<int64_t>(width, 0)),
+                           static_cast<uint64_t>(std::max<int64_t>(height, 0)));
+        return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+    }
+
+    Extent2D tile(std::span<const uint8_t> value) const {
+        if (value.size() != 9) throw Error(file_, " is damaged: its tiles have ", value.size(), " bytes, not 9");
+        Extent2D tile;
+        std::memcpy(&tile.width, value.data(), 4);
+        std::memcpy(&tile.height, value.data() + 4, 4);
+        check_picture_size(file_ + "'s tile", tile.width, tile.height);
+        return tile;
+    }
+
+    /// Each has a name, its terminating zero and 16 bytes.
+    uint64_t count_channels(std::span<const uint8_t> list) const {
+        ByteReader reader(list, file_);
+        uint64_t channels = 0;
+        for (; reader.number(1) != 0; ++channels) {
+            while (reader.number(1) != 0) {
+            }
+            reader.take(16);
+        }
+        return channels;
+    }
+
+    /// What OpenEXR allots before it finds that the pixels are not there.
+    void check(const Part& part) const {
+        if (part.extent == Extent2D{}) throw Error(file_, " is damaged: it has no dataWindow");
+        constexpr uint64_t kMostRows = 256, kNumberBytes = 4;  // of a block of DWAB, of a float
+        const uint64_t rows = std::max<uint64_t>(part.extent.height, kMostRows);
+        const uint64_t pixels = std::max<uint64_t>(part.extent.width * rows, part.tile.area());
+        if (part.channels > limits::kPlanesBytes / kNumberBytes / pixels) {
+            throw Error(file_, " has ", part.channels, " channels of ", part.extent, " pixels, more than ",
+                        limits::kPlanesBytes, " bytes hold");
+        }
+        if (part.tile == Extent2D{}) return;
+        constexpr uint64_t kOffsetBytes = 8;
+        const uint64_t across = (part.extent.width + uint64_t{part.tile.width} - 1) / part.tile.width;
+        const uint64_t tiles = across * ((part.extent.height + uint64_t{part.tile.height} - 1) / part.tile.height);
+        if (tiles > size_ / kOffsetBytes)
+            throw Error(file_, " is truncated: it has ", size_, " bytes, but ", tiles, " tiles");
+    }
+
+    std::span<const uint8_t> bytes_;
+    uint64_t size_;
+    const std::string& file_;
+    ByteReader reader_;
+    std::string next_;  ///< a further part's first attribute, once read
+};
+
+}  // namespace
+
+Extent2D check_exr(std::span<const uint8_t> bytes, const std::string& file) { return ExrHeaders(bytes, file).check(); }
+
+Extent2D check_radiance(std::span<const uint8_t> bytes, const std::string& file) {
+    std::string_view rest(reinterpret_cast<const char*>(bytes.data()),
+                          std::min<size_t>(bytes.size(), limits::kHeaderBytes));
+    if (!rest.starts_with("#?")) throw Error(file, " is no Radiance picture: it does not begin with '#?'");
+    std::string line = "#?";
+    while (!line.empty()) {  // an empty line ends the header
+        const size_t end = rest.find('\n');
+        if (end == std::string_view::npos)
+            throw Error(file, " is truncated: its header ends within ", rest.size(), " bytes");
+        line = rest.substr(0, end);
+        rest.remove_prefix(end + 1);
+    }
+    const std::string size(rest.substr(0, rest.find('\n')).substr(0, 40));
+    unsigned width = 0, height = 0;
+    int read = 0;
+    if (std::sscanf(size.c_str(), "-Y %9u +X %9u%n", &height, &width, &read) != 2 ||
+        read != static_cast<int>(size.size()))
+        throw Error(file, " has a size of '", size, "', must be '-Y ROWS +X COLUMNS'");
+    check_picture_size(file, width, height);
+    return {width, height};
 }
 
 }  // namespace patina::sensor

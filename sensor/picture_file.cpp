@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "engine/core/input_file.h"
 #include "sensor/exr_file.h"
 #include "sensor/picture_container.h"
 #include "sensor/text_file.h"
@@ -22,14 +24,14 @@ struct PictureFile {
 };
 
 PictureFile load(const std::filesystem::path& path) {
-    PictureFile file{path.string(), read_bytes(path), PictureFormat::kPng, {}};
+    PictureFile file{path.string(), read_file(path, limits::kPictureBytes), PictureFormat::kPng, {}};
     const std::optional<PictureFormat> format = picture_format(file.bytes);
     if (!format) throw Error(file.name, " is neither PNG, JPEG nor OpenEXR: it has ", file.bytes.size(), " bytes");
     file.format = *format;
     switch (file.format) {
         case PictureFormat::kPng: file.extent = check_png(file.bytes, file.name); break;
         case PictureFormat::kJpeg: file.extent = check_jpeg(file.bytes, file.name); break;
-        case PictureFormat::kExr: file.extent = exr_extent(path); break;
+        case PictureFormat::kExr: file.extent = check_exr(file.bytes, file.name); break;
     }
     return file;
 }
@@ -42,6 +44,7 @@ PictureFile load(const std::filesystem::path& path, Extent2D expected) {
     return file;
 }
 
+/// The pixels of a PNG or JPEG file. The decoder may find another size than the header said.
 cv::Mat decode(const PictureFile& file) {
     cv::Mat picture;
     try {
@@ -50,6 +53,9 @@ cv::Mat decode(const PictureFile& file) {
         throw Error(file.name, " cannot be decoded: ", error.err);
     }
     if (picture.empty()) throw Error(file.name, " cannot be decoded: its ", file.bytes.size(), " bytes are damaged");
+    const Extent2D decoded{static_cast<uint32_t>(picture.cols), static_cast<uint32_t>(picture.rows)};
+    if (decoded != file.extent)
+        throw Error(file.name, " is damaged: its header says ", file.extent, " pixels, but it holds ", decoded);
     return picture;
 }
 
@@ -87,20 +93,21 @@ cv::Mat borrowed(const Image<Pixel>& image, int type) {
 Extent2D picture_extent(const std::filesystem::path& file) { return load(file).extent; }
 
 ColorImage read_color(const std::filesystem::path& path, Extent2D expected) {
-    const PictureFile file = load(path, expected);
-    if (file.format == PictureFormat::kExr) return read_exr_color(path);
+    PictureFile file = load(path, expected);
+    if (file.format == PictureFormat::kExr) return read_exr_color(file.name, std::move(file.bytes));
     cv::Mat picture = decode(file);
     if (picture.depth() != CV_8U) {
         throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
     }
+    if (picture.channels() == 2) throw Error(file.name, " has 2 channels, but colour must have 1, 3 or 4");
     cv::cvtColor(picture, picture, rgb_conversion(picture.channels()));
     return to_image<SrgbPixel>(picture, expected);
 }
 
 DepthImage read_depth(const std::filesystem::path& path, Extent2D expected, uint16_t invalid) {
-    const PictureFile file = load(path, expected);
+    PictureFile file = load(path, expected);
     if (file.format == PictureFormat::kExr) {
-        Image<float> depth_m = read_exr_depth(path);
+        Image<float> depth_m = read_exr_depth(file.name, std::move(file.bytes));
         for (float& z : depth_m.pixels()) z = std::isfinite(z) && z > 0 ? z : 0.0f;
         return depth_m;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "sensor/recentred_source.h"
 #include "sensor/text_file.h"
 
 namespace patina::sensor {
@@ -21,15 +22,8 @@ using Warnings = std::vector<std::string>;
 
 void check_scale(const SequenceReport& report, Warnings& warnings) {
     if (report.sampled_frames == 0) return;
-    const double median_m = report.depth.median_m;
-    if (report.depth.valid_share == 0) {
-        warnings.push_back("no depth picture has a valid reading");
-    } else if (median_m < kNearestMedian_m || median_m > kFarthestMedian_m) {
-        const double factor = std::pow(10, std::round(std::log10(kTypicalMedian_m / median_m)));
-        warnings.push_back(text("the median depth is ", median_m, " m, outside ", kNearestMedian_m, " to ",
-                                kFarthestMedian_m, " m; if the scale is wrong, metres_per_unit may be ",
-                                report.info.metres_per_unit * factor, " instead of ", report.info.metres_per_unit));
-    }
+    if (report.depth.valid_share == 0) warnings.push_back("no depth picture has a valid reading");
+    if (auto implausible = implausible_scale(report)) warnings.push_back(*std::move(implausible));
 }
 
 void check_view(const char* name, glm::dvec2 view_deg, Warnings& warnings) {
@@ -61,6 +55,12 @@ void check_poses(const SequenceReport& report, Warnings& warnings) {
         warnings.push_back(
             text(report.usable_frames - poses.frames, " of ", report.usable_frames, " usable frames have no pose"));
     }
+    if (poses.convention) warnings.push_back(*poses.convention);
+    if (const glm::dvec3 offset_m = world_offset_m(poses.first_m); offset_m != glm::dvec3(0)) {
+        warnings.push_back(text("the first camera is ", fixed(glm::length(poses.first_m) / 1000, 1),
+                                " km from the world's origin; a run moves its world by (", fixed(offset_m.x, 0), ", ",
+                                fixed(offset_m.y, 0), ", ", fixed(offset_m.z, 0), ") m"));
+    }
     if (poses.worst_defect > kImprecisePose) {
         warnings.push_back(
             text("rotations were repaired that are off by up to ", poses.worst_defect, ", more than ", kImprecisePose));
@@ -82,6 +82,19 @@ void check_occurrences(const Occurrences& seen, const char* what, const Sequence
 }
 
 }  // namespace
+
+std::optional<std::string> implausible_scale(const SequenceReport& report) {
+    const double median_m = report.depth.median_m, metres_per_unit = report.info.metres_per_unit;
+    if (report.sampled_frames == 0 || report.depth.valid_share == 0) return std::nullopt;
+    if (median_m >= kNearestMedian_m && median_m <= kFarthestMedian_m) return std::nullopt;
+    const double fitting = metres_per_unit * std::pow(10, std::round(std::log10(kTypicalMedian_m / median_m)));
+    const std::string outside = text("the median depth is ", median_m, " m, outside ", kNearestMedian_m, " to ",
+                                     kFarthestMedian_m, " m; if the scale is wrong, ");
+    if (report.info.format == "patina-sequence")
+        return text(outside, "metres_per_unit may be ", fitting, " instead of ", metres_per_unit, " in sequence.json");
+    return text(outside, "the unit of depth may be ", fitting, " m, but the format ", report.info.format,
+                " fixes it at ", metres_per_unit, " m; in the native format sequence.json names it");
+}
 
 std::vector<std::string> implausibilities(const SequenceReport& report) {
     Warnings warnings;

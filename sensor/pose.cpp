@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <tuple>
 
 #include <glm/gtc/quaternion.hpp>
 
 #include "engine/core/error.h"
+#include "sensor/associate.h"
 
 namespace patina::sensor {
 namespace {
@@ -60,6 +59,10 @@ CheckedPose pose_in(const TextLine& line) {
 CheckedPose checked_pose(const RigidTransform& recorded, const std::string& where) {
     expect_finite(recorded, where);
     const double defect = rotation_defect(recorded);
+    if (glm::determinant(glm::dmat3(recorded)) < 0)
+        throw Error(
+            where,
+            ": the pose mirrors what it moves, as poses of a left-handed world or camera do; a rotation is needed");
     if (defect > kRepairablePoseDefect) fail_not_rigid(where, defect);
     for (int column = 0; column < 4; ++column) {
         const double expected = column == 3 ? 1 : 0;
@@ -110,31 +113,6 @@ void write_trajectory(const std::filesystem::path& file, std::span<const Stamped
         content += "\n";
     }
     write_bytes(file, content);
-}
-
-std::vector<std::optional<size_t>> associate(std::span<const double> a, std::span<const double> b, double limit_s) {
-    std::vector<size_t> by_time(b.size());
-    std::iota(by_time.begin(), by_time.end(), size_t{0});
-    std::sort(by_time.begin(), by_time.end(), [&](size_t i, size_t j) { return b[i] < b[j]; });
-
-    std::vector<std::tuple<double, size_t, size_t>> pairs;  // distance first: sorts nearest first, ties by index
-    for (size_t i = 0; i < a.size(); ++i) {
-        const auto before = [&](size_t j, double time) { return b[j] < time; };
-        auto candidate = std::lower_bound(by_time.begin(), by_time.end(), a[i] - limit_s, before);
-        for (; candidate != by_time.end() && b[*candidate] <= a[i] + limit_s; ++candidate) {
-            pairs.emplace_back(std::abs(b[*candidate] - a[i]), i, *candidate);
-        }
-    }
-    std::sort(pairs.begin(), pairs.end());
-
-    std::vector<std::optional<size_t>> partner(a.size());
-    std::vector<bool> taken(b.size());
-    for (const auto& [distance, i, j] : pairs) {
-        if (partner[i] || taken[j]) continue;
-        partner[i] = j;
-        taken[j] = true;
-    }
-    return partner;
 }
 
 std::vector<StampedPose> read_trajectory(const std::filesystem::path& file) {

@@ -66,8 +66,4 @@ void write_trajectory(const std::filesystem::path& file, std::span<const Stamped
 /// damaged.
 std::vector<StampedPose> read_trajectory(const std::filesystem::path& file);
 
-/// Pairs timestamps of two clocks' lists, nearest pairs first, each element used once, none farther apart than
-/// `limit_s`: TUM's rule. Returns for each element of `a` its partner's index in `b`, empty where there is none.
-std::vector<std::optional<size_t>> associate(std::span<const double> a, std::span<const double> b, double limit_s);
-
 }  // namespace patina::sensor

@@ -4,17 +4,23 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
+#include "sensor/output/new_file.h"
 
 namespace patina::sensor {
 namespace {
 
-std::vector<std::string> split(const std::string& line) {
-    std::istringstream stream(line);
+constexpr std::string_view kSpaces = " \t\r\v\f";
+
+std::vector<std::string> split(std::string_view line) {
     std::vector<std::string> words;
-    for (std::string word; stream >> word;) words.push_back(word);
+    for (size_t begin = line.find_first_not_of(kSpaces); begin != std::string_view::npos;) {
+        const size_t end = std::min(line.find_first_of(kSpaces, begin), line.size());
+        words.emplace_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(kSpaces, end);
+    }
     return words;
 }
 
@@ -40,7 +46,7 @@ TextLine::TextLine(std::string where, std::vector<std::string> words)
     : where_(std::move(where)), words_(std::move(words)) {}
 
 void TextLine::expect_columns(std::string_view columns) const {
-    const size_t expected = split(std::string(columns)).size();
+    const size_t expected = split(columns).size();
     if (size() != expected) throw Error(where_, " has ", size(), " columns, must have ", expected, ": ", columns);
 }
 
@@ -72,12 +78,14 @@ uint32_t TextLine::index(size_t column) const {
 }
 
 std::vector<TextLine> read_lines(const std::filesystem::path& file) {
-    const std::vector<uint8_t> bytes = read_bytes(file);
-    std::istringstream stream(std::string(bytes.begin(), bytes.end()));
+    const std::vector<uint8_t> bytes = read_file(file, limits::kTextBytes);
+    std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     std::vector<TextLine> lines;
-    size_t number = 0;
-    for (std::string line; std::getline(stream, line);) {
-        ++number;
+    for (size_t number = 1; !rest.empty(); ++number) {
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        if (number > limits::kTextLines)
+            throw Error(file.string(), " has more than ", limits::kTextLines, " lines, line ", number, " is not read");
         std::vector<std::string> words = split(line.substr(0, line.find('#')));
         if (!words.empty()) lines.emplace_back(text(file.string(), ":", number), std::move(words));
     }
@@ -93,21 +101,10 @@ std::vector<double> read_numbers(const std::filesystem::path& file, size_t count
     return numbers;
 }
 
-std::vector<uint8_t> read_bytes(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) throw Error(file.string(), " is missing");
-    if (!std::filesystem::is_regular_file(file)) throw Error(file.string(), " is not a file");
-    std::ifstream stream(file, std::ios::binary);
-    std::vector<uint8_t> bytes(std::filesystem::file_size(file));
-    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (!stream) throw Error(file.string(), " cannot be read");
-    return bytes;
-}
-
 void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
-    std::ofstream stream(file, std::ios::binary);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) throw Error(file.string(), " cannot be written");
+    NewFile created(file);
+    created.write(bytes);
+    created.close();
 }
 
 std::string shortest(double value) { return printed(value); }

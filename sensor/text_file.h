@@ -37,16 +37,14 @@ class TextLine {
     std::vector<std::string> words_;
 };
 
-/// The lines of a text file that hold something; '#' starts a comment. Throws Error when the file cannot be read.
+/// The lines of a text file that hold something; '#' starts a comment. Throws Error when the file cannot be read or is
+/// longer than limits::kTextBytes or kTextLines.
 std::vector<TextLine> read_lines(const std::filesystem::path& file);
 
 /// The numbers of a text file, across lines; inf and nan pass. Throws Error when there are not exactly `count`.
 std::vector<double> read_numbers(const std::filesystem::path& file, size_t count);
 
-/// All bytes of a file. Throws Error when it is missing or cannot be read.
-std::vector<uint8_t> read_bytes(const std::filesystem::path& file);
-
-/// Writes a whole file. Throws Error when that fails.
+/// Writes a whole file, as NewFile does. Throws Error when that fails.
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 
 /// The shortest decimal that reads back as the same number.

@@ -1,9 +1,11 @@
 #include "sensor/truth.h"
 
-#include <algorithm>
+#include <cstdint>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/error.h"
 #include "sensor/json_file.h"
 #include "sensor/text_file.h"
 
@@ -11,6 +13,8 @@ namespace patina::sensor {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr size_t kMostLights = 4096;  // lamps are compared in pairs
 
 Json to_json(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -35,6 +39,12 @@ std::optional<glm::dvec3> read_kd(const JsonValue& value) {
     if (!value.is_string()) return read_albedo(value);
     if (value.string() != "texture") value.fail("must be three numbers or \"texture\"");
     return std::nullopt;
+}
+
+/// Label images have 16 bits, and 0 is the background.
+uint32_t read_label(const JsonValue& value) {
+    if (value.positive_integer() > UINT16_MAX) value.fail(text("must be at most ", UINT16_MAX));
+    return value.positive_integer();
 }
 
 double read_alpha(const JsonValue& value) {
@@ -66,12 +76,15 @@ void write_materials(const std::filesystem::path& file, std::span<const Material
                         {"ks", to_json(material.ks)},
                         {"alpha", material.alpha}});
     }
-    write_bytes(file, Json{{"materials", list}}.dump(2) + "\n");
+    write_bytes(file, Json{{"materials", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::vector<PointLight> read_lights(const std::filesystem::path& file) {
+    const std::vector<JsonValue> elements = JsonValue::read(file).at("lights").elements();
+    if (elements.size() > kMostLights)
+        throw Error(file.string(), ": lights has ", elements.size(), " elements, at most ", kMostLights, " are read");
     std::vector<PointLight> lights;
-    for (const JsonValue& light : JsonValue::read(file).at("lights").elements()) {
+    for (const JsonValue& light : elements) {
         const auto radius = light.find("radius");
         lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity")),
                           radius ? radius->not_negative() : 0});
@@ -86,12 +99,12 @@ glm::dvec3 read_ambient(const std::filesystem::path& file) {
 
 std::vector<Material> read_materials(const std::filesystem::path& file) {
     std::vector<Material> materials;
+    std::set<uint32_t> ids;
     for (const JsonValue& value : JsonValue::read(file).at("materials").elements()) {
         const JsonValue id = value.at("id");
-        const Material material{id.positive_integer(), value.at("name").string(), read_kd(value.at("kd")),
+        const Material material{read_label(id), value.at("name").string(), read_kd(value.at("kd")),
                                 read_albedo(value.at("ks")), read_alpha(value.at("alpha"))};
-        const auto has_id = [&](const Material& other) { return other.id == material.id; };
-        if (std::any_of(materials.begin(), materials.end(), has_id)) id.fail("which is another material's");
+        if (!ids.insert(material.id).second) id.fail("which is another material's");
         materials.push_back(material);
     }
     return materials;

@@ -138,6 +138,7 @@ void SequenceWriter::write_sequence_file() const {
         color["exposure_s"] = exposures_.front().exposure_s;
         color["gain"] = exposures_.front().gain;
     }
+    if (!info_.motion_blur) color["motion_blur"] = false;
     Json depth = to_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;
@@ -149,7 +150,7 @@ void SequenceWriter::write_sequence_file() const {
                     {"color", color},
                     {"depth", depth},
                     {"depth_to_color", to_json(info_.color_from_depth)}};
-    write_bytes(partial_folder() / "sequence.json", root.dump(2) + "\n");
+    write_bytes(partial_folder() / "sequence.json", root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace patina::sensor

@@ -31,22 +31,21 @@ if(PATINA_TEST_HARDWARE)
     set(PATINA_ENVIRONMENT_hardware PATINA_DEVICE=discrete)
 endif()
 
-# SwiftShader keeps no compiled shaders between processes.
-set(PATINA_SUITES_TOGETHER swiftshader)
+# A sanitized process takes a second or two to start, open a device and look for leaks, and SwiftShader keeps no compiled
+# shaders between processes.
+set(PATINA_SUITES_TOGETHER lavapipe256 lavapipe128 swiftshader)
 
-# Registers each suite of a GoogleTest program on one driver, as "PREFIX.DRIVER.Suite".
-function(patina_test_suites TARGET PREFIX DRIVER)
+# Registers each suite of a GoogleTest program as "PREFIX.Suite", with a label and what follows it as environment.
+function(patina_test_suites TARGET PREFIX LABEL)
     set(PROGRAM ${CMAKE_BINARY_DIR}/${TARGET})
-    set(PREFIX ${PREFIX}.${DRIVER})
-    set(ENVIRONMENT ${PATINA_ENVIRONMENT_${DRIVER}})
-    set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${DRIVER}_suites.cmake)
+    set(ENVIRONMENT ${ARGN})
+    set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
     configure_file(discover_suites.cmake.in ${DISCOVERY_FILE} @ONLY)
     set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${DISCOVERY_FILE})
 endfunction()
 
 # Registers every TEST of a GoogleTest program once per driver, as "PREFIX.DRIVER.Suite.Name" with the driver as label;
 # on drivers in PATINA_SUITES_TOGETHER, where there is no filter, a suite is one test.
-# One process per TEST costs about 60 ms with the caches warm.
 #   DRIVERS   only these, instead of all
 #   FILTER    only TESTs that this GoogleTest filter takes
 #   LABELS    more labels
@@ -57,7 +56,7 @@ function(patina_test_on_drivers TARGET PREFIX)
     endif()
     foreach(DRIVER ${ARG_DRIVERS})
         if(DRIVER IN_LIST PATINA_SUITES_TOGETHER AND NOT ARG_FILTER)
-            patina_test_suites(${TARGET} ${PREFIX} ${DRIVER})
+            patina_test_suites(${TARGET} ${PREFIX}.${DRIVER} ${DRIVER} ${PATINA_ENVIRONMENT_${DRIVER}})
             continue()
         endif()
         string(MAKE_C_IDENTIFIER "${TARGET}_${DRIVER}_${ARG_FILTER}" LIST)

@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <span>
 
 #include "passes/model/network.h"
 #include "passes/specular/perceptual.h"
+#include "sensor/output/new_file.h"
+#include "sensor/output/output_file.h"
 
 namespace patina::tools {
 
@@ -41,13 +42,9 @@ static_assert(sizeof(ExampleLabel) == 64);
 class ExampleFileWriter {
   public:
     /// Throws Error when the file exists or cannot be written.
-    ExampleFileWriter(std::filesystem::path file, uint64_t seed, uint32_t examples, HemisphereMap map);
-    ExampleFileWriter(const ExampleFileWriter&) = delete;
-    ExampleFileWriter& operator=(const ExampleFileWriter&) = delete;
-    /// Removes what was written, unless finish() was called.
-    ~ExampleFileWriter();
+    ExampleFileWriter(const std::filesystem::path& file, uint64_t seed, uint32_t examples, HemisphereMap map);
 
-    /// `halves`: gpu::kExampleHalves of them.
+    /// `halves`: gpu::kExampleHalves of them. Throws Error when the disk is full.
     void write(const ExampleLabel& label, std::span<const uint16_t> halves);
     bool is_full() const { return written_ == header_.examples; }
     uint32_t written() const { return written_; }
@@ -55,9 +52,9 @@ class ExampleFileWriter {
     void finish();
 
   private:
-    std::filesystem::path file_, partial_;
+    sensor::OutputFile file_;
+    sensor::NewFile out_;
     ExampleFileHeader header_;
-    std::ofstream out_;
     uint32_t written_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tools/export/previews.h"
+#include "tools/export/run_id.h"
 
 namespace patina::tools {
 
@@ -90,12 +91,29 @@ void FrameDumps::finish() {
     for (; !owed_.empty(); owed_.pop_front()) write(owed_.front());
 }
 
+void FrameDumps::stamp(const std::string& run_id) const {
+    for (const std::string& name : dumped_) stamp_run_id(folder_.published(name), run_id);
+}
+
 void FrameDumps::write(const Owed& owed) {
+    if (!problem_.empty()) return;
     const FrameDump dump = to_dump(owed.view.get());
+    try {
+        write_files(owed, dump);
+    } catch (const std::exception& error) {
+        problem_ = fmt::format("pictures are missing from frame {} on: {}", owed.index, reason_of(error));
+        folder_.discard_staged();
+        dump_every_ = 0;
+        preview_at_.clear();
+    }
+}
+
+void FrameDumps::write_files(const Owed& owed, const FrameDump& dump) {
     if (owed.dump) {
         const std::string name = fmt::format("frames/{:06}.exr", owed.index);
-        write_exr(folder_.stage(name), channels_of(dump));
+        write_exr(folder_.stage(name), channels_of(dump), kRunIdPending);
         folder_.publish(name);
+        dumped_.push_back(name);
     }
     if (owed.preview_input) {
         PreviewOptions options;

@@ -31,6 +31,13 @@ class FrameDumps {
     /// Writes the rest; the device must have finished.
     void finish();
 
+    /// What could not be written, a sentence; empty where all was. Nothing more is written after that: a run goes on
+    /// without its pictures.
+    const std::string& problem() const { return problem_; }
+
+    /// Writes the run's id into the EXR files written so far.
+    void stamp(const std::string& run_id) const;
+
     /// The previews written so far, in order.
     const std::vector<ReportPicture>& previews() const { return previews_; }
 
@@ -42,12 +49,15 @@ class FrameDumps {
         std::optional<sensor::ColorImage> preview_input;
     };
     void write(const Owed& owed);
+    void write_files(const Owed& owed, const FrameDump& dump);
 
     OutputFolder& folder_;
     uint32_t dump_every_;
     std::deque<uint32_t> preview_at_;  ///< frame indices from which on the next preview is due
     std::deque<Owed> owed_;
     std::vector<ReportPicture> previews_;
+    std::string problem_;
+    std::vector<std::string> dumped_;  ///< names of the EXR files
 };
 
 }  // namespace patina::tools

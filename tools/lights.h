@@ -34,20 +34,34 @@ struct LightsOptions {
     std::string main_format;   ///< empty: recognised
     uint32_t main_frames = 0;  ///< as `frames`, of the main sequence, when a lighting sequence is found in its room
     bool track = false;        ///< poses of the main sequence are tracked though it has some
+    std::optional<uint64_t> seed{};  ///< of a synthetic scene's noise and samples; empty: what the scene says
     vulkan::DeviceOptions device;
     LightEstimationSettings settings;
     LightFittingSettings fitting;
     ReconstructionSettings reconstruction;  ///< of the main sequence's surface
+    /// What is taken from all positions while lights are found (sensor::world_offset_m); empty: as the poses of the
+    /// main sequence ask for.
+    std::optional<glm::dvec3> world_offset_m;
 };
 
 /// The lights of a room, and how they were found.
 struct Illumination {
     std::string found_by = "none";   ///< "file", "lighting sequence", "main sequence", "none"
-    std::vector<FoundLight> lights;  ///< brightest first
-    glm::vec3 ambient{0};            ///< irradiance over pi that every surface receives, linear pixel value
-    float misfit = 0;                ///< of the main sequence's surface: FittedLights
+    std::vector<FoundLight> lights;  ///< brightest first; positions less world_offset_m
+    glm::dvec3 world_offset_m{0};
+    glm::vec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value
+    float misfit = 0;      ///< of the main sequence's surface: FittedLights
     float unexplained = 0;
 };
+
+/// Whether anything receives light.
+bool shines(const Illumination& illumination);
+
+/// Where a light is in the recording's world.
+glm::dvec3 world_position_m(const Illumination& illumination, const FoundLight& light);
+
+/// Prints lamps and ambient light, a line each.
+void print_lights(const Illumination& illumination);
 
 /// Writes lights.json of the sequence format. Throws Error when the file cannot be written.
 void write_lights_json(const std::filesystem::path& file, const Illumination& illumination);

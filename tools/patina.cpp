@@ -6,26 +6,25 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/usage.h"
 #include "tools/interrupt.h"
+#include "tools/outcome.h"
+#include "tools/standard_streams.h"
 #include "tools/version.h"
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kUsage = 2;
-constexpr int kInterrupted = 130;  // what shells report for SIGINT
-
-/// Every failure is one line on standard error, whatever a library put into its message.
+/// Every failure is one line on standard error, whatever a library or a file's name put into its message.
 int fail(std::string message, int exit_code) {
     std::replace(message.begin(), message.end(), '\n', ' ');
-    std::fprintf(stderr, "patina: %s\n", message.c_str());
+    std::fprintf(stderr, "patina: %s\n", patina::printable(message).c_str());
     return exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// Runs the subcommand; returns the exit code.
+int run_command(int argc, char** argv) {
     using namespace patina;
     CLI::App app{"From RGB-D recordings to geometry with materials, on any Vulkan device", "patina"};
     app.set_version_flag("--version", std::string("patina ") + tools::kVersion);
@@ -34,19 +33,31 @@ int main(int argc, char** argv) {
     tools::add_info(app);
     tools::add_synth(app);
     tools::add_synth_hemi(app);
-    tools::add_run(app);
-    tools::add_render(app);
+    int exit_code = tools::kExitDone;
+    tools::add_run(app, exit_code);
+    tools::add_render(app, exit_code);
     tools::add_eval(app);
     tools::add_lights(app);
     try {
         app.parse(argc, argv);
-        return 0;
+        return exit_code;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
-        return fail(std::string(error.what()) + " (patina --help shows the usage)", kUsage);
+        return fail(tools::usage_message(app, error) + " (patina --help shows the usage)", tools::kExitUsage);
     } catch (const tools::Interrupted& interrupted) {
-        return fail(interrupted.what(), kInterrupted);
+        return fail(interrupted.what(), tools::kExitInterrupted);
     } catch (const std::exception& error) {
-        return fail(error.what(), kFailed);
+        return fail(reason_of(error), tools::kExitFailed);
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace patina::tools;
+    prepare_standard_streams();
+    const int exit_code = run_command(argc, argv);
+    if (exit_code != kExitDone && exit_code != kExitShort) return exit_code;
+    if (const auto failure = standard_output_failure()) return fail(*failure, kExitFailed);
+    return exit_code;
 }

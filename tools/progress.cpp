@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "engine/core/printable.h"
+#include "tools/standard_streams.h"
+
 namespace patina::tools {
 
 namespace {
@@ -29,20 +32,21 @@ void Progress::update(uint32_t done, const std::string& detail) {
     if (now - last_ < interval) return;
     last_ = now;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const std::string line = fmt::format("frame {}/{}  {:.1f} frames/s  {}", done, total_, done / seconds, detail);
+    const std::string line =
+        fmt::format("frame {}/{}  {:.1f} frames/s  {}", done, total_, done / seconds, printable(detail));
     if (terminal_) {
-        fmt::print(stderr, "\r\033[K{}", line);
+        print_error("\r\033[K{}", line);
         std::fflush(stderr);
         line_open_ = true;
     } else {
-        fmt::print(stderr, "{}\n", line);
+        print_error("{}\n", line);
     }
 }
 
 void Progress::say(const std::string& message) {
     if (quiet_) return;
     clear_line();
-    fmt::print(stderr, "{}\n", message);
+    print_error("{}\n", printable(message));
 }
 
 }  // namespace patina::tools

@@ -1,20 +1,25 @@
 #include "tools/render.h"
 
 #include <deque>
+#include <exception>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "sensor/new_folder.h"
+#include "sensor/output/apart.h"
+#include "sensor/output/new_folder.h"
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
 #include "sensor/text_file.h"
 #include "tools/export/drawing.h"
 #include "tools/export/video.h"
 #include "tools/frame_dumps.h"
+#include "tools/inputs.h"
 #include "tools/orbit.h"
 #include "tools/progress.h"
 #include "tools/run_lights.h"
+#include "tools/shortfalls.h"
+#include "tools/standard_streams.h"
 
 namespace patina::tools {
 
@@ -51,24 +56,24 @@ Drawing draw_view(const ModelView& view, Show show, float exposure) {
 void check(const RenderOptions& options) {
     if (options.out.empty() && options.video.empty())
         throw Error("render needs a place to write to: give --out FOLDER or --video FILE");
-    const bool needs_reflectance =
-        options.show == Show::kKd || options.show == Show::kLabels || !options.relight.empty();
-    if (needs_reflectance && options.lights.empty() && options.lighting.empty()) {
-        throw Error(options.relight.empty() ? "albedo and segments need" : "other lights need",
-                    " a reconstruction with lights: give --lights FILE or --lighting SEQUENCE");
-    }
+    if (options.show == Show::kLabels && options.labels == "off")
+        throw Error("--show labels needs segments, but --labels is off");
 }
 
 /// Where finished pictures go.
 class PictureSink {
   public:
     /// A folder that cannot be written to is told at once; a video needs to know its pictures first.
-    explicit PictureSink(const RenderOptions& options) {
-        if (!options.out.empty()) folder_.emplace(options.out);
+    explicit PictureSink(const RenderOptions& options) : inputs_(inputs_of(options)) {
+        for (const std::filesystem::path& file : {options.poses, options.relight}) {
+            if (!file.empty()) inputs_.push_back(file);
+        }
+        if (!options.video.empty()) sensor::expect_apart(options.video, inputs_);
+        if (!options.out.empty()) folder_.emplace(options.out, inputs_);
     }
 
     void open_video(const std::filesystem::path& file, Extent2D extent, double fps) {
-        video_.emplace(file, extent, fps);
+        video_.emplace(file, extent, fps, inputs_);
     }
 
     void write(const Drawing& picture) {
@@ -80,12 +85,20 @@ class PictureSink {
         ++count_;
     }
 
+    /// A folder that cannot be put in place costs no video, and a video that is not whole no picture.
     void finish() {
+        std::exception_ptr failure;
+        try {
+            if (folder_) folder_->finish();
+        } catch (const std::exception&) {
+            failure = std::current_exception();
+        }
         if (video_) video_->finish();
-        if (folder_) folder_->finish();
+        if (failure) std::rethrow_exception(failure);
     }
 
   private:
+    std::vector<std::filesystem::path> inputs_;
     std::optional<sensor::NewFolder> folder_;
     std::optional<VideoWriter> video_;
     uint32_t count_ = 0;
@@ -133,7 +146,7 @@ void render_views(const RenderOptions& options, SequenceFusion& fusion, const In
 
 }  // namespace
 
-void render(const RenderOptions& options) {
+Outcome render(const RenderOptions& options) {
     const InterruptGuard interrupt;
     check(options);
     PictureSink sink(options);
@@ -142,8 +155,11 @@ void render(const RenderOptions& options) {
         for (const sensor::StampedPose& pose : sensor::read_trajectory(options.poses))
             given.push_back(pose.world_from_camera);
     }
-    const Illumination other = options.relight.empty() ? Illumination{} : illumination_from_file(options.relight);
+    if (!options.relight.empty()) illumination_from_file(options.relight);  // a wrong one is told at once
     SequenceFusion fusion(options, interrupt);
+    for (RigidTransform& pose : given) pose[3] -= glm::dvec4(fusion.world_offset_m(), 0);
+    const Illumination other =
+        options.relight.empty() ? Illumination{} : illumination_from_file(options.relight, fusion.world_offset_m());
     const Intrinsics& recorded = fusion.info().color;
     const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
     const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : fusion.info().fps;
@@ -156,7 +172,11 @@ void render(const RenderOptions& options) {
         fusion.reconstruction().relight(point_lights(other), other.ambient);
     render_views(options, fusion, camera, poses, sink);
     sink.finish();
-    if (!options.quiet) fmt::print("{} views\n", poses.size());
+    Outcome outcome;
+    note_shortfalls(fusion, outcome);
+    outcome.print(options.quiet);
+    if (!options.quiet) print_out("{} views\n", poses.size());
+    return outcome;
 }
 
 }  // namespace patina::tools

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/core/image.h"
+#include "tools/outcome.h"
 #include "tools/sequence_fusion.h"
 
 namespace patina::tools {
@@ -31,7 +32,8 @@ struct RenderOptions : SequenceOptions {
 };
 
 /// Reconstructs a sequence and renders views of it, as pictures (8-bit sRGB, clipped) and as a video; both appear whole
-/// or not at all. Lens distortion is left out. Throws Error for whatever stops it, Interrupted when the user does.
-void render(const RenderOptions& options);
+/// or not at all. Lens distortion is left out. Returns what the reconstruction falls short of. Throws Error for
+/// whatever stops it, Interrupted when the user does.
+Outcome render(const RenderOptions& options);
 
 }  // namespace patina::tools

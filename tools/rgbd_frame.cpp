@@ -26,7 +26,7 @@ RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame) 
 }
 
 float shutter_share(const sensor::SequenceInfo& info, const sensor::Frame& frame, double before_s) {
-    if (info.rendered) return 0;
+    if (!info.motion_blur) return 0;
     const double open_s = info.exposure_known ? frame.exposure.exposure_s : 0.5 / info.fps;
     const double since_s = frame.timestamp_s - before_s;
     return since_s > open_s ? static_cast<float>(open_s / since_s) : 1.0f;

@@ -9,7 +9,7 @@ namespace patina::tools {
 RgbdFrame to_rgbd(const sensor::SequenceInfo& info, const sensor::Frame& frame);
 
 /// Of the time since the frame before, taken at `before_s`, the share in which the colour camera's shutter was open.
-/// Where the exposure is not known, half a frame's time is assumed; rendered pictures are of an instant.
+/// Where the exposure is not known, half a frame's time is assumed; 0 where the sequence has no motion blur.
 float shutter_share(const sensor::SequenceInfo& info, const sensor::Frame& frame, double before_s);
 
 }  // namespace patina::tools

@@ -1,19 +1,26 @@
 #include "tools/run.h"
 
-#include <algorithm>
 #include <chrono>
-#include <fstream>
+#include <exception>
+#include <functional>
 
 #include <fmt/format.h>
 
+#include "engine/core/expect_path.h"
+#include "engine/core/printable.h"
 #include "engine/graph/plan/plan.h"
+#include "sensor/output/apart.h"
+#include "sensor/output/output_file.h"
+#include "sensor/text_file.h"
 #include "tools/export/report.h"
+#include "tools/export/run_id.h"
 #include "tools/export/run_record.h"
 #include "tools/frame_dumps.h"
-#include "tools/run_lights.h"
-#include "tools/run_settings.h"
-#include "tools/run_specular.h"
+#include "tools/inputs.h"
+#include "tools/make_record.h"
 #include "tools/scene_files.h"
+#include "tools/shortfalls.h"
+#include "tools/standard_streams.h"
 #include "tools/version.h"
 
 namespace patina::tools {
@@ -24,76 +31,94 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-PassTime summarised(const graph::Timing& timing) {
-    std::vector<float> sorted = timing.samples_ms;
-    std::sort(sorted.begin(), sorted.end());
-    return {timing.name, sorted.size(), sorted.front(), sorted[sorted.size() / 2], sorted.back()};
+std::filesystem::path with_extension(const std::filesystem::path& dump_graph, const char* extension) {
+    return dump_graph.string() + extension;
 }
 
-/// Told before the work starts, although the graph is written at its end.
-void check_graph_folder(const std::filesystem::path& dump_graph) {
-    const std::filesystem::path parent = dump_graph.parent_path();
-    if (!parent.empty() && !std::filesystem::is_directory(parent)) {
-        throw Error("the graph cannot be written to '", dump_graph.string(), "': there is no folder '", parent.string(),
-                    "'");
+/// Told before the work starts, although the graph is written at its end. It may go to the results' folder, which need
+/// not exist yet, but not in place of a result.
+void check_dump_graph(const RunOptions& options, const std::vector<std::filesystem::path>& inputs) {
+    if (options.dump_graph.empty()) return;
+    const std::filesystem::path out = sensor::resolved(options.out);
+    for (const char* extension : {".dot", ".json"}) {
+        const std::filesystem::path file = with_extension(options.dump_graph, extension);
+        sensor::expect_apart(file, inputs);
+        const std::filesystem::path place = sensor::resolved(file);
+        const std::filesystem::path name = place.lexically_relative(out);
+        if (is_result_name(ResultKind::kRun, name))
+            throw Error("the graph cannot be written to '", file.string(), "': a result has that name");
+        if (place.parent_path() != out) expect_place_for(file);
     }
 }
 
 void write_text(const std::filesystem::path& path, const std::string& content) {
-    std::ofstream out(path, std::ios::binary);
-    out << content;
-    if (!out.flush()) throw Error("the file '", path.string(), "' cannot be written");
+    sensor::OutputFile file(path);
+    sensor::write_bytes(file.partial_path(), content);
+    file.finish();
 }
 
-/// One run from source to folder.
+/// One run from source to folder. What fails after frames were fused costs itself alone: everything else is written
+/// where it still can be, the most valuable first.
 class Run {
   public:
     Run(const RunOptions& options, const InterruptGuard& interrupt, OutputFolder& folder)
         : options_(options),
+          interrupt_(interrupt),
           folder_(folder),
           fusion_(options, interrupt),
           reconstruction_(fusion_.reconstruction()),
           dumps_(folder, fusion_.info().frames, options.dump_every) {}
 
+    /// Throws what stopped it before a frame was fused.
     void fuse_all() {
         try {
             fusion_.fuse_all([this](const sensor::Frame& frame) { after(frame); });
-        } catch (const Interrupted&) {
-            dumps_.finish();
-            throw;
+        } catch (const Interrupted& interrupted) {
+            if (fusion_.ledger().used() == 0) throw;
+            ended_ = interrupted.what();
+            if (!options_.quiet)
+                print_error("{}: what was fused is being written; an interrupt after a second ends that too\n",
+                            printable(ended_));
+        } catch (const std::exception& error) {
+            if (fusion_.ledger().used() == 0) throw;
+            ended_ = fmt::format("failed after {} of {} frames: {}", fusion_.ledger().read(), fusion_.info().frames,
+                                 reason_of(error));
+            failure_ = reason_of(error);
         }
-        dumps_.finish();
         times_s_.emplace_back("frames", seconds_since(start_));
     }
 
-    void write_results() {
-        const auto start = Clock::now();
-        const Mesh mesh = reconstruction_.extract_surface();
-        times_s_.emplace_back("surface", seconds_since(start));
-        check_validation();
-        fusion_.stop_if_interrupted();
-        const SceneFiles scene(reconstruction_.sample_reflectance(mesh), fusion_.lights(),
-                               fusion_.illumination().ambient,
-                               options_.labels == "truth" ? fusion_.truth().names() : std::vector<std::string>());
-        const GlbSummary summary = scene.write(folder_, mesh, {.version = kVersion, .name = fusion_.info().name});
-        folder_.write("trajectory.txt", trajectory_text(fusion_.poses()));
-        if (fusion_.settings().gains) folder_.write("gains.txt", fusion_.gains_text());
-        if (options_.hold_out > 0) compare_held_out();
-        if (!options_.dump_graph.empty()) {
-            write_text(options_.dump_graph.string() + ".dot", graph_dot_);
-            write_text(options_.dump_graph.string() + ".json", graph_json_);
+    Outcome write_results() {
+        if (ended_.empty()) check_validation();
+        // All of this is on the host.
+        attempt("trajectory.txt", [&] { folder_.write("trajectory.txt", trajectory_text(fusion_.world_poses())); });
+        if (fusion_.settings().gains) attempt("gains.txt", [&] { folder_.write("gains.txt", fusion_.gains_text()); });
+        write_scene();
+        if (scene_) attempt("the last pictures", [&] { dumps_.finish(); });
+        if (options_.hold_out > 0 && ended_.empty()) {
+            if (interrupt_.requested()) {
+                problems_.push_back("held-out pictures were not compared: interrupted");
+            } else {
+                attempt("the comparison with held-out pictures", [&] { compare_held_out(); });
+            }
         }
-        times_s_.emplace_back("total", seconds_since(start_));
-        RunRecord record = make_record(summary);
-        scene.tell(record);
-        folder_.write("report.html", report_html(record, dumps_.previews()));
-        fusion_.stop_if_interrupted();
-        folder_.write("run.json", run_json(record));
-        if (!options_.quiet) {
-            fmt::print("{} of {} frames, {} triangles in {}\n", fusion_.ledger().used(), fusion_.info().frames,
-                       summary.triangles, folder_.path().string());
-            for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
+        try {
+            write_record();
+        } catch (const std::exception& error) {
+            keep_without_record(reason_of(error));
         }
+        place_ = folder_.path();
+        if (ended_.empty()) {
+            folder_.commit();
+        } else {
+            place_ = folder_.commit_unfinished();
+        }
+        // It may go to the results' folder.
+        if (!options_.dump_graph.empty()) attempt("the graph", [&] { write_graph(); });
+        const Outcome outcome = outcome_of_run();
+        tell(outcome);
+        if (failure_.empty()) return outcome;
+        throw Error(failure_, "; '", place_.string(), "' holds what could still be written");
     }
 
   private:
@@ -110,24 +135,48 @@ class Run {
         }
     }
 
+    /// Does a part of the results; its failure is one of the run's shortfalls.
+    void attempt(const char* what, const std::function<void()>& work) {
+        try {
+            work();
+        } catch (const std::exception& error) {
+            problems_.push_back(fmt::format("{} could not be written: {}", what, reason_of(error)));
+            folder_.discard_staged();
+        }
+    }
+
+    /// The mesh; without it the run has failed, though what else there is is written.
+    void write_scene() {
+        const auto start = Clock::now();
+        try {
+            const Mesh mesh = reconstruction_.extract_surface();
+            times_s_.emplace_back("surface", seconds_since(start));
+            MeshReflectance reflectance;
+            attempt("what the surface reflects", [&] { reflectance = reconstruction_.sample_reflectance(mesh); });
+            std::vector<std::string> names;
+            if (options_.labels == "truth") attempt("the objects' names", [&] { names = fusion_.truth().names(); });
+            scene_.emplace(std::move(reflectance), fusion_.illumination(), std::move(names));
+            summary_ = scene_->write(
+                folder_, mesh,
+                {.version = kVersion, .name = fusion_.info().name, .world_offset_m = fusion_.world_offset_m()});
+        } catch (const std::exception& error) {
+            scene_.reset();
+            folder_.discard_staged();
+            if (ended_.empty()) ended_ = fmt::format("failed after the last frame: {}", reason_of(error));
+            if (failure_.empty()) failure_ = reason_of(error);
+        }
+    }
+
+    void write_graph() const {
+        write_text(with_extension(options_.dump_graph, ".dot"), graph_dot_);
+        write_text(with_extension(options_.dump_graph, ".json"), graph_json_);
+    }
+
     void compare_held_out() {
         const auto start = Clock::now();
         reconstruction_.refine_all();
         held_out_ = fusion_.held_out().compare(reconstruction_, fusion_.info(), folder_);
         times_s_.emplace_back("held_out", seconds_since(start));
-    }
-
-    /// Per channel; empty where no gains were estimated.
-    std::vector<ValueRange> gain_ranges() {
-        std::vector<ValueRange> ranges;
-        if (reconstruction_.gains().empty()) return ranges;
-        for (glm::length_t channel = 0; channel < 3; ++channel) {
-            std::vector<float> sorted;
-            for (const gpu::ColorGains& gains : reconstruction_.gains()) sorted.push_back(gains.gain[channel]);
-            std::sort(sorted.begin(), sorted.end());
-            ranges.push_back({sorted.front(), sorted[sorted.size() / 2], sorted.back()});
-        }
-        return ranges;
     }
 
     void check_validation() {
@@ -136,150 +185,86 @@ class Run {
         }
     }
 
-    RunRecord make_record(const GlbSummary& scene) {
-        RunRecord record;
-        record.version = kVersion;
-        const vulkan::DeviceCaps& caps = fusion_.device().caps();
-        record.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
-        record.seed = options_.seed;
-        record.settings = settings_json(fusion_.settings());
-        record.settings["lighting"] = options_.lighting;
-        record.lights = lights_json(fusion_.illumination());
-        record.settings["labels"] = options_.labels;
-        record.settings["specular"] = specular_mode(fusion_.settings());
-        record.settings["truth_materials"] = options_.truth_materials;
-        record.settings["sequence"] = options_.sequence;
-        record.settings["frames"] = options_.frames;
-        record.settings["hold_out"] = options_.hold_out;
-        record.settings["dump_every"] = options_.dump_every;
-        record.sequence = fusion_.info();
-        record.frames = {fusion_.ledger().read(), fusion_.ledger().used(), fusion_.ledger().skipped()};
-        const gpu::MapCounters& counters = reconstruction_.counters();
-        const uint64_t capacity = options_.settings.map.capacity_blocks;
-        record.voxel_pool = {fusion_.blocks_used(), capacity, counters.refused_blocks};
-        const ObservationCounters& observed = reconstruction_.observation_counters();
-        if (const auto& reflectance = fusion_.settings().reflectance) {
-            record.observation_pool = {observed.records.high_water, reflectance->capacity_records,
-                                       observed.records.refused_blocks, observed.blocks.refused_blocks};
-        }
-        for (const auto& pool : reconstruction_.map().memory()) {
-            record.memory.push_back({pool.name, pool.bytes, fusion_.blocks_used(), capacity});
-        }
-        if (const SegmentationModel* segmentation = reconstruction_.segmentation()) {
-            for (const auto& pool : segmentation->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
-        }
-        if (ReflectanceModel* reflectance = reconstruction_.reflectance()) {
-            for (const auto& pool : reflectance->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
-        }
-        if (const SpecularModel* specular = reconstruction_.specular()) {
-            for (const auto& pool : specular->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
-        }
-        if (const TrackingModel* tracking = reconstruction_.tracking()) {
-            for (const auto& pool : tracking->memory()) record.memory.push_back({pool.name, pool.bytes, 0, 0});
-        }
-        if (const KeyframeModel* model = reconstruction_.keyframes())
-            record.memory.push_back({"keyframes", model->store().bytes(), 0, 0});
-        record.memory.push_back({"transient resources", reconstruction_.runner().transient_bytes(), 0, 0});
-        record.totals = {{"vertices", scene.vertices},
-                         {"triangles", scene.triangles},
-                         {"degenerate triangles left out", scene.degenerate_triangles},
-                         {"blocks removed without surface", counters.deleted_blocks}};
-        if (reconstruction_.segmentation()) add_segment_totals(record);
-        const gpu::KeyframeCounters keyframes = reconstruction_.keyframe_counters();
-        if (reconstruction_.keyframes()) record.totals.emplace_back("keyframes", keyframes.used);
-        record.tracking = fusion_.tracked();
-        record.color_gains = gain_ranges();
+    Outcome outcome_of_run() {
+        Outcome outcome;
+        note_shortfalls(fusion_, outcome);
+        if (!ended_.empty()) outcome.fall_short(ended_);
+        if (scene_ && summary_.triangles == 0)
+            outcome.fall_short("the surface is empty: from none of the frames a triangle was reconstructed");
+        if (!dumps_.problem().empty()) outcome.fall_short(dumps_.problem());
+        for (const std::string& problem : problems_) outcome.fall_short(problem);
+        return outcome;
+    }
+
+    /// report.html and run.json, which comes last.
+    void write_record() {
+        RunRecord record = make_record(options_, fusion_, summary_);
+        attempt("the count of keyframes", [&] { add_keyframes(record, fusion_); });
+        record.finished = ended_.empty();
+        record.ended = ended_;
         record.held_out = held_out_;
-        record.warnings = warnings(counters);
-        if (keyframes.refused > 0) {
-            record.warnings.push_back(
-                fmt::format("the store of keyframes was full: {} were refused, its capacity is {}; raise "
-                            "keyframes.capacity",
-                            keyframes.refused, fusion_.settings().keyframes->store.capacity));
-        }
-        for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
-            if (!timing.samples_ms.empty()) record.passes.push_back(summarised(timing));
-        }
-        record.passes.push_back(summarised(reconstruction_.runner().host_timing()));
+        if (scene_) scene_->tell(record);
+        times_s_.emplace_back("total", seconds_since(start_));
         record.times_s = times_s_;
-        return record;
+        record.shortfalls = outcome_of_run().shortfalls();
+        attempt("report.html", [&] { folder_.write("report.html", report_html(record, dumps_.previews())); });
+        record.files = folder_.files();
+        record.files.push_back("run.json");
+        record.id = run_id(record, folder_.digest());
+        attempt("the run's id in its pictures", [&] { dumps_.stamp(record.id); });
+        record.shortfalls = outcome_of_run().shortfalls();
+        folder_.write("run.json", run_json(record));
+        warnings_ = std::move(record.warnings);
     }
 
-    void add_segment_totals(RunRecord& record) {
-        const gpu::SegmentCounters& segments = reconstruction_.segment_counters();
-        const LabelStability& stability = reconstruction_.label_stability();
-        record.totals.emplace_back("segments", segments.live);
-        record.totals.emplace_back("labels made", segments.created);
-        record.totals.emplace_back("labels merged", segments.merged);
-        record.totals.emplace_back("labels pruned", segments.pruned);
-        record.totals.emplace_back("votes for labels of voxels after the first frames", stability.voxels);
-        record.totals.emplace_back("of these, changes from one label to another", stability.flips);
-        record.totals.emplace_back("voxels in sight in these frames, about", static_cast<uint64_t>(stability.seen));
+    /// Results without run.json cannot be put in place: they stay under another name.
+    [[noreturn]] void keep_without_record(const std::string& reason) {
+        const std::string why = failure_.empty() ? reason : failure_ + "; " + reason;
+        const std::optional<std::filesystem::path> kept = folder_.keep();
+        if (!kept) throw Error(why);
+        throw Error(why, "; '", kept->string(), "' holds what could still be written");
     }
 
-    std::vector<std::string> warnings(const gpu::MapCounters& counters) {
-        std::vector<std::string> list;
-        if (const auto warning = fusion_.reach_warning()) list.push_back(*warning);
-        if (counters.refused_blocks > 0) {
-            list.push_back(
-                fmt::format("the voxel pool was full: {} requests for a block were refused, its capacity is {}; raise "
-                            "map.capacity_blocks, or map.voxel_m",
-                            counters.refused_blocks, options_.settings.map.capacity_blocks));
-        }
-        const ObservationCounters& observed = reconstruction_.observation_counters();
-        if (const uint32_t refused = observed.records.refused_blocks; refused > 0) {
-            list.push_back(
-                fmt::format("the pool of observed voxels was full: {} were refused, its capacity is {}; raise "
-                            "reflectance.capacity_records, or reflectance.voxel_m",
-                            refused, fusion_.settings().reflectance->capacity_records));
-        }
-        if (const uint32_t refused = observed.blocks.refused_blocks; refused > 0) {
-            list.push_back(
-                fmt::format("the pool of observed blocks was full: {} were refused, its capacity is {}; raise "
-                            "reflectance.capacity_blocks",
-                            refused, fusion_.settings().reflectance->capacity_blocks));
-        }
-        if (const uint32_t refused = reconstruction_.segment_counters().refused; refused > 0) {
-            list.push_back(fmt::format(
-                "{} segments of frames found all labels in use; raise segmentation.capacity_labels", refused));
-        }
-        if (counters.refused_samples > 0) {
-            list.push_back(
-                fmt::format("the voxel table was full: {} ray samples were left out", counters.refused_samples));
-        }
-        if (counters.outside_samples > 0) {
-            list.push_back(
-                fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",
-                            counters.outside_samples));
-        }
-        return list;
+    /// The summary; its first lines are what the results fall short of.
+    void tell(const Outcome& outcome) const {
+        if (failure_.empty()) outcome.print(options_.quiet);
+        if (options_.quiet || !failure_.empty()) return;
+        print_out("{} of {} frames, {} triangles in {}\n", fusion_.ledger().used(), fusion_.info().frames,
+                  summary_.triangles, printable(place_.string()));
+        const std::string& found_by = fusion_.illumination().found_by;
+        if (found_by != "file" && found_by != "none") print_lights(fusion_.illumination());
+        if (!fusion_.materials_missing().empty()) print_out("{}\n", printable(fusion_.materials_missing()));
+        for (const std::string& warning : warnings_) print_out("warning: {}\n", printable(warning));
     }
 
     const RunOptions& options_;
+    const InterruptGuard& interrupt_;
     OutputFolder& folder_;
     Clock::time_point start_ = Clock::now();
     SequenceFusion fusion_;
     Reconstruction& reconstruction_;
     FrameDumps dumps_;
+    std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
+    GlbSummary summary_;
     std::optional<HeldOutRecord> held_out_;
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;
+    std::string ended_;            ///< why the run ended before its time; empty where it did not
+    std::string failure_;          ///< the error that did it; empty where the user did
+    std::filesystem::path place_;  ///< where the results went
+    std::vector<std::string> problems_, warnings_;
 };
 
 }  // namespace
 
-void run(const RunOptions& options) {
+Outcome run(const RunOptions& options) {
     const InterruptGuard interrupt;  // from the first file to the last, so that none is left half-written
-    OutputFolder folder(options.out);
-    check_graph_folder(options.dump_graph);
-    try {
-        Run job(options, interrupt, folder);
-        job.fuse_all();
-        job.write_results();
-    } catch (const Interrupted& interrupted) {
-        throw Interrupted(interrupted.what(), "; '", folder.path().string(),
-                          "' holds what was complete, and no run.json");
-    }
+    const std::vector<std::filesystem::path> inputs = inputs_of(options);
+    OutputFolder folder(options.out, inputs);
+    check_dump_graph(options, inputs);
+    Run job(options, interrupt, folder);
+    job.fuse_all();
+    return job.write_results();
 }
 
 }  // namespace patina::tools

@@ -7,7 +7,9 @@
 
 #include <toml++/toml.h>
 
+#include "engine/core/did_you_mean.h"
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 
 namespace patina::tools {
 
@@ -17,7 +19,7 @@ namespace {
 template <class Settings, class Visit>
 void for_each_setting(Settings& s, Visit&& visit) {
     visit("map.voxel_m", s.map.voxel_m);
-    visit("map.capacity_blocks", s.map.capacity_blocks);
+    visit("map.capacity_blocks", s.map.limit_blocks);
     visit("fusion.truncation_m", s.fusion.truncation_m);
     visit("fusion.truncation_slope", s.fusion.truncation_slope);
     visit("fusion.max_depth_m", s.fusion.max_depth_m);
@@ -34,7 +36,7 @@ void for_each_setting(Settings& s, Visit&& visit) {
     visit("view.every_frame", s.view_every_frame);
     visit("map.remove_every", s.remove_every);
     if (s.segmentation) {
-        visit("segmentation.capacity_labels", s.segmentation->capacity_labels);
+        visit("segmentation.capacity_labels", s.segmentation->limit_labels);
         visit("segmentation.min_pixels", s.segmentation->frame.min_pixels);
         visit("segmentation.stride_px", s.segmentation->frame.stride_px);
         visit("segmentation.crease_degrees", s.segmentation->frame.edges.crease_degrees);
@@ -60,8 +62,8 @@ void for_each_setting(Settings& s, Visit&& visit) {
     }
     if (s.reflectance) {
         visit("reflectance.voxel_m", s.reflectance->voxel_m);
-        visit("reflectance.capacity_blocks", s.reflectance->capacity_blocks);
-        visit("reflectance.capacity_records", s.reflectance->capacity_records);
+        visit("reflectance.capacity_blocks", s.reflectance->limit_blocks);
+        visit("reflectance.capacity_records", s.reflectance->limit_records);
         visit("reflectance.shadows", s.reflectance->refine.shadows);
         visit("reflectance.first_marched_records", s.reflectance->refine.first_marched_records);
         visit("reflectance.marched_records", s.reflectance->refine.marched_records);
@@ -118,8 +120,8 @@ void for_each_setting(Settings& s, Visit&& visit) {
     }
 }
 
-std::string known_keys() {
-    std::string keys;
+std::vector<std::string> known_keys() {
+    std::vector<std::string> keys;
     ReconstructionSettings defaults;
     defaults.gains.emplace();
     defaults.reflectance.emplace();
@@ -127,9 +129,17 @@ std::string known_keys() {
     defaults.specular.emplace();
     defaults.tracking.emplace();
     defaults.keyframes.emplace();
-    for_each_setting(defaults,
-                     [&](const char* key, const auto&) { keys += (keys.empty() ? "" : ", ") + std::string(key); });
+    for_each_setting(defaults, [&](const char* key, const auto&) { keys.emplace_back(key); });
     return keys;
+}
+
+/// What may be meant by a key that there is not: the most similar one, else all there are.
+std::string instead_of(const std::string& key) {
+    const std::vector<std::string> keys = known_keys();
+    if (const std::string meant = did_you_mean(key, keys); !meant.empty()) return meant;
+    std::string list;
+    for (const std::string& known : keys) list += (list.empty() ? "; known are " : ", ") + known;
+    return list;
 }
 
 /// Stores a number where it fits the setting's type; false where it does not.
@@ -166,7 +176,7 @@ void set(ReconstructionSettings& settings, const std::string& key, std::optional
                 std::is_floating_point_v<std::remove_reference_t<decltype(setting)>> ? "number" : "whole number");
         }
     });
-    if (!known) throw Error(where, ": there is no setting '", key, "'; known are ", known_keys());
+    if (!known) throw Error(where, ": there is no setting '", key, "'", instead_of(key));
 }
 
 std::optional<double> number_of(const toml::node& node) {
@@ -178,10 +188,10 @@ std::optional<double> number_of(const toml::node& node) {
 }  // namespace
 
 void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file) {
-    if (!std::filesystem::is_regular_file(file)) throw Error("the settings file '", file.string(), "' does not exist");
+    const std::vector<uint8_t> bytes = read_file(file, limits::kSettingsBytes);
     toml::table root;
     try {
-        root = toml::parse_file(file.string());
+        root = toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string());
     } catch (const toml::parse_error& error) {
         throw Error(file.string(), ", line ", error.source().begin.line, ": ", error.description());
     }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/core/input_file.h"
 #include "sensor/picture_file.h"
 
 namespace patina::tools {
@@ -23,7 +24,7 @@ std::vector<sensor::Material> RunTruth::materials() const {
 
 std::vector<std::string> RunTruth::names() const {
     std::vector<std::string> names;
-    if (!rendered_ && !std::filesystem::exists(folder_ / "materials.json")) return names;
+    if (!rendered_ && !path_exists(folder_ / "materials.json")) return names;
     for (const sensor::Material& material : materials()) {
         if (material.id >= names.size()) names.resize(material.id + size_t{1});
         names[material.id] = material.name;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/printable.h"
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
 #include "sensor/synthetic/environment.h"
@@ -20,6 +21,7 @@
 #include "sensor/write_sequence.h"
 #include "tools/interrupt.h"
 #include "tools/progress.h"
+#include "tools/standard_streams.h"
 #include "tools/truth_frame.h"
 
 namespace patina::tools {
@@ -50,7 +52,6 @@ void set_extent(sensor::Scene& scene, Extent2D extent) {
 sensor::Scene scene_of(const SynthOptions& options) {
     sensor::Scene scene = sensor::load_scene(options.scene, options.changes);
     sensor::Recording& recording = scene.recording;
-    if (options.seed) recording.seed = recording.render.seed = *options.seed;
     if (options.noise) recording.noise = with_preset(recording.noise, *options.noise);
     if (options.pose_noise) {
         recording.noise.pose_translation_m = options.pose_noise->translation_m;
@@ -165,7 +166,8 @@ void synthesise(vulkan::Device& device, const SynthOptions& options) {
         dark_writer.finish();
     }
     writer.finish();
-    if (!options.quiet) fmt::print("{} frames of {} in {}\n", options.frames, scene.name, options.out.string());
+    if (!options.quiet)
+        print_out("{} frames of {} in {}\n", options.frames, printable(scene.name), printable(options.out.string()));
 }
 
 }  // namespace patina::tools

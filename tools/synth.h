@@ -26,7 +26,6 @@ struct SynthOptions {
     bool lighting = true;      ///< write lighting/ where the scene has a lighting sequence
     bool quiet = false;
     sensor::SceneChanges changes{};
-    std::optional<uint64_t> seed{};      ///< of noise and of random samples
     std::optional<std::string> noise{};  ///< name of a preset; poses keep their noise
     std::optional<PoseNoise> pose_noise{};
     std::optional<bool> shadows{};

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/printable.h"
 #include "tools/example_file.h"
 #include "tools/example_renderer.h"
 #include "tools/interrupt.h"
 #include "tools/progress.h"
+#include "tools/standard_streams.h"
 
 namespace patina::tools {
 
@@ -71,7 +73,7 @@ void synthesise_hemi_images(vulkan::Device& device, const SynthHemiOptions& opti
     }
     writer.finish();
     if (!options.quiet)
-        fmt::print("{} examples of seed {} in {}\n", options.examples, options.seed, options.out.string());
+        print_out("{} examples of seed {} in {}\n", options.examples, options.seed, printable(options.out.string()));
 }
 
 }  // namespace patina::tools

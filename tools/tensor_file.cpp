@@ -7,8 +7,8 @@
 #include <span>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "sensor/json_file.h"
-#include "sensor/text_file.h"
 
 namespace patina::tools {
 
@@ -16,7 +16,6 @@ namespace {
 
 using sensor::JsonValue;
 
-constexpr uint64_t kMostHeaderBytes = 1 << 20;
 static_assert(std::endian::native == std::endian::little, "the file's numbers are little-endian");
 
 /// A tensor's bytes, from the header's end.
@@ -32,8 +31,8 @@ std::span<const uint8_t> header_of(const std::string& file, std::span<const uint
         throw Error(file, ": the header's length takes ", sizeof(length), " bytes, the file has ", bytes.size());
     }
     std::memcpy(&length, bytes.data(), sizeof(length));
-    if (length > kMostHeaderBytes) {
-        throw Error(file, ": the header's length is ", length, " bytes, at most ", kMostHeaderBytes, " are read");
+    if (length > limits::kHeaderBytes) {
+        throw Error(file, ": the header's length is ", length, " bytes, at most ", limits::kHeaderBytes, " are read");
     }
     if (length > bytes.size() - sizeof(length)) {
         throw Error(file, ": the header's length is ", length, " bytes, the file has ", bytes.size() - sizeof(length),
@@ -95,7 +94,7 @@ void check_side_by_side(const std::string& file, std::vector<Range> ranges, uint
 
 TensorFile read_tensor_file(const std::filesystem::path& file) {
     TensorFile result{file.string(), {}, {}};
-    const std::vector<uint8_t> bytes = sensor::read_bytes(file);
+    const std::vector<uint8_t> bytes = read_file(file, limits::kNetworkBytes);
     const std::span<const uint8_t> header_bytes = header_of(result.file, bytes);
     const std::span<const uint8_t> data = std::span(bytes).subspan(sizeof(uint64_t) + header_bytes.size());
     const JsonValue header = JsonValue::parse(result.file, header_bytes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -22,6 +23,9 @@ class Error : public std::runtime_error {
     template <class... Parts>
     explicit Error(const Parts&... parts) : std::runtime_error(text(parts...)) {}
 };
+
+/// What an exception means, in words for a message: std::bad_alloc's own is the name of a class.
+std::string reason_of(const std::exception& failure);
 
 namespace detail {
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line, const std::string& values);

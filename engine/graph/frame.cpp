@@ -154,7 +154,7 @@ Readback Frame::read_back(BufferId id, uint64_t offset, uint64_t bytes) {
 Readback Frame::read_back(BufferId id) { return read_back(id, 0, physical_[id.resource].bytes); }
 
 Readback Frame::read_back(ImageId id) {
-    const ImageShape& image = physical_[id.resource].shape;
+    const ImageShape image = shape(id);  // a copy: read_back() below adds a resource, which moves all others
     // Images have no byte size of their own; the check above must not see one.
     physical_[id.resource].bytes = image.extent.area() * vulkan::bytes_per_pixel(image.format);
     Readback target = read_back(BufferId{id}, 0, physical_[id.resource].bytes);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <deque>
 #include <list>
+#include <utility>
 
 #include "engine/graph/record.h"
 #include "engine/vulkan/context.h"
@@ -78,6 +79,12 @@ struct Slot {
     std::vector<PendingRead> reads;
     std::vector<Frame::Physical> resources;  ///< kept alive until the frame has finished
     std::shared_ptr<const Transients> transients;
+
+    /// Forgets a frame that was recorded and could not be submitted: its read-backs never become ready.
+    void drop_recording() {
+        reads.clear();
+        timed_passes.clear();
+    }
 };
 
 Slot::Slot(vulkan::Device& device, uint32_t index)
@@ -126,12 +133,14 @@ struct Runner::State {
 };
 
 Runner::Runner(vulkan::Device& device) : device_(device), state_(std::make_unique<State>(device)) {
-    vk::SemaphoreTypeCreateInfo type(vk::SemaphoreType::eTimeline, 0);
-    vk::SemaphoreCreateInfo info;
-    info.pNext = &type;
-    state_->timeline = device.context().device().createSemaphore(info);
-    device.context().set_name(state_->timeline, "graph.timeline");
-    for (uint32_t i = 0; i < kFramesInFlight; ++i) state_->slots.push_back(std::make_unique<Slot>(device, i));
+    vulkan::guarded("preparing to run frames", [&] {
+        vk::SemaphoreTypeCreateInfo type(vk::SemaphoreType::eTimeline, 0);
+        vk::SemaphoreCreateInfo info;
+        info.pNext = &type;
+        state_->timeline = device.context().device().createSemaphore(info);
+        device.context().set_name(state_->timeline, "graph.timeline");
+        for (uint32_t i = 0; i < kFramesInFlight; ++i) state_->slots.push_back(std::make_unique<Slot>(device, i));
+    });
 }
 
 Runner::~Runner() {
@@ -144,17 +153,26 @@ Runner::~Runner() {
 
 namespace {
 
+/// Adds the times of the slot's frame. Those that the device cannot give are left out; only a lost device throws.
 void collect_times(Runner::State& state, const vulkan::Context& context, Slot& slot) {
-    if (slot.timed_passes.empty()) return;
-    const uint32_t count = static_cast<uint32_t>(slot.timed_passes.size()) * 2;
-    const auto [result, ticks] = slot.queries.getResults<uint64_t>(0, count, count * sizeof(uint64_t), sizeof(uint64_t),
-                                                                   vk::QueryResultFlagBits::e64);
-    if (result != vk::Result::eSuccess) return;
-    for (size_t i = 0; i < slot.timed_passes.size(); ++i) {
-        const double ns = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * context.caps().timestamp_period_ns;
-        state.timing(slot.timed_passes[i]).samples_ms.push_back(static_cast<float>(ns * 1e-6));
+    const std::vector<std::string> passes = std::exchange(slot.timed_passes, {});
+    if (passes.empty()) return;
+    const uint32_t count = static_cast<uint32_t>(passes.size()) * 2;
+    std::vector<uint64_t> ticks;
+    try {
+        auto [result, read] = slot.queries.getResults<uint64_t>(0, count, count * sizeof(uint64_t), sizeof(uint64_t),
+                                                                vk::QueryResultFlagBits::e64);
+        if (result != vk::Result::eSuccess) return;
+        ticks = std::move(read);
+    } catch (const vk::DeviceLostError&) {
+        throw;
+    } catch (const vk::SystemError&) {
+        return;
     }
-    slot.timed_passes.clear();
+    for (size_t i = 0; i < passes.size(); ++i) {
+        const double ns = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * context.caps().timestamp_period_ns;
+        state.timing(passes[i]).samples_ms.push_back(static_cast<float>(ns * 1e-6));
+    }
 }
 
 /// Waits for the slot's last frame and takes what it brought.
@@ -197,6 +215,7 @@ const CachedShape& find_shape(Runner::State& state, vulkan::Device& device, cons
 Frame Runner::begin() {
     Slot& slot = *state_->slots[state_->submitted % kFramesInFlight];
     retire(*state_, device_.context(), slot);
+    slot.drop_recording();
     slot.upload.reset();
     slot.download.reset();
     state_->descriptors.trim();
@@ -226,15 +245,16 @@ void Runner::submit(Frame frame) {
         record(context, frame, *shape.compiled, *shape.transients, state_->descriptors, into);
         slot.commands.end();
     });
-    slot.resources = std::move(frame.physical_);
-    slot.transients = shape.transients;
-    slot.submitted = ++state_->submitted;
-    vulkan::guarded(text("submitting frame ", slot.submitted), [&] {
+    const uint64_t value = state_->submitted + 1;
+    vulkan::guarded(text("submitting frame ", value), [&] {
         const vk::CommandBufferSubmitInfo commands(*slot.commands);
-        const vk::SemaphoreSubmitInfo signal(*state_->timeline, slot.submitted,
-                                             vk::PipelineStageFlagBits2::eAllCommands);
+        const vk::SemaphoreSubmitInfo signal(*state_->timeline, value, vk::PipelineStageFlagBits2::eAllCommands);
         context.queue().submit2(vk::SubmitInfo2({}, {}, commands, signal));
     });
+    // Only now: nobody may wait for a frame that the device never got.
+    slot.resources = std::move(frame.physical_);
+    slot.transients = shape.transients;
+    slot.submitted = state_->submitted = value;
     state_->host.samples_ms.push_back(static_cast<float>(milliseconds_since(start)));
 }
 
@@ -253,6 +273,8 @@ void Runner::clear_timings() {
     state_->timing_index.clear();
     state_->host.samples_ms.clear();
 }
+
+void Runner::forget_shapes() { state_->shapes.clear(); }
 
 uint32_t Runner::compilations() const { return state_->compilations; }
 

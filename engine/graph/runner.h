@@ -52,6 +52,10 @@ class Runner {
     const Timing& host_timing() const;
     void clear_timings();
 
+    /// Gives back the memory of transient resources once the frames in flight have finished; shapes are compiled anew.
+    /// For when frames will have other sizes from now on.
+    void forget_shapes();
+
     /// How often a frame's shape was new and had to be compiled.
     uint32_t compilations() const;
     /// Bytes of device memory held for transient resources.

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
-#ifdef _WIN32
-#include <process.h>
-#define getpid _getpid
-#else
-#include <unistd.h>
-#endif
+#include "engine/vulkan/pipeline_cache.h"
 
 namespace patina::vulkan {
 
@@ -65,7 +60,11 @@ void Context::open_device(uint32_t index) {
     v12.timelineSemaphore = true;
     v12.shaderFloat16 = caps_.float16;
     v12.pNext = &v13;
-    vk::DeviceCreateInfo info({}, queue);
+    std::vector<const char*> extensions;
+    for (const auto& extension : physical_.enumerateDeviceExtensionProperties())
+        has_memory_budget_ |= std::string_view(extension.extensionName) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
+    if (has_memory_budget_) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    vk::DeviceCreateInfo info({}, queue, {}, extensions);
     info.pEnabledFeatures = &features;
     info.pNext = &v12;
     device_ = vk::raii::Device(physical_, info);
@@ -79,7 +78,7 @@ vk::raii::DeviceMemory Context::allocate(const std::string& name, uint64_t bytes
                                          vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred) {
     const std::string doing = text("allocating ", bytes, " bytes for '", name, "'");
     if (++allocations_ == options_.fail_allocation_at) {
-        throw Error("the Vulkan device ran out of memory while ", doing);
+        throw OutOfMemory("the Vulkan device ran out of memory while ", doing);
     }
     const auto properties = physical_.getMemoryProperties();
     const auto find = [&](vk::MemoryPropertyFlags flags) -> std::optional<uint32_t> {
@@ -96,6 +95,24 @@ vk::raii::DeviceMemory Context::allocate(const std::string& name, uint64_t bytes
         set_name(memory, name + ".memory");
         return memory;
     });
+}
+
+uint64_t Context::available_memory() const {
+    vk::PhysicalDeviceMemoryBudgetPropertiesEXT budget;
+    vk::PhysicalDeviceMemoryProperties2 properties;
+    if (has_memory_budget_) properties.pNext = &budget;  // a driver without the extension may warn of the structure
+    (*physical_).getMemoryProperties2(&properties, *physical_.getDispatcher());
+    const uint64_t held = static_cast<uint64_t>(allocated_bytes_.load());
+    uint64_t available = 0;
+    for (uint32_t i = 0; i < properties.memoryProperties.memoryHeapCount; ++i) {
+        const vk::MemoryHeap& heap = properties.memoryProperties.memoryHeaps[i];
+        if (!(heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal)) continue;
+        const uint64_t most = has_memory_budget_ ? budget.heapBudget[i] : heap.size;
+        const uint64_t used = (has_memory_budget_ ? budget.heapUsage[i] : held) + heap.size / 16;
+        available = std::max(available, most - std::min(used, most));
+    }
+    if (options_.memory_limit == 0) return available;
+    return std::min(available, options_.memory_limit - std::min(held, options_.memory_limit));
 }
 
 const Pipeline& Context::pipeline(const Shader& shader, const Specialization& constants) {
@@ -171,28 +188,18 @@ std::filesystem::path Context::pipeline_cache_file() const {
 }
 
 void Context::load_pipeline_cache() {
-    std::vector<char> data;
-    if (const auto file = pipeline_cache_file(); !file.empty()) {
-        std::ifstream in(file, std::ios::binary);
-        data.assign(std::istreambuf_iterator<char>(in), {});
-    }
+    std::vector<uint8_t> data;
+    if (const auto file = pipeline_cache_file(); !file.empty()) data = read_pipeline_cache(file);
     // Drivers check the header themselves and start empty when it is another driver's.
     pipeline_cache_ = device_.createPipelineCache({{}, data.size(), data.data()});
     set_name(pipeline_cache_, "patina.pipelines");
 }
 
 void Context::save_pipeline_cache() const noexcept {
-    // A cache that cannot be kept costs the next start some time and nothing else.
     try {
         const auto file = pipeline_cache_file();
-        if (file.empty() || pipelines_.empty()) return;
-        std::filesystem::create_directories(file.parent_path());
-        const auto temporary = std::filesystem::path(text(file.string(), '.', getpid()));
-        const std::vector<uint8_t> data = pipeline_cache_.getData();
-        std::ofstream(temporary, std::ios::binary)
-            .write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
-        std::filesystem::rename(temporary, file);
-    } catch (const std::exception&) {
+        if (!file.empty() && !pipelines_.empty()) write_pipeline_cache(file, pipeline_cache_.getData());
+    } catch (const std::exception&) {  // without the data there is nothing to keep
     }
 }
 

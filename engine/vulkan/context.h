@@ -50,9 +50,9 @@ auto guarded(const std::string& doing, Work&& work) {
     } catch (const vk::DeviceLostError&) {
         throw Error("the Vulkan device was lost while ", doing, "; the driver's log may say why");
     } catch (const vk::OutOfDeviceMemoryError&) {
-        throw Error("the Vulkan device ran out of memory while ", doing);
+        throw OutOfMemory("the Vulkan device ran out of memory while ", doing);
     } catch (const vk::OutOfHostMemoryError&) {
-        throw Error("the host ran out of memory while ", doing);
+        throw OutOfMemory("the host ran out of memory while ", doing);
     } catch (const vk::SystemError& error) {
         throw Error("Vulkan reported '", error.what(), "' while ", doing);
     }
@@ -89,6 +89,11 @@ class Context {
 
     vk::Sampler nearest_sampler() const { return *nearest_; }
 
+    /// Counts memory that was allocated (or, below 0, freed).
+    void note_memory(int64_t bytes) { allocated_bytes_ += bytes; }
+    /// See Device::available_memory.
+    uint64_t available_memory() const;
+
   private:
     void open_device(uint32_t index);
     void load_pipeline_cache();
@@ -104,6 +109,8 @@ class Context {
     vk::raii::PhysicalDevice physical_ = nullptr;
     DeviceCaps caps_;
     bool debug_names_ = false;
+    bool has_memory_budget_ = false;
+    std::atomic<int64_t> allocated_bytes_{0};
     vk::raii::Device device_ = nullptr;
     uint32_t queue_family_ = 0;
     vk::raii::Queue queue_ = nullptr;
@@ -115,8 +122,14 @@ class Context {
 };
 
 struct MemoryObject {
-    std::shared_ptr<Context> context;
+    MemoryObject() = default;
+    ~MemoryObject();
+    MemoryObject(const MemoryObject&) = delete;
+    MemoryObject& operator=(const MemoryObject&) = delete;
+
+    std::shared_ptr<Context> context;  ///< set once there is memory
     vk::raii::DeviceMemory memory = nullptr;
+    uint64_t bytes = 0;
 };
 
 struct BufferObject {

@@ -47,6 +47,10 @@ vk::ImageCreateInfo create_info(const ImageDesc& desc) {
             Usage::eStorage | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst};
 }
 
+MemoryObject::~MemoryObject() {
+    if (context) context->note_memory(-static_cast<int64_t>(bytes));
+}
+
 Buffer::Buffer(std::unique_ptr<BufferObject> object)
     : object_(std::move(object)),
       desc_(object_->desc),
@@ -131,9 +135,11 @@ MemoryRef allocate(const std::shared_ptr<Context>& context, const std::string& n
                    const vk::MemoryRequirements& needs, MemoryKind kind) {
     const Properties properties = properties_of(kind);
     auto memory = std::make_shared<MemoryObject>();
-    memory->context = context;
     memory->memory =
         context->allocate(name, needs.size, needs.memoryTypeBits, properties.required, properties.preferred);
+    memory->bytes = needs.size;
+    memory->context = context;
+    context->note_memory(static_cast<int64_t>(needs.size));
     return memory;
 }
 
@@ -161,8 +167,8 @@ void initialise_layout(Context& context, vk::Image image) {
 
 BufferRef Device::create_buffer(const BufferDesc& desc) {
     if (desc.bytes > caps().max_allocation) {
-        throw Error("the buffer '", desc.name, "' needs ", desc.bytes, " bytes, the device allocates at most ",
-                    caps().max_allocation, " at once");
+        throw OutOfMemory("the buffer '", desc.name, "' needs ", desc.bytes, " bytes, the device allocates at most ",
+                          caps().max_allocation, " at once");
     }
     const MemoryRef memory = allocate(context_, desc.name, requirements(*context_, desc), desc.memory);
     return create_placed_buffer(desc, memory, 0);
@@ -193,6 +199,8 @@ MemoryRequirement Device::requirement(const ImageDesc& desc) const {
     return {needs.size, needs.alignment};
 }
 
+uint64_t Device::available_memory() const { return context_->available_memory(); }
+
 void Device::wait_idle() {
     guarded("waiting for the device", [&] { context_->device().waitIdle(); });
 }
@@ -203,19 +211,45 @@ std::vector<std::string> Device::validation_messages() const {
 }
 
 ChunkedBuffer::ChunkedBuffer(Device& device, const std::string& name, uint64_t elements, uint32_t bytes_per_element,
-                             uint64_t chunk_elements, uint32_t max_chunks) {
-    const uint64_t chunk_bytes = chunk_elements * bytes_per_element;
-    if (chunk_bytes > device.caps().max_storage_range) {
-        throw Error("a chunk of the array '", name, "' takes ", chunk_bytes, " bytes, the device binds at most ",
+                             uint64_t chunk_elements, uint32_t max_chunks)
+    : device_(&device),
+      name_(name),
+      bytes_per_element_(bytes_per_element),
+      chunk_elements_(chunk_elements),
+      max_chunks_(max_chunks) {
+    const uint64_t most_bytes = chunk_elements * bytes_per_element;
+    if (most_bytes > device.caps().max_storage_range) {
+        throw Error("a chunk of the array '", name, "' takes ", most_bytes, " bytes, the device binds at most ",
                     device.caps().max_storage_range);
     }
-    const uint64_t needed = std::max<uint64_t>((elements + chunk_elements - 1) / chunk_elements, 1);
-    if (needed > max_chunks)
-        throw Error("the array '", name, "' needs ", needed, " chunks, at most ", max_chunks, " can be bound");
-    for (uint64_t i = 0; i < needed; ++i) {
-        const uint64_t here = std::min(chunk_elements, elements - i * chunk_elements);
-        chunks_.push_back(device.create_buffer({text(name, '[', i, ']'), here * bytes_per_element}));
-    }
+    add_chunks(elements);
+}
+
+uint64_t ChunkedBuffer::chunk_bytes(uint64_t chunk, uint64_t elements) const {
+    return std::min(chunk_elements_, elements - chunk * chunk_elements_) * bytes_per_element_;
+}
+
+void ChunkedBuffer::add_chunks(uint64_t elements) {
+    const uint64_t needed = std::max<uint64_t>((elements + chunk_elements_ - 1) / chunk_elements_, 1);
+    if (needed > max_chunks_)
+        throw Error("the array '", name_, "' needs ", needed, " chunks, at most ", max_chunks_, " can be bound");
+    elements_ = elements;
+    for (uint64_t i = chunks_.size(); i < needed; ++i)
+        chunks_.push_back(device_->create_buffer({text(name_, '[', i, ']'), chunk_bytes(i, elements)}));
+}
+
+ChunkedBuffer ChunkedBuffer::with_room_for(uint64_t elements) const {
+    PATINA_ASSERT(elements >= elements_, "the array '", name_, "' shrinks from ", elements_, " to ", elements);
+    ChunkedBuffer larger = *this;
+    if (chunk_bytes(chunks_.size() - 1, elements) != chunks_.back()->bytes()) larger.chunks_.pop_back();
+    larger.add_chunks(elements);
+    return larger;
+}
+
+uint64_t ChunkedBuffer::bytes_to_make(uint64_t elements) const {
+    const uint64_t last = chunks_.size() - 1;
+    const bool replaced = chunk_bytes(last, elements) != chunks_.back()->bytes();
+    return elements * bytes_per_element_ - bytes() + (replaced ? chunks_.back()->bytes() : 0);
 }
 
 uint64_t ChunkedBuffer::bytes() const {

@@ -6,9 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "engine/vulkan/resources.h"
 
 namespace patina::vulkan {
+
+/// Memory ran out, or one allocation was larger than the device makes.
+class OutOfMemory : public Error {
+  public:
+    using Error::Error;
+};
 
 /// How to open a device.
 struct DeviceOptions {
@@ -19,6 +26,8 @@ struct DeviceOptions {
     bool validation = false;
     /// Folder in which compiled pipelines are kept from run to run; empty keeps nothing.
     std::filesystem::path pipeline_cache_folder;
+    /// Device memory that pools may grow into, bytes in all; 0: as much as there is.
+    uint64_t memory_limit = 0;
     /// Fault injection for tests: the n-th memory allocation fails as if memory had run out; 0 fails none.
     uint32_t fail_allocation_at = 0;
 };
@@ -38,6 +47,7 @@ struct DeviceCaps {
     uint32_t max_shared_bytes = 0;
     uint32_t max_push_bytes = 0;
     uint32_t max_storage_buffers = 0;  ///< per stage
+    uint32_t max_storage_images = 0;   ///< per stage
     uint64_t max_storage_range = 0;    ///< bytes
     uint64_t max_texel_elements = 0;
     uint64_t max_allocation = 0;  ///< bytes
@@ -91,6 +101,11 @@ class Device {
     /// Bytes and alignment that such a resource takes in device memory.
     MemoryRequirement requirement(const BufferDesc& desc) const;
     MemoryRequirement requirement(const ImageDesc& desc) const;
+
+    /// Bytes of device memory that may still be allocated without crowding others out: what the driver's budget leaves
+    /// (VK_EXT_memory_budget), else the heap less what this device holds of it; less a sixteenth of the heap. No more
+    /// than DeviceOptions::memory_limit leaves.
+    uint64_t available_memory() const;
 
     /// Waits until the device has done all that was submitted.
     void wait_idle();

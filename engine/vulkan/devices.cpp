@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/vulkan/context.h"
+#include "engine/vulkan/floor.h"
 
 namespace patina::vulkan {
 
@@ -140,6 +141,7 @@ DeviceCaps caps_of(const vk::raii::PhysicalDevice& physical) {
     caps.max_shared_bytes = properties.limits.maxComputeSharedMemorySize;
     caps.max_push_bytes = properties.limits.maxPushConstantsSize;
     caps.max_storage_buffers = properties.limits.maxPerStageDescriptorStorageBuffers;
+    caps.max_storage_images = properties.limits.maxPerStageDescriptorStorageImages;
     caps.max_storage_range = properties.limits.maxStorageBufferRange;
     caps.max_texel_elements = properties.limits.maxTexelBufferElements;
     caps.max_allocation = v11.maxMemoryAllocationSize;
@@ -171,11 +173,12 @@ std::vector<std::string> missing_from_floor(const vk::raii::PhysicalDevice& phys
     const auto need = [&](uint64_t has, uint64_t wanted, const char* what) {
         if (has < wanted) missing.push_back(text(what, " of at least ", wanted, " (the device has ", has, ")"));
     };
-    need(caps.max_storage_range, uint64_t{128} << 20, "a storage buffer range");
-    need(caps.max_push_bytes, 128, "push constants");
-    need(caps.max_storage_buffers, 16, "storage buffers per stage");
-    need(caps.max_shared_bytes, 16384, "shared memory");
-    need(caps.max_group_invocations, 256, "workgroup invocations");
+    need(caps.max_storage_range, floor::kStorageRange, "a storage buffer range");
+    need(caps.max_push_bytes, floor::kPushBytes, "push constants");
+    need(caps.max_storage_buffers, floor::kStorageBuffers, "storage buffers per stage");
+    need(caps.max_storage_images, floor::kStorageImages, "storage images per stage");
+    need(caps.max_shared_bytes, floor::kSharedBytes, "shared memory");
+    need(caps.max_group_invocations, floor::kGroupInvocations, "workgroup invocations");
     const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                                 vk::PhysicalDeviceVulkan13Features>();
     if (!features.get<vk::PhysicalDeviceVulkan12Features>().timelineSemaphore) missing.push_back("timeline semaphores");

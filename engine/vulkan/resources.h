@@ -95,10 +95,26 @@ class ChunkedBuffer {
     ChunkedBuffer(Device& device, const std::string& name, uint64_t elements, uint32_t bytes_per_element,
                   uint64_t chunk_elements, uint32_t max_chunks);
 
+    /// The same array with room for `elements`, no fewer than before: full chunks are shared with this one, a last one
+    /// that was not full is replaced by a larger one of undefined content. Throws Error as the constructor does.
+    ChunkedBuffer with_room_for(uint64_t elements) const;
+
     const std::vector<BufferRef>& chunks() const { return chunks_; }
+    uint64_t elements() const { return elements_; }
     uint64_t bytes() const;
+    /// Bytes of the chunks that with_room_for(elements) makes.
+    uint64_t bytes_to_make(uint64_t elements) const;
 
   private:
+    uint64_t chunk_bytes(uint64_t chunk, uint64_t elements) const;
+    void add_chunks(uint64_t elements);
+
+    Device* device_ = nullptr;
+    std::string name_;
+    uint64_t elements_ = 0;
+    uint32_t bytes_per_element_ = 0;
+    uint64_t chunk_elements_ = 1;
+    uint32_t max_chunks_ = 0;
     std::vector<BufferRef> chunks_;
 };
 

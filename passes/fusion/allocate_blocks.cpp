@@ -40,6 +40,7 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     params.settled_weight = 0.5f * params.max_weight;
     params.settled_color_every = std::max(settings.settled_color_every, 1u);
     params.color_frame = color_frame;
+    params.seed = settings.seed;
     params.inverse_sdf_range = 1 / (gpu::kSdfRangeVox * voxel_m);
     return params;
 }

@@ -21,6 +21,7 @@ struct FusionSettings {
     uint32_t settled_color_every = 4;
     bool color = true;                  ///< without it the model holds distances alone
     uint32_t allocation_stride_px = 2;  ///< every so many pixels allocate, another phase in every frame
+    uint32_t seed = 0;                  ///< of the chance by which fused colours are rounded up or down
 };
 
 /// The truncation band of a reading right before the camera, metres: no narrower than three voxels.

@@ -16,7 +16,7 @@ struct ColorWork {
 };
 
 ColorWork make_color_work(graph::Frame& frame, const VoxelMap& map) {
-    const uint64_t capacity = map.settings().capacity_blocks;
+    const uint64_t capacity = map.capacity();
     return {
         frame.create_buffer("fusion.near_surface", capacity * gpu::kIntegrateGroup * sizeof(uint32_t)),
         frame.fill(frame.create_buffer("fusion.color_blocks", (1 + capacity) * sizeof(uint32_t)), 0, sizeof(uint32_t)),

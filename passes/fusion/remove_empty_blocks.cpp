@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "passes/model/rebuild_table.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -21,12 +22,7 @@ void add_remove_empty_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapI
     ids.counters = frame.upload_bytes(ids.counters, offsetof(gpu::MapCounters, table_keys),
                                       std::as_bytes(std::span(&kNone, 1)), false);
 
-    auto rebuild = frame.compute("fusion.rebuild_table", spirv::rebuild_table);
-    rebuild.read("BlockKeys", ids.block_keys).push(map.grid());
-    ids.keys = rebuild.modify("Keys", ids.keys);
-    ids.blocks = rebuild.modify("Blocks", ids.blocks);
-    ids.counters = rebuild.modify("Counters", ids.counters);
-    rebuild.dispatch_indirect(ids.block_arguments);
+    add_rebuild_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.counters, ids.block_arguments}, map.grid());
 }
 
 }  // namespace patina

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "passes/model/block_at.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -46,7 +47,7 @@ uint64_t cells_for_any_pose(const gpu::ViewParams& params) {
     return edge * edge * edge;
 }
 
-/// The box of blocks around the frustum.
+/// The box of blocks around the frustum. Where block_at() has to clamp, the map has no blocks.
 void place_grid(gpu::ViewParams& params) {
     const glm::dmat4 world_from_camera = glm::inverse(glm::dmat4(params.camera.camera_from_world));
     glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
@@ -56,8 +57,8 @@ void place_grid(gpu::ViewParams& params) {
         high = glm::max(high, world);
     }
     const double block_m = block_edge_m(params);
-    const glm::ivec3 first = glm::ivec3(glm::floor(low / block_m)) - 1;
-    const glm::ivec3 last = glm::ivec3(glm::floor(high / block_m)) + 1;
+    const glm::ivec3 first = block_at(low / block_m) - 1;
+    const glm::ivec3 last = block_at(high / block_m) + 1;
     params.grid_low = glm::ivec4(first, 0);
     params.grid_size = glm::uvec4(glm::uvec3(last - first + 1), 0);
 }
@@ -86,7 +87,7 @@ VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const
     VisibleBlocks visible;
     visible.extent = {camera.extent.x, camera.extent.y};
     visible.view = frame.upload<gpu::ViewParams>("fusion.view", std::span(&params, 1));
-    visible.list = frame.fill(frame.create_buffer("fusion.visible", (1 + map.settings().capacity_blocks) * 4u), 0);
+    visible.list = frame.fill(frame.create_buffer("fusion.visible", (1 + map.capacity()) * 4u), 0);
     visible.arguments = frame.fill(frame.create_buffer("fusion.visible_arguments", 16), 1);
     visible.tiles = frame.fill(
         frame.create_buffer("fusion.tiles", params.tiles.x * params.tiles.y * sizeof(gpu::TileRange)), UINT32_MAX);

@@ -8,30 +8,31 @@
 namespace patina {
 namespace {
 
-void bind_records(graph::PassBuilder& pass, const ObservationMap& map, const ObservationMapIds& ids) {
+void bind_records(graph::PassBuilder& pass, const ObservationMap& map, const ObservationMapIds& ids, uint32_t seed) {
     pass.read("RecordCounters", ids.record_counters).read("Records", ids.records);
     pass.read("Directions", ids.directions).read("Colors", ids.colors);
     pass.specialise("kVoxelChunks", map.chunks());
-    pass.push(gpu::SampleParams{map.grid(), map.edge_shift(), 0, 0, 0});
+    pass.push(gpu::SampleParams{map.grid(), map.edge_shift(), seed, 0, 0});
 }
 
 }  // namespace
 
-graph::BufferId add_sample_surface(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records) {
+graph::BufferId add_sample_surface(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+                                   uint32_t seed) {
     constexpr uint64_t kPlaces = 2 * gpu::kLightSamples;
     const graph::BufferId unclaimed = frame.fill(frame.create_buffer("lighting.claims", kPlaces * sizeof(uint32_t)), 0);
     auto claim = frame.compute("lighting.claim_samples", spirv::claim_samples);
-    bind_records(claim, map, records);
+    bind_records(claim, map, records, seed);
     const graph::BufferId claims = claim.modify("Claims", unclaimed);
-    claim.dispatch_covering(map.settings().capacity_records);
+    claim.dispatch_covering(map.capacity_records());
 
     const graph::BufferId none =
         frame.fill(frame.create_buffer("lighting.samples", kPlaces * sizeof(gpu::LightSample)), 0);
     auto draw = frame.compute("lighting.draw_samples", spirv::draw_samples);
-    bind_records(draw, map, records);
+    bind_records(draw, map, records, seed);
     draw.read("Claims", claims);
     const graph::BufferId samples = draw.modify("Samples", none);
-    draw.dispatch_covering(map.settings().capacity_records);
+    draw.dispatch_covering(map.capacity_records());
     return samples;
 }
 

@@ -21,6 +21,9 @@ class LabelMap {
     /// Throws Error when memory runs out.
     LabelMap(vulkan::Device& device, const VoxelMap& map);
 
+    /// Announces that the map's pool grows to `blocks`.
+    void enlarge(graph::Enlargement& enlargement, uint32_t blocks);
+
     LabelMapIds import(graph::Frame& frame) const { return {frame.import(words_), frame.import(stamps_)}; }
     static void keep(graph::Frame& frame, const LabelMapIds& ids);
 

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include "engine/vulkan/floor.h"
+
 namespace patina {
 
 namespace {
 
 MapAccess preferred(const vulkan::DeviceCaps& caps, uint64_t most_elements) {
-    return caps.software() && most_elements <= caps.max_texel_elements ? MapAccess::kTexel : MapAccess::kStorage;
+    const bool texels = caps.software() && caps.max_storage_images >= vulkan::floor::kTexelVariantImages &&
+                        most_elements <= caps.max_texel_elements;
+    return texels ? MapAccess::kTexel : MapAccess::kStorage;
 }
 
 }  // namespace
@@ -18,8 +22,7 @@ MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const VoxelMap& m
 }
 
 MapAccess preferred_map_access(const vulkan::DeviceCaps& caps, const ObservationMap& map) {
-    const uint64_t records = std::min(uint64_t{1} << map.grid().chunk_shift, uint64_t{map.settings().capacity_records});
-    return preferred(caps, records * gpu::kRecordQuads);
+    return preferred(caps, uint64_t{map.chunk_records()} * gpu::kRecordQuads);
 }
 
 }  // namespace patina

@@ -17,8 +17,10 @@ namespace patina {
 struct ObservationMapSettings {
     float voxel_m = 0.02f;                         ///< half or a quarter of block_m: blocks of 2^3 or 4^3 voxels
     float block_m = 0.04f;                         ///< the voxel map's, so that both have the same keys
-    uint32_t capacity_blocks = 65536;              ///< each takes 32 or 256 bytes for its table
-    uint32_t capacity_records = 262144;            ///< voxels with observations, kRecordBytes each
+    uint32_t capacity_blocks = 65536;              ///< at first; each takes 32 or 256 bytes for its table
+    uint32_t capacity_records = 262144;            ///< at first, voxels with observations, kRecordBytes each
+    uint32_t limit_blocks = 0;                     ///< beyond which the pool does not grow; 0: as memory allows
+    uint32_t limit_records = 0;                    ///< likewise
     uint64_t max_chunk_bytes = uint64_t{1} << 27;  ///< of one buffer
 };
 
@@ -61,6 +63,11 @@ class ObservationMap {
     /// with it.
     void reset(graph::Frame& frame, glm::dvec3 center_m);
 
+    /// Announce that a pool grows, to more than now and at most most_blocks() or most_records(). In the same frame
+    /// observation/grow_observations.h makes use of it.
+    void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);
+    void enlarge_records(graph::Enlargement& enlargement, uint32_t records);
+
     ObservationMapIds import(graph::Frame& frame) const;
     /// Marks all versions as needed after the frame.
     static void keep(graph::Frame& frame, const ObservationMapIds& ids);
@@ -70,6 +77,11 @@ class ObservationMap {
     gpu::VoxelGrid grid() const { return grid_; }
     /// A block has 1 << edge_shift() voxels along each edge.
     uint32_t edge_shift() const { return edge_shift_; }
+    uint32_t capacity_blocks() const { return grid_.capacity; }  ///< at present
+    uint32_t capacity_records() const { return capacity_records_; }
+    uint32_t most_blocks() const { return most_blocks_; }  ///< that the pools can grow to, memory permitting
+    uint32_t most_records() const { return most_records_; }
+    uint32_t chunk_records() const { return 1u << grid_.chunk_shift; }
     uint32_t table_slots() const { return table_slots_; }
     uint32_t chunks() const { return static_cast<uint32_t>(directions_.chunks().size()); }
     std::vector<VoxelMap::PoolBytes> memory() const;
@@ -79,6 +91,7 @@ class ObservationMap {
     gpu::VoxelGrid grid_{};
     uint32_t edge_shift_ = 0;
     uint32_t table_slots_ = 0;
+    uint32_t capacity_records_ = 0, most_blocks_ = 0, most_records_ = 0;
     vulkan::BufferRef keys_, blocks_, block_keys_, new_slots_, block_counters_, record_counters_, block_arguments_,
         record_table_, records_, seen_, changed_, albedo_, visibility_;
     vulkan::ChunkedBuffer directions_, colors_;

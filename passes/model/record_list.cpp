@@ -1,10 +1,19 @@
 #include "passes/model/record_list.h"
 
+#include <glm/glm.hpp>
+
 namespace patina {
 
+graph::BufferId create_list(graph::Frame& frame, const std::string& name, uint64_t capacity) {
+    return frame.fill(frame.create_buffer(name, (1 + capacity) * sizeof(uint32_t)), 0, sizeof(uint32_t));
+}
+
+graph::BufferId create_list_arguments(graph::Frame& frame, const std::string& name, uint32_t count) {
+    return frame.fill(frame.create_buffer(name, count * sizeof(glm::uvec4)), 1);
+}
+
 RecordList create_record_list(graph::Frame& frame, const std::string& name, uint64_t capacity) {
-    return {frame.fill(frame.create_buffer(name, (1 + capacity) * sizeof(uint32_t)), 0, sizeof(uint32_t)),
-            frame.fill(frame.create_buffer(name + "_arguments", 16), 1)};
+    return {create_list(frame, name, capacity), create_list_arguments(frame, name + "_arguments", 1)};
 }
 
 }  // namespace patina

@@ -15,4 +15,9 @@ struct RecordList {
 /// An empty one; lib/record_list.glsl appends to it.
 RecordList create_record_list(graph::Frame& frame, const std::string& name, uint64_t capacity);
 
+/// The parts of empty ones: a list, and in one buffer the arguments of `count` dispatches, 16 bytes each. A pass that
+/// appends to several lists binds one buffer fewer for each.
+graph::BufferId create_list(graph::Frame& frame, const std::string& name, uint64_t capacity);
+graph::BufferId create_list_arguments(graph::Frame& frame, const std::string& name, uint32_t count);
+
 }  // namespace patina

@@ -4,7 +4,7 @@ namespace patina {
 
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
     : status_(device.create_buffer(
-          {.name = "reflectance.status", .bytes = map.settings().capacity_records * sizeof(gpu::RecordStatus)})),
+          {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
       cursors_(device.create_buffer({.name = "reflectance.cursors", .bytes = sizeof(gpu::RefreshCursors)})) {}
 
 void ReflectanceState::reset(graph::Frame& frame) {
@@ -13,6 +13,10 @@ void ReflectanceState::reset(graph::Frame& frame) {
     ids.status = frame.fill(ids.status, 0);
     ids.cursors = frame.fill(ids.cursors, 0);
     keep(frame, ids);
+}
+
+void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {
+    enlargement.add(status_, records * sizeof(gpu::RecordStatus), {.fill = 0});
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::Frame& frame) const {

@@ -25,6 +25,9 @@ class ReflectanceState {
     /// Nothing is up to date; the first thing done with it, and whenever the map is reset.
     void reset(graph::Frame& frame);
 
+    /// Announces that the map's pool grows to `records`; nothing is up to date of the new ones.
+    void enlarge(graph::Enlargement& enlargement, uint32_t records);
+
     ReflectanceStateIds import(graph::Frame& frame) const;
     static void keep(graph::Frame& frame, const ReflectanceStateIds& ids);
 

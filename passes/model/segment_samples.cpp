@@ -13,6 +13,13 @@ void SegmentSamples::reset(graph::Frame& frame) const {
     frame.keep(frame.fill(frame.import(kd_), 0));
 }
 
+void SegmentSamples::enlarge(graph::Enlargement& enlargement, uint32_t labels) {
+    enlargement.add(counts_, labels * sizeof(gpu::SegmentSampleCount), {.fill = 0});
+    enlargement.add(kept_, uint64_t{labels} * gpu::kSegmentSamples * sizeof(uint32_t));
+    enlargement.add(kd_, labels * sizeof(gpu::SegmentKd), {.fill = 0});
+    enlargement.set(labels_, labels);
+}
+
 void SegmentSamples::keep(graph::Frame& frame, const SegmentSampleIds& ids) {
     frame.keep(ids.counts);
     frame.keep(ids.kept);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/graph/enlargement.h"
 #include "engine/graph/frame.h"
 #include "engine/vulkan/device.h"
 #include "shared/segment_samples.h"
@@ -26,6 +27,9 @@ class SegmentSamples {
 
     /// No segment has any; the first thing done with it.
     void reset(graph::Frame& frame) const;
+
+    /// Announces that there will be `labels` of them; new ones have no records.
+    void enlarge(graph::Enlargement& enlargement, uint32_t labels);
 
     SegmentSampleIds import(graph::Frame& frame) const {
         return {frame.import(counts_), frame.import(kept_), frame.import(kd_)};

@@ -24,6 +24,7 @@ void SegmentTable::reset(graph::Frame& frame) const {
     gpu::SegmentCounters counters{};
     counters.high_water = 1;
     counters.free_labels = capacity_ - 1;
+    counters.capacity = capacity_;
     SegmentTableIds ids = import(frame);
     ids.parents = frame.fill(ids.parents, 0);
     ids.labels = frame.fill(ids.labels, 0);
@@ -31,6 +32,15 @@ void SegmentTable::reset(graph::Frame& frame) const {
     ids.free_labels = frame.upload_bytes(ids.free_labels, 0, std::as_bytes(std::span(free_labels)), true);
     ids.counters = frame.upload_bytes(ids.counters, 0, std::as_bytes(std::span(&counters, 1)), true);
     keep(frame, ids);
+}
+
+void SegmentTable::enlarge(graph::Enlargement& enlargement, uint32_t capacity) {
+    PATINA_ASSERT(capacity > capacity_ && capacity <= kMaxCapacity, "the segment table grows from ", capacity_, " to ",
+                  capacity, " labels, at most ", kMaxCapacity);
+    enlargement.add(parents_, capacity * sizeof(uint32_t), {.fill = 0});
+    enlargement.add(labels_, capacity * sizeof(gpu::SegmentLabel), {.fill = 0});
+    enlargement.add(free_labels_, capacity * sizeof(uint32_t));
+    enlargement.set(capacity_, capacity);
 }
 
 SegmentTableIds SegmentTable::import(graph::Frame& frame) const {

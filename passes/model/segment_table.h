@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/graph/enlargement.h"
 #include "engine/graph/frame.h"
 #include "engine/vulkan/device.h"
 #include "shared/segments.h"
@@ -31,6 +32,10 @@ class SegmentTable {
 
     /// Forgets all segments; the first thing done with it.
     void reset(graph::Frame& frame) const;
+
+    /// Announces that there will be `capacity` labels, more than now and at most kMaxCapacity; in the same frame
+    /// segmentation/grow_labels.h makes use of them.
+    void enlarge(graph::Enlargement& enlargement, uint32_t capacity);
 
     SegmentTableIds import(graph::Frame& frame) const;
     static void keep(graph::Frame& frame, const SegmentTableIds& ids);

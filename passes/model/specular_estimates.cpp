@@ -12,6 +12,12 @@ void SpecularEstimates::reset(graph::Frame& frame) const {
     frame.keep(frame.fill(frame.import(materials_), 0));
 }
 
+void SpecularEstimates::enlarge(graph::Enlargement& enlargement, uint32_t labels) {
+    enlargement.add(means_, labels * sizeof(gpu::PerceptualMaterial), {.fill = 0});
+    enlargement.add(materials_, labels * sizeof(gpu::WardMaterial), {.fill = 0});
+    enlargement.set(labels_, labels);
+}
+
 void SpecularEstimates::keep(graph::Frame& frame, const SpecularEstimateIds& ids) {
     frame.keep(ids.means);
     frame.keep(ids.materials);

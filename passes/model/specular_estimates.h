@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/graph/enlargement.h"
 #include "engine/graph/frame.h"
 #include "engine/vulkan/device.h"
 #include "shared/specular_estimates.h"
@@ -23,6 +24,9 @@ class SpecularEstimates {
 
     /// Forgets all estimates; the first thing done with it.
     void reset(graph::Frame& frame) const;
+
+    /// Announces that there will be `labels` of them; new ones were never estimated.
+    void enlarge(graph::Enlargement& enlargement, uint32_t labels);
 
     SpecularEstimateIds import(graph::Frame& frame) const { return {frame.import(means_), frame.import(materials_)}; }
     static void keep(graph::Frame& frame, const SpecularEstimateIds& ids);

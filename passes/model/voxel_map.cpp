@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "engine/core/error.h"
+#include "passes/model/block_at.h"
+#include "passes/model/pool_sizes.h"
 
 namespace patina {
 
@@ -20,20 +22,18 @@ uint32_t blocks_per_chunk(const vulkan::DeviceCaps& caps, uint64_t max_chunk_byt
 }  // namespace
 
 VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : settings_(settings) {
-    const uint32_t capacity = settings.capacity_blocks;
     const uint32_t chunk_blocks = blocks_per_chunk(device.caps(), settings.max_chunk_bytes);
-    const uint32_t most_blocks = chunk_blocks * gpu::kMaxVoxelChunks;
-    if (capacity == 0 || capacity > most_blocks) {
-        throw Error("the voxel pool's capacity is ", capacity, " blocks, it must be 1 to ", most_blocks,
+    const uint32_t limit = limit_or_none(settings.limit_blocks);
+    const uint32_t capacity = std::min(settings.capacity_blocks, limit);
+    most_blocks_ = std::min(chunk_blocks * gpu::kMaxVoxelChunks, limit);
+    if (capacity == 0 || capacity > most_blocks_) {
+        throw Error("the voxel pool's capacity is ", capacity, " blocks, it must be 1 to ", most_blocks_,
                     " on this device");
     }
     if (!(settings.voxel_m >= 1e-4f && settings.voxel_m <= 1.0f)) {
         throw Error("the voxel size is ", settings.voxel_m, " m, it must be 0.0001 to 1");
     }
-    // At most a quarter of the slots is taken while the pool is not full: probes stay within one or two buckets. A
-    // small pool's table still takes all keys of a frame: which of them get a block is a matter of the keys, but which
-    // would find room in a full table is one of who comes first.
-    table_slots_ = std::bit_ceil(std::max(capacity, 32768u)) * 4;
+    table_slots_ = table_slots_for(capacity);
     grid_.voxel_m = settings.voxel_m;
     grid_.bucket_mask = table_slots_ / gpu::kBucketSlots - 1;
     grid_.capacity = capacity;
@@ -53,11 +53,11 @@ VoxelMap::VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings) : s
 }
 
 void VoxelMap::reset(graph::Frame& frame, glm::dvec3 center_m) {
-    grid_.origin_block = glm::ivec4(glm::ivec3(glm::floor(center_m / double(settings_.voxel_m * gpu::kBlockEdge))), 0);
-    std::vector<uint32_t> stack(settings_.capacity_blocks);
+    grid_.origin_block = glm::ivec4(block_at(center_m / double(settings_.voxel_m * gpu::kBlockEdge)), 0);
+    std::vector<uint32_t> stack(capacity());
     std::iota(stack.rbegin(), stack.rend(), 0u);  // popped from the end: 0 first
     gpu::MapCounters counters{};
-    counters.free_blocks = settings_.capacity_blocks;
+    counters.free_blocks = counters.capacity = capacity();
 
     VoxelMapIds ids = import(frame);
     ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
@@ -66,6 +66,24 @@ void VoxelMap::reset(graph::Frame& frame, glm::dvec3 center_m) {
     ids.free_list = frame.upload_bytes(ids.free_list, 0, std::as_bytes(std::span(stack)), true);
     ids.counters = frame.upload_bytes(ids.counters, 0, std::as_bytes(std::span(&counters, 1)), true);
     keep(frame, ids);
+}
+
+void VoxelMap::enlarge(graph::Enlargement& enlargement, uint32_t blocks) {
+    PATINA_ASSERT(blocks > capacity() && blocks <= most_blocks_, "the voxel pool grows from ", capacity(), " to ",
+                  blocks, " blocks, at most ", most_blocks_);
+    const uint32_t slots = table_slots_for(blocks);
+    const uint64_t added_bytes = (uint64_t{blocks} - capacity()) * sizeof(uint32_t);
+    enlargement.add(keys_, slots * 4u, {.kept = false, .fill = gpu::kEmptyKey});
+    enlargement.add(blocks_, slots * 4u, {.kept = false});
+    enlargement.add(new_slots_, slots * 4u, {.kept = false});
+    enlargement.add(block_keys_, blocks * 4u, {.fill = gpu::kEmptyKey});
+    // New blocks are popped last: ids in use stay below the high-water mark.
+    enlargement.add(free_list_, blocks * 4u, {.offset = added_bytes});
+    enlargement.add(tsdf_, blocks);
+    enlargement.add(color_, blocks);
+    enlargement.set(table_slots_, slots);
+    enlargement.set(grid_.bucket_mask, slots / gpu::kBucketSlots - 1);
+    enlargement.set(grid_.capacity, blocks);
 }
 
 VoxelMapIds VoxelMap::import(graph::Frame& frame) const {

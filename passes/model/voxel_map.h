@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/graph/enlargement.h"
 #include "engine/graph/frame.h"
 #include "engine/vulkan/device.h"
 #include "shared/voxel_map.h"
@@ -15,8 +16,9 @@ namespace patina {
 /// Size and resolution of the volume.
 struct VoxelMapSettings {
     float voxel_m = 0.005f;
-    uint32_t capacity_blocks = 65536;  ///< of 8^3 voxels; each takes 2 KiB of distances and 2 KiB of colour when used
+    uint32_t capacity_blocks = 32768;  ///< at first, of 8^3 voxels; each takes 2 KiB of distances and 2 KiB of colour
     uint64_t max_chunk_bytes = uint64_t{1} << 30;  ///< of one buffer; above, devices differ in what they can allocate
+    uint32_t limit_blocks = 0;  ///< beyond which the pool does not grow; 0: as far as chunks and memory allow
 };
 
 /// Versions of the map's resources within one frame; passes that write replace the ids.
@@ -40,11 +42,16 @@ struct VoxelMapIds {
 /// ran, though block ids do.
 class VoxelMap {
   public:
-    /// Throws Error when the capacity is zero, exceeds what the chunks hold, or memory runs out.
+    /// Throws Error when the capacity is zero, exceeds what the chunks hold, or memory runs out. The pool begins with
+    /// the smaller of capacity and limit.
     VoxelMap(vulkan::Device& device, const VoxelMapSettings& settings);
 
     /// Empties the map, placing the range of keys around a world point (metres); the first thing done with it.
     void reset(graph::Frame& frame, glm::dvec3 center_m);
+
+    /// Announces that the pool grows to `blocks`, more than now and at most most_blocks(). After the commit new blocks
+    /// are neither free nor is the table filled: fusion/grow_voxels.h does that in the same frame.
+    void enlarge(graph::Enlargement& enlargement, uint32_t blocks);
 
     VoxelMapIds import(graph::Frame& frame) const;
     /// Marks all versions as needed after the frame.
@@ -52,6 +59,10 @@ class VoxelMap {
 
     const VoxelMapSettings& settings() const { return settings_; }
     gpu::VoxelGrid grid() const { return grid_; }
+    uint32_t capacity() const { return grid_.capacity; }   ///< blocks, at present
+    uint32_t most_blocks() const { return most_blocks_; }  ///< that the pool can grow to, memory permitting
+    /// Blocks of one chunk: an array of up to as many is one buffer.
+    uint32_t chunk_blocks() const { return 1u << grid_.chunk_shift; }
     uint32_t table_slots() const { return table_slots_; }
     uint32_t chunks() const { return static_cast<uint32_t>(tsdf_.chunks().size()); }
 
@@ -66,6 +77,7 @@ class VoxelMap {
     VoxelMapSettings settings_;
     gpu::VoxelGrid grid_{};
     uint32_t table_slots_ = 0;
+    uint32_t most_blocks_ = 0;
     vulkan::BufferRef keys_, blocks_, block_keys_, free_list_, new_slots_, counters_, assign_arguments_,
         block_arguments_;
     vulkan::ChunkedBuffer tsdf_, color_;

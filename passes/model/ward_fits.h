@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/graph/enlargement.h"
 #include "engine/graph/frame.h"
 #include "engine/vulkan/device.h"
 #include "shared/ward_fit.h"
@@ -19,11 +20,17 @@ struct WardFitIds {
 /// segments; specular/fit_ward.h fills it.
 class WardFits {
   public:
+    /// How many labels a device's buffers have room for.
+    static uint32_t most_labels(const vulkan::DeviceCaps& caps);
+
     /// Throws Error when memory runs out.
     WardFits(vulkan::Device& device, uint32_t labels);
 
     /// Forgets all; the first thing done with it.
     void reset(graph::Frame& frame) const;
+
+    /// Announces that there will be `labels` of them; of new ones nothing is known.
+    void enlarge(graph::Enlargement& enlargement, uint32_t labels);
 
     WardFitIds import(graph::Frame& frame) const {
         return {frame.import(fits_), frame.import(curves_), frame.import(progress_)};

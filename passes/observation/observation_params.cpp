@@ -53,7 +53,7 @@ gpu::ObservationParams make_observation_params(const ObservationMap& map, const 
     params.visited = (depth_camera.extent + stride_px - 1u) / stride_px;
     params.phase = frame_index * 5u % (stride_px * stride_px);
     params.edge_shift = map.edge_shift();
-    params.record_capacity = map.settings().capacity_records;
+    params.record_capacity = map.capacity_records();
     params.max_table_keys = map.table_slots() / 2;
     params.stamp = frame_index + 1;
     params.max_distance_m = settings.max_distance_m;

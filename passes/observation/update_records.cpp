@@ -20,8 +20,9 @@ RecordList add_update_records(graph::Frame& frame, const ObservationMap& map, Ob
                               const ObservationInputs& inputs, const RecordList& visible, graph::BufferId params,
                               const gpu::ObservationParams& values) {
     const uint64_t visited = uint64_t{values.visited.x} * values.visited.y;
-    RecordList changed = create_record_list(frame, "observation.changed_list", visited);
-    RecordList stale = create_record_list(frame, "observation.stale", visited);
+    RecordList changed{create_list(frame, "observation.changed_list", visited),
+                       create_list_arguments(frame, "observation.changed_and_stale", 2)};
+    graph::BufferId stale = create_list(frame, "observation.stale", visited);
     constexpr uint32_t kUnknown = 0;
     const graph::ImageId labels = inputs.labels ? *inputs.labels
                                                 : frame.upload("observation.no_labels", {{1, 1}, vulkan::Format::kR32u},
@@ -37,16 +38,15 @@ RecordList add_update_records(graph::Frame& frame, const ObservationMap& map, Ob
     ids.directions = collect.modify("Directions", ids.directions);
     ids.colors = collect.modify("Colors", ids.colors);
     changed.list = collect.modify("ChangedList", changed.list);
-    changed.arguments = collect.modify("ChangedArguments", changed.arguments);
-    stale.list = collect.modify("Stale", stale.list);
-    stale.arguments = collect.modify("StaleArguments", stale.arguments);
+    stale = collect.modify("Stale", stale);
+    changed.arguments = collect.modify("Arguments", changed.arguments);
     collect.dispatch_indirect(visible.arguments);
 
     auto closest = frame.compute("observation.find_closest_pair", spirv::find_closest_pair);
-    closest.read("Stale", stale.list).push(values.grid);
+    closest.read("Stale", stale).push(values.grid);
     closest.specialise("kVoxelChunks", map.chunks());
     ids.directions = closest.modify("Directions", ids.directions);
-    closest.dispatch_indirect(stale.arguments);
+    closest.dispatch_indirect(changed.arguments, sizeof(glm::uvec4));
     return changed;
 }
 

@@ -22,7 +22,7 @@ graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& 
     pass.read("Albedo", records.albedo);
     const graph::BufferId averaged = pass.modify("Segments", sums);
     pass.specialise("kRecordsPerItem", kRecordsPerItem);
-    pass.dispatch_covering((map.settings().capacity_records + kRecordsPerItem - 1) / kRecordsPerItem);
+    pass.dispatch_covering((map.capacity_records() + kRecordsPerItem - 1) / kRecordsPerItem);
     return averaged;
 }
 

@@ -38,7 +38,7 @@ struct WaitingRecords {
 
 WaitingRecords add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed,
                                RecordList& refine) {
-    const uint32_t capacity = reflectance.map.settings().capacity_records;
+    const uint32_t capacity = reflectance.map.capacity_records();
     WaitingRecords waiting{create_record_list(frame, "reflectance.never_marched", capacity),
                            create_record_list(frame, "reflectance.waiting", capacity)};
     auto pass = frame.compute("reflectance.due_changed", spirv::due_changed);
@@ -62,7 +62,7 @@ void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const Re
 }  // namespace
 
 DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed) {
-    const uint32_t capacity = reflectance.map.settings().capacity_records;
+    const uint32_t capacity = reflectance.map.capacity_records();
     DueRecords due{create_record_list(frame, "reflectance.march", capacity),
                    create_record_list(frame, "reflectance.refine", capacity)};
     add_due_window(frame, reflectance, changed, due);

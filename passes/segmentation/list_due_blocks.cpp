@@ -7,7 +7,7 @@ namespace patina {
 
 DueBlocks add_list_due_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                               graph::BufferId visible, uint32_t stamp) {
-    const uint64_t entries = 1 + map.settings().capacity_blocks;
+    const uint64_t entries = 1 + map.capacity();
     DueBlocks out;
     out.list = frame.fill(frame.create_buffer("segmentation.due", entries * sizeof(uint32_t)), 0, 4);
     out.arguments = frame.fill(frame.create_buffer("segmentation.due_arguments", 16), 1);

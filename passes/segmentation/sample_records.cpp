@@ -8,7 +8,7 @@ namespace patina {
 void add_sample_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
                         const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
                         uint32_t seed) {
-    const uint32_t labels = samples.labels(), capacity = map.settings().capacity_records;
+    const uint32_t labels = samples.labels(), capacity = map.capacity_records();
     const gpu::SegmentSampleParams params{seed, labels, min_observations, 0};
     const auto zeros = [&](const char* name, uint64_t words) {
         return frame.fill(frame.create_buffer(name, words * sizeof(uint32_t)), 0);

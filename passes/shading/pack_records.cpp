@@ -13,7 +13,7 @@ constexpr uint32_t kRecordsPerItem = 8;
 
 graph::BufferId add_pack_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
                                  const ReflectanceStateIds& state) {
-    const uint32_t capacity = map.settings().capacity_records;
+    const uint32_t capacity = map.capacity_records();
     auto pass = frame.compute("shading.pack_records", spirv::pack_records);
     pass.read("RecordCounters", records.record_counters).read("Status", state.status);
     pass.read("Records", records.records).read("Albedo", records.albedo).read("Visibility", records.visibility);

@@ -21,7 +21,7 @@ graph::BufferId add_index_records(graph::Frame& frame, const VoxelMap& voxel_map
     pass.read("View", inputs.view).read("ViewGrid", inputs.view_grid);
     pass.read("BlockKeys", voxels.block_keys).read("Counters", voxels.counters);
     pass.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
-    const uint64_t count = uint64_t{voxel_map.settings().capacity_blocks} << 3 * map.edge_shift();
+    const uint64_t count = uint64_t{voxel_map.capacity()} << 3 * map.edge_shift();
     const graph::BufferId entries = pass.create("Entries", count * sizeof(uint32_t));
     pass.push(gpu::IndexRecordsParams{voxel_map.grid(), map.grid(), map.edge_shift(), 0, 0, 0});
     pass.dispatch_indirect(voxels.block_arguments);

@@ -21,6 +21,11 @@ struct SurfaceOptions {
 
 inline constexpr uint32_t kMaxBlockElements = gpu::kBlockVoxels * gpu::kMaxCaseTriangles;
 
+/// Device memory that extract_surface() takes for a block of the pool while it runs.
+inline constexpr uint64_t kSurfaceBlockBytes = (gpu::kNeighbourStride + 4 * gpu::kBlockWords) * sizeof(uint32_t) +
+                                               gpu::kBlockEdgeWords * sizeof(gpu::EdgeWord) +
+                                               sizeof(gpu::BlockElements);
+
 /// Marching cubes over the whole map, for the end of a recording: waits for the device several times.
 /// A cell lies between eight voxel centres and counts where all of them have been seen; inside is a distance <= 0.
 /// Vertices lie on the cells' edges where the linearly interpolated distance is zero, once for all cells around an

@@ -1,5 +1,7 @@
 #include "sensor/readers/folder_source.h"
 
+#include <nlohmann/json.hpp>
+
 #include "sensor/picture_file.h"
 
 namespace patina::sensor {
@@ -7,10 +9,13 @@ namespace patina::sensor {
 std::optional<Reading> FolderSource::next() {
     if (next_ == info_.frames) return std::nullopt;
     const uint32_t index = next_++;
+    // One frame's files cost that frame, whatever a library makes of them.
     try {
         return decode(index);
     } catch (const Error& error) {
         return Skipped{index, error.what()};
+    } catch (const std::exception& error) {
+        return Skipped{index, text("frame ", index, " cannot be decoded: ", reason_of(error))};
     }
 }
 
@@ -22,7 +27,9 @@ void set_pose(Frame& frame, const std::optional<CheckedPose>& pose) {
 
 std::string folder_name(const std::filesystem::path& folder) {
     const std::filesystem::path absolute = std::filesystem::absolute(folder).lexically_normal();
-    return (absolute.has_filename() ? absolute.filename() : absolute.parent_path().filename()).string();
+    const std::string name =
+        (absolute.has_filename() ? absolute.filename() : absolute.parent_path().filename()).string();
+    return nlohmann::json::parse(nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 Extent2D first_readable_extent(const std::vector<std::filesystem::path>& pictures) {
@@ -30,8 +37,8 @@ Extent2D first_readable_extent(const std::vector<std::filesystem::path>& picture
     for (const std::filesystem::path& picture : pictures) {
         try {
             return picture_extent(picture);
-        } catch (const Error& error) {
-            if (reason.empty()) reason = error.what();
+        } catch (const std::exception& error) {
+            if (reason.empty()) reason = reason_of(error);
         }
     }
     throw Error("none of ", pictures.size(), " pictures can be read, the first because ", reason);

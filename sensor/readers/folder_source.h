@@ -10,8 +10,8 @@
 
 namespace patina::sensor {
 
-/// A source whose frames are files of a folder, decoded one after the other. What decode() throws as Error becomes the
-/// reason why that frame is skipped.
+/// A source whose frames are files of a folder, decoded one after the other. What decode() throws, an Error or another
+/// exception, becomes the reason why that frame is skipped.
 class FolderSource : public Source {
   public:
     const SequenceInfo& info() const final { return info_; }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/input_file.h"
 #include "sensor/json_file.h"
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
@@ -25,6 +26,7 @@ struct SequenceFile {
 Intrinsics read_intrinsics(const JsonValue& camera) {
     Intrinsics intrinsics;
     intrinsics.extent = {camera.at("width").positive_integer(), camera.at("height").positive_integer()};
+    check_picture_size(camera.where(), intrinsics.extent.width, intrinsics.extent.height);
     intrinsics.fx = camera.at("fx").positive();
     intrinsics.fy = camera.at("fy").positive();
     intrinsics.cx = camera.at("cx").number();
@@ -70,6 +72,7 @@ SequenceFile read_sequence_file(const fs::path& file, const std::string& default
         info.exposure_known = true;
     }
     if (const auto gain = color.find("gain")) sequence.exposure.gain = gain->positive();
+    if (const auto blur = color.find("motion_blur")) info.motion_blur = blur->boolean();
     return sequence;
 }
 
@@ -90,7 +93,7 @@ void read_indexed_lines(const fs::path& file, std::string_view columns, uint32_t
 
 std::vector<double> read_timestamps(const fs::path& file, const SequenceInfo& info) {
     std::vector<double> timestamps_s(info.frames, std::nan(""));
-    if (!fs::exists(file)) {
+    if (!path_exists(file)) {
         for (uint32_t i = 0; i < info.frames; ++i) timestamps_s[i] = i / info.fps;
         return timestamps_s;
     }
@@ -111,7 +114,7 @@ double positive(const TextLine& line, size_t column) {
 
 std::vector<Exposure> read_exposures(const fs::path& file, uint32_t frames, Exposure common) {
     std::vector<Exposure> exposures(frames, common);
-    if (!fs::exists(file)) return exposures;
+    if (!path_exists(file)) return exposures;
     read_indexed_lines(file, "index exposure_s gain", frames, [&](uint32_t index, const TextLine& line) {
         exposures[index] = {positive(line, 1), positive(line, 2)};
     });
@@ -122,7 +125,7 @@ std::vector<Exposure> read_exposures(const fs::path& file, uint32_t frames, Expo
 fs::path picture_path(const fs::path& folder, uint32_t index) {
     const std::string stem = picture_stem(index);
     for (const char* extension : {".png", ".jpg", ".jpeg", ".exr"}) {
-        if (fs::path path = folder / (stem + extension); fs::exists(path)) return path;
+        if (fs::path path = folder / (stem + extension); path_exists(path)) return path;
     }
     throw Error((folder / stem).string(), " is missing, as .png, .jpg, .jpeg and .exr");
 }
@@ -130,14 +133,13 @@ fs::path picture_path(const fs::path& folder, uint32_t index) {
 /// Throws Error when the pictures at both ends of the sequence agree on another size than sequence.json's: then that
 /// file, not one picture, is wrong. A single picture of another size is left to its frame.
 void expect_pictures_of_size(const fs::path& folder, Extent2D expected, uint32_t frames, const char* key) {
-    if (!fs::is_directory(folder))
-        throw Error(folder.string(), " is missing, but sequence.json promises ", frames, " frames");
+    if (!is_folder(folder)) throw Error(folder.string(), " is missing, but sequence.json promises ", frames, " frames");
     std::array<Extent2D, 2> found{expected, expected};
     std::array<uint32_t, 2> ends{0, frames - 1};
     for (size_t i = 0; i < ends.size(); ++i) {
         try {
             found[i] = picture_extent(picture_path(folder, ends[i]));
-        } catch (const Error&) {
+        } catch (const std::exception&) {
             return;  // a damaged frame says so itself when its turn comes
         }
     }
@@ -147,6 +149,15 @@ void expect_pictures_of_size(const fs::path& folder, Extent2D expected, uint32_t
     }
 }
 
+/// Throws Error when more than half of the frames that sequence.json promises have neither a colour nor a depth
+/// picture: the number is wrong then, and nothing is allotted for it. Fewer missing frames are skipped one by one.
+void expect_frames(const fs::path& folder, uint32_t frames) {
+    const size_t colors = entries_of(folder / "color").size(), depths = entries_of(folder / "depth").size();
+    if (frames / 2 <= std::max(colors, depths)) return;
+    throw Error((folder / "sequence.json").string(), ": frames is ", frames, ", but color/ holds ", colors,
+                " files and depth/ ", depths);
+}
+
 class NativeSource : public FolderSource {
   public:
     explicit NativeSource(const fs::path& folder) : folder_(folder) {
@@ -154,11 +165,11 @@ class NativeSource : public FolderSource {
         info_ = sequence.info;
         expect_pictures_of_size(folder / "color", info_.color.extent, info_.frames, "color");
         expect_pictures_of_size(folder / "depth", info_.depth.extent, info_.frames, "depth");
+        expect_frames(folder, info_.frames);
         timestamps_s_ = read_timestamps(folder / "timestamps.txt", info_);
         exposures_ = read_exposures(folder / "exposures.txt", info_.frames, sequence.exposure);
-        info_.exposure_known = info_.exposure_known || fs::exists(folder / "exposures.txt");
-        info_.rendered = fs::exists(folder / "truth");  // the format has it for synthetic sequences alone
-        if (const fs::path trajectory = folder / "trajectory.txt"; fs::exists(trajectory)) {
+        info_.exposure_known = info_.exposure_known || path_exists(folder / "exposures.txt");
+        if (const fs::path trajectory = folder / "trajectory.txt"; path_exists(trajectory)) {
             poses_ = FramePoses(trajectory, timestamps_s_, std::min(kAssociationLimit_s, 0.5 / info_.fps));
         }
         info_.has_poses = !poses_.empty();
@@ -184,7 +195,7 @@ class NativeSource : public FolderSource {
 
 }  // namespace
 
-bool is_native_sequence(const fs::path& folder) { return fs::exists(folder / "sequence.json"); }
+bool is_native_sequence(const fs::path& folder) { return path_exists(folder / "sequence.json"); }
 
 std::unique_ptr<Source> open_native(const fs::path& folder) { return std::make_unique<NativeSource>(folder); }
 

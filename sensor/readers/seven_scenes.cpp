@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine/core/input_file.h"
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
 #include "sensor/readers/folder_source.h"
@@ -35,9 +36,9 @@ std::string frame_number(const std::string& name, std::string_view suffix) {
 /// Every frame of which there is any file, so that a missing picture is noticed; ordered by number.
 std::vector<std::string> frame_numbers(const fs::path& folder) {
     std::set<std::string> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    for (const fs::path& entry : entries_of(folder)) {
         for (const char* suffix : {".color.png", ".color.jpg", ".depth.png", ".pose.txt"}) {
-            const std::string digits = frame_number(entry.path().filename().string(), suffix);
+            const std::string digits = frame_number(entry.filename().string(), suffix);
             if (!digits.empty()) found.insert(digits);
         }
     }
@@ -66,8 +67,9 @@ class SevenScenesSource : public FolderSource {
         info_.name = folder_name(folder);
         info_.format = "7-scenes";
         info_.frames = static_cast<uint32_t>(numbers_.size());
-        info_.has_poses = std::any_of(numbers_.begin(), numbers_.end(),
-                                      [&](const std::string& number) { return fs::exists(file(number, ".pose.txt")); });
+        info_.has_poses = std::any_of(numbers_.begin(), numbers_.end(), [&](const std::string& number) {
+            return path_exists(file(number, ".pose.txt"));
+        });
         set_cameras();
     }
 
@@ -78,7 +80,7 @@ class SevenScenesSource : public FolderSource {
 
     fs::path color_file(const std::string& number) const {
         const fs::path jpeg = file(number, ".color.jpg");
-        return fs::exists(jpeg) ? jpeg : file(number, ".color.png");
+        return path_exists(jpeg) ? jpeg : file(number, ".color.png");
     }
 
     void set_cameras() {
@@ -105,7 +107,7 @@ class SevenScenesSource : public FolderSource {
 
     fs::path intrinsics_file() const {
         for (const char* name : kIntrinsicsFiles) {
-            if (fs::exists(folder_ / name)) return folder_ / name;
+            if (path_exists(folder_ / name)) return folder_ / name;
         }
         return {};
     }
@@ -145,10 +147,10 @@ class SevenScenesSource : public FolderSource {
 }  // namespace
 
 bool is_seven_scenes_sequence(const fs::path& folder) {
-    const auto is_depth = [](const fs::directory_entry& entry) {
-        return !frame_number(entry.path().filename().string(), ".depth.png").empty();
-    };
-    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(), is_depth);
+    const std::vector<fs::path> entries = entries_of(folder);
+    return std::any_of(entries.begin(), entries.end(), [](const fs::path& entry) {
+        return !frame_number(entry.filename().string(), ".depth.png").empty();
+    });
 }
 
 std::unique_ptr<Source> open_seven_scenes(const fs::path& folder) {

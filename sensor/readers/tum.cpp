@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/input_file.h"
+#include "sensor/associate.h"
 #include "sensor/picture_file.h"
 #include "sensor/pose.h"
 #include "sensor/readers/folder_source.h"
@@ -76,7 +78,7 @@ class TumSource : public FolderSource {
         expect_known_size(color_.files);
         expect_known_size(depth_.files);
         color_of_frame_ = associate(depth_.timestamps_s, color_.timestamps_s, kAssociationLimit_s);
-        if (const fs::path trajectory = folder / "groundtruth.txt"; fs::exists(trajectory)) {
+        if (const fs::path trajectory = folder / "groundtruth.txt"; path_exists(trajectory)) {
             poses_ = FramePoses(trajectory, depth_.timestamps_s, kAssociationLimit_s);
         }
         info_.has_poses = !poses_.empty();
@@ -114,7 +116,7 @@ class TumSource : public FolderSource {
 }  // namespace
 
 bool is_tum_sequence(const fs::path& folder) {
-    return fs::exists(folder / "rgb.txt") && fs::exists(folder / "depth.txt");
+    return path_exists(folder / "rgb.txt") && path_exists(folder / "depth.txt");
 }
 
 std::unique_ptr<Source> open_tum(const fs::path& folder) { return std::make_unique<TumSource>(folder); }

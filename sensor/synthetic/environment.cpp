@@ -8,8 +8,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "sensor/exr_file.h"
-#include "sensor/text_file.h"
+#include "sensor/picture_container.h"
 
 namespace patina::sensor {
 namespace {
@@ -83,7 +84,8 @@ float seen(const SoftBox& box, glm::vec3 direction) {
 
 /// Radiance files hold RGBE; OpenCV returns it as float BGR.
 Image<glm::vec3> read_radiance_file(const std::filesystem::path& file) {
-    const std::vector<uint8_t> bytes = read_bytes(file);
+    const std::vector<uint8_t> bytes = read_file(file, limits::kPictureBytes);
+    const Extent2D extent = check_radiance(bytes, file.string());
     cv::Mat picture;
     try {
         picture = cv::imdecode(bytes, cv::IMREAD_ANYDEPTH | cv::IMREAD_COLOR);
@@ -92,8 +94,11 @@ Image<glm::vec3> read_radiance_file(const std::filesystem::path& file) {
     }
     if (picture.empty()) throw Error(file.string(), " cannot be decoded: its ", bytes.size(), " bytes are damaged");
     if (picture.type() != CV_32FC3) throw Error(file.string(), " is no Radiance picture: it holds no floating point");
+    const Extent2D decoded{static_cast<uint32_t>(picture.cols), static_cast<uint32_t>(picture.rows)};
+    if (decoded != extent)
+        throw Error(file.string(), " is damaged: its header says ", extent, " pixels, but it holds ", decoded);
     cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
-    Image<glm::vec3> image({static_cast<uint32_t>(picture.cols), static_cast<uint32_t>(picture.rows)});
+    Image<glm::vec3> image(extent);
     PATINA_ASSERT(picture.isContinuous(), "rows ", picture.rows, ", bytes per row ", picture.step[0]);
     std::memcpy(image.pixels().data(), picture.data, image.pixels().size() * sizeof(glm::vec3));
     return image;
@@ -144,6 +149,7 @@ Image<glm::vec3> draw_environment(const StudioEnvironment& studio, Extent2D exte
 }
 
 Image<glm::vec3> read_environment(const std::filesystem::path& file) {
+    expect_file(file);
     const bool exr = file.extension() == ".exr";
     if (!exr && file.extension() != ".hdr") throw Error(file.string(), " is neither .hdr nor .exr");
     Image<glm::vec3> environment = exr ? read_exr_color(file) : read_radiance_file(file);

@@ -36,7 +36,7 @@ void add_gather_light(graph::Frame& frame, const SceneModel& scene, const Intrin
         scene.bind_surfaces(frame, pass);
         scene.bind_environment(frame, pass);
         pass.read("depth_m", images.depth_m).read("object_id", images.object_id).read("normal", images.normal);
-        pass.read("kd", images.kd).read("ks_alpha", images.ks_alpha).read("lifted_m", images.lifted_m);
+        pass.read("kd", images.kd).read("ks_alpha", images.ks_alpha).read("Lifted", images.lifted_m);
         images.radiance = pass.modify("radiance", images.radiance);
         pass.specialise("kShadows", settings.shadows ? 1 : 0).specialise("kDirect", direct ? 1 : 0);
         pass.specialise("kEnvironment", scene.has_environment() ? 1 : 0);

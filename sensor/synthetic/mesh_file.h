@@ -24,7 +24,8 @@ struct MeshSettings {
 /// Reads all triangles of an OBJ, PLY, GLB or glTF file with their nodes' transforms as one mesh; polygons are split,
 /// points and lines left out, equal vertices joined. A glTF or OBJ picture's top left is texture coordinate (0, 0).
 /// Materials, colours, skins and animations of the file are ignored. Throws Error naming the file when it is missing,
-/// damaged, of another kind, without triangles, or has a degenerate triangle (see check_triangles).
+/// damaged, of another kind, too large (see limits), without triangles, or has a degenerate triangle (see
+/// check_triangles).
 TriangleMesh read_mesh(const std::filesystem::path& file, const MeshSettings& settings);
 
 }  // namespace patina::sensor

@@ -1,7 +1,10 @@
 #include "sensor/synthetic/noise.h"
 
 #include <map>
+#include <string>
+#include <vector>
 
+#include "engine/core/did_you_mean.h"
 #include "engine/core/error.h"
 
 namespace patina::sensor {
@@ -35,8 +38,12 @@ const std::map<std::string_view, SensorNoise>& presets() {
 
 SensorNoise noise_preset(std::string_view name) {
     const auto preset = presets().find(name);
-    if (preset == presets().end())
-        throw Error("there is no noise preset '", name, "'; there is: ", noise_preset_names());
+    if (preset == presets().end()) {
+        std::vector<std::string> names;
+        for (const auto& [known, noise] : presets()) names.emplace_back(known);
+        throw Error("there is no noise preset '", name, "'; there is: ", noise_preset_names(),
+                    did_you_mean(name, names));
+    }
     return preset->second;
 }
 

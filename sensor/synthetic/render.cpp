@@ -64,7 +64,7 @@ RenderedImages add_trace(graph::Frame& frame, const SceneModel& scene, Extent2D 
                                 .normal = pass.create("normal", {extent, Format::kRgba32f}),
                                 .kd = pass.create("kd", {extent, Format::kRgba32f}),
                                 .ks_alpha = pass.create("ks_alpha", {extent, Format::kRgba32f}),
-                                .lifted_m = pass.create("lifted_m", {extent, Format::kRgba32f})};
+                                .lifted_m = pass.create("Lifted", extent.area() * sizeof(glm::vec4))};
     pass.push(params).dispatch_covering(bundles_of(extent));
     return images;
 }
@@ -75,7 +75,7 @@ void add_shade(graph::Frame& frame, const SceneModel& scene, RenderedImages& ima
     auto pass = frame.compute("synthetic.shade_scene", spirv::shade_scene);
     scene.bind_geometry(frame, pass);
     pass.read("depth_m", images.depth_m).read("object_id", images.object_id).read("normal", images.normal);
-    pass.read("kd", images.kd).read("ks_alpha", images.ks_alpha).read("lifted_m", images.lifted_m);
+    pass.read("kd", images.kd).read("ks_alpha", images.ks_alpha).read("Lifted", images.lifted_m);
     images.radiance = pass.modify("radiance", images.radiance);
     pass.specialise("kShadows", shadows ? 1 : 0);
     pass.push(params).dispatch_covering(bundles_of(extent));
@@ -97,8 +97,7 @@ SceneModel::SceneModel(graph::Runner& runner, const Scene& scene) {
     Uploader upload(runner);
     info_ = upload.buffer("scene info", std::vector{data.info});
     nodes_ = upload.image("scene nodes", Format::kRgba32u, data.nodes);
-    triangles_ = upload.image("scene triangles", Format::kRgba32f, data.corners);
-    parts_ = upload.image("scene parts", Format::kRgba32f, data.parts);
+    shapes_ = upload.image("scene shapes", Format::kRgba32f, data.shapes);
     lights_ = upload.buffer("scene lights", data.lights);
     objects_ = upload.buffer("scene objects", data.objects);
     triangle_surfaces_ = upload.buffer("scene triangle surfaces", data.triangles);
@@ -110,8 +109,7 @@ SceneModel::SceneModel(graph::Runner& runner, const Scene& scene) {
 
 void SceneModel::bind_geometry(graph::Frame& frame, graph::PassBuilder& pass) const {
     pass.read("Scene", frame.import(info_)).read("Lights", frame.import(lights_));
-    pass.read("nodes", frame.import(nodes_)).read("triangles", frame.import(triangles_));
-    pass.read("parts", frame.import(parts_));
+    pass.read("nodes", frame.import(nodes_)).read("shapes", frame.import(shapes_));
 }
 
 void SceneModel::bind_surfaces(graph::Frame& frame, graph::PassBuilder& pass) const {

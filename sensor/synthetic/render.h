@@ -26,7 +26,7 @@ class SceneModel {
 
   private:
     vulkan::BufferRef info_, lights_, objects_, triangle_surfaces_, environment_, environment_aliases_;
-    vulkan::ImageRef nodes_, triangles_, parts_, texels_;
+    vulkan::ImageRef nodes_, shapes_, texels_;
     bool has_environment_ = false;
     bool has_area_lights_ = false;
 };
@@ -40,7 +40,7 @@ struct RenderedImages {
     graph::ImageId normal;     ///< W x H rgba32f, world, unit length, towards the camera; a unused
     graph::ImageId kd;         ///< W x H rgba32f, rgb; 0 on lamps; a unused
     graph::ImageId ks_alpha;   ///< W x H rgba32f, ks and roughness; 0 on lamps
-    graph::ImageId lifted_m;  ///< W x H rgba32f, world: a little above the surface, where rays may leave it; 0 on lamps
+    graph::BufferId lifted_m;  ///< vec4[W H], world: a little above the surface, where rays may leave it; 0 on lamps
 };
 
 /// The invocations that cover an image in passes that trace bundles of rays: each takes kBundleRays pixels of a column.

@@ -208,8 +208,10 @@ SceneData pack_scene(const Scene& scene) {
     const Primitives all = primitives_of(scene);
     const Bvh parts = build_bvh(all.part_bounds, kPartsPerLeaf);
     const Bvh triangles = build_bvh(all.triangle_bounds, kTrianglesPerLeaf);
-    data.parts = in_leaf_order(all.parts, parts);
-    data.corners = in_leaf_order(all.corners, triangles, gpu::kTriangleTexels);
+    data.shapes = in_leaf_order(all.corners, triangles, gpu::kTriangleTexels);
+    data.info.first_part_texel = static_cast<uint32_t>(data.shapes.size());
+    for (const gpu::ScenePart& part : in_leaf_order(all.parts, parts))
+        data.shapes.insert(data.shapes.end(), {part.row_x, part.row_y, part.row_z, part.size, part.quadric});
     data.triangles = in_leaf_order(all.triangles, triangles);
     for (uint32_t octant = 0; octant < gpu::kNodeOrders; ++octant) {
         const size_t order_begin = data.nodes.size();
@@ -220,7 +222,7 @@ SceneData pack_scene(const Scene& scene) {
     data.info.light_count = static_cast<uint32_t>(data.lights.size());
     data.info.has_lamps = std::ranges::any_of(scene.lights, [](const PointLight& l) { return l.radius_m > 0; });
     check_size(scene, "nodes", data.nodes.size() * gpu::kNodeTexels);
-    check_size(scene, "triangles", data.corners.size());
+    check_size(scene, "shapes", data.shapes.size());
     check_size(scene, "textures", data.texels.size());
     return data;
 }

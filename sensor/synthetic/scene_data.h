@@ -13,9 +13,8 @@ namespace patina::sensor {
 struct SceneData {
     gpu::SceneInfo info{};
     std::vector<gpu::SceneNode> nodes;  ///< those of the parts' tree, then of the triangles'; in every order
-    std::vector<gpu::ScenePart> parts;  ///< in the order of the leaves, as triangles
-    std::vector<glm::vec4> corners;     ///< kTriangleTexels per triangle
-    std::vector<gpu::SceneTriangle> triangles;
+    std::vector<glm::vec4> shapes;  ///< in the order of the leaves: kTriangleTexels per triangle, then gpu::ScenePart
+    std::vector<gpu::SceneTriangle> triangles;  ///< in the order of the leaves
     std::vector<gpu::SceneObject> objects;
     std::vector<glm::vec4> texels;  ///< the pictures of kd, object by object
     std::vector<gpu::SceneLight> lights;

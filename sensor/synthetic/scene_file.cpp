@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "engine/core/did_you_mean.h"
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "sensor/json_file.h"
 #include "sensor/synthetic/readers/camera.h"
 #include "sensor/synthetic/readers/environment.h"
@@ -24,12 +27,24 @@ constexpr const char* kExtension = ".json";
 
 fs::path scenes_folder() { return assets_folder() / "scenes"; }
 
+/// In alphabetical order.
+std::vector<std::string> built_in_scenes() {
+    std::vector<std::string> names;
+    std::error_code ignored;  // a folder that is missing has no scenes
+    for (const auto& entry : fs::directory_iterator(scenes_folder(), ignored))
+        if (entry.path().extension() == kExtension) names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 fs::path file_of(const std::string& name_or_file) {
     if (name_or_file.find('/') != std::string::npos || name_or_file.ends_with(kExtension)) return name_or_file;
     const fs::path file = scenes_folder() / (name_or_file + kExtension);
-    if (!fs::exists(file)) {
+    if (!path_exists(file)) {
+        const std::vector<std::string> names = built_in_scenes();
+        const std::string meant = did_you_mean(name_or_file, names);
         throw Error("there is no built-in scene '", name_or_file, "' in ", scenes_folder().string(),
-                    "; there is: ", scene_names());
+                    meant.empty() ? "; there is: " + scene_names() : meant);
     }
     return file;
 }
@@ -51,8 +66,16 @@ Scene read_scene(const fs::path& file, const fs::path& mesh) {
 }  // namespace
 
 Scene load_scene(const std::string& name_or_file, const SceneChanges& changes) {
+    if (!changes.mesh.empty()) expect_file(changes.mesh);
     Scene scene = read_scene(file_of(name_or_file), changes.mesh);
+    if (changes.seed) scene.recording.seed = scene.recording.render.seed = *changes.seed;
     return changes.vary ? varied(std::move(scene), *changes.vary) : scene;
+}
+
+std::optional<std::string> scene_name(const std::string& sequence) {
+    constexpr std::string_view kSynthetic = "synthetic:";
+    if (!sequence.starts_with(kSynthetic)) return std::nullopt;
+    return sequence.substr(kSynthetic.size());
 }
 
 std::filesystem::path assets_folder() {
@@ -61,13 +84,8 @@ std::filesystem::path assets_folder() {
 }
 
 std::string scene_names() {
-    std::vector<std::string> names;
-    std::error_code ignored;  // a folder that is missing has no scenes
-    for (const auto& entry : fs::directory_iterator(scenes_folder(), ignored))
-        if (entry.path().extension() == kExtension) names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
     std::string list;
-    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    for (const std::string& name : built_in_scenes()) list += (list.empty() ? "" : ", ") + name;
     return list;
 }
 

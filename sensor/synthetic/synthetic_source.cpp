@@ -22,7 +22,8 @@ SequenceInfo info_of(const Scene& scene, uint32_t frames) {
     }
     info.metres_per_unit = scene.metres_per_unit;
     info.max_metres = scene.max_metres;
-    info.has_poses = info.exposure_known = info.rendered = true;
+    info.has_poses = info.exposure_known = true;
+    info.motion_blur = false;
     return info;
 }
 

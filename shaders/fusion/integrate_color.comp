@@ -60,7 +60,7 @@ void main() {
     const uint key = block_keys[block];
     const ivec3 corner = block_of_key(fusion.grid, key) * int(kBlockEdge);
     const uint first_quad = index_in_chunk(fusion.grid.chunk_shift, block) * (kBlockVoxels / 4u);
-    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u);
+    const uint dither = hash_of_key(key ^ fusion.frame_index * 0x9e3779b9u ^ fusion.seed);
     if (gl_LocalInvocationIndex == 0u) listed_quads = 0u;
     barrier();
     const uint near = near_surface[item * kIntegrateGroup + gl_LocalInvocationIndex];

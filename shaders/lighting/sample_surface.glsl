@@ -50,23 +50,26 @@ LightSample sample_of(uint record, VoxelRecord known) {
     return result;
 }
 
-// A place of the samples by the block's hash, and what decides between the records that want it, unique among them:
-// neither depends on record ids.
+// A place of the samples by a hash of block and seed, and what decides between the records that want it, unique among
+// them: neither depends on record ids.
 struct Claim {
     uint place;
     uint priority;  // above 0
 };
 
-// The bits of a hash of the block choose the place; the others and the voxel, which follows the hash, the priority.
+// Another one for each block.
+uint claim_hash(VoxelRecord known) { return hash_of_key(known.block_key ^ params.seed); }
+
+// The bits of the hash choose the place; the others and the voxel, which follows the hash, the priority.
 Claim claim_of(VoxelRecord known) {
-    const uint hash = hash_of_key(known.block_key);
+    const uint hash = claim_hash(known);
     const uint voxel = (voxel_in_block(known) ^ hash >> 16) & 0x3fu;
     return Claim(hash % kLightSamples, 1u + (hash / kLightSamples << 6 | voxel));
 }
 
 // Highlights are few: a block's voxels have eight places.
 Claim highlight_claim_of(VoxelRecord known) {
-    const uint hash = hash_of_key(known.block_key), voxel = voxel_in_block(known);
+    const uint hash = claim_hash(known), voxel = voxel_in_block(known);
     const uint classes = kLightSamples / 8u;
     return Claim(kLightSamples + (hash % classes * 8u | voxel & 7u), 1u + (hash / classes << 6 | voxel));
 }

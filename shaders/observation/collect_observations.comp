@@ -23,12 +23,11 @@ layout(std430, binding = 7) readonly buffer Visible { uint visible[]; };
 layout(std430, binding = 8) buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 9) buffer Changed { uint changed[]; };
 layout(std430, binding = 10) buffer ChangedList { uint changed_list[]; };
-layout(std430, binding = 11) buffer ChangedArguments { uint changed_arguments[]; };
-layout(std430, binding = 12) buffer Stale { uint stale[]; };
-layout(std430, binding = 13) buffer StaleArguments { uint stale_arguments[]; };
-layout(std430, binding = 14) buffer Directions { uvec4 quads[]; }
+layout(std430, binding = 11) buffer Stale { uint stale[]; };
+layout(std430, binding = 12) buffer Arguments { uvec4 arguments[]; };  // of dispatches over the changed, the stale
+layout(std430, binding = 13) buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
-layout(std430, binding = 19) buffer Colors { uvec4 quads[]; }
+layout(std430, binding = 18) buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
 layout(constant_id = 1) const bool kColorApart = false;  // the colour camera is not where the depth camera is
 #include "observation/insert_observation.glsl"
@@ -221,7 +220,7 @@ void main() {
     if (faces && reading.even && colored && color_sees(in_depth)) {
         const Insertion insertion = insert_observation(frame.grid.chunk_shift, record, count, toward / distance_m, rgb,
                                                        clipped, frame.merge_distance2);
-        if (insertion.lost_closest) APPEND_RECORD(stale, stale_arguments, record)
+        if (insertion.lost_closest) APPEND_RECORD(stale, arguments[1], record)
         count = insertion.count;
         has_changed = has_changed || insertion.changed;
     }
@@ -234,6 +233,6 @@ void main() {
     records[record] = known;
     if (count > 0u && (has_changed || record_label(known) != old_label)) {
         changed[record] = frame.stamp;
-        APPEND_RECORD(changed_list, changed_arguments, record)
+        APPEND_RECORD(changed_list, arguments[0], record)
     }
 }

@@ -29,7 +29,8 @@ struct FusionParams {
     float settled_weight;      // of a voxel whose colour can wait
     uint settled_color_every;  // blocks of such voxels take colour once in so many frames that have one
     uint color_frame;          // how many frames that have one there were before
-    uint pad0, pad1;
+    uint seed;                 // of the chance by which colours are rounded
+    uint pad0;
 };
 
 INTEROP_END

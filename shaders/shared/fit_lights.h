@@ -24,9 +24,9 @@ struct LightSample {
 struct SampleParams {
     VoxelGrid grid;   // of the observations
     uint edge_shift;  // of the observation map
+    uint seed;        // of which voxels are samples
     uint pad0;
     uint pad1;
-    uint pad2;
 };
 
 struct TrialParams {

@@ -21,8 +21,8 @@ INTEROP_CONST float kUnbounded = 1e10f;  // stands for infinity where products w
 struct SceneInfo {
     uint node_count;  // in each order
     uint light_count;
-    uint has_lamps;  // whether any light is a lamp, a sphere that is seen
-    uint pad0;
+    uint has_lamps;          // whether any light is a lamp, a sphere that is seen
+    uint first_part_texel;   // of the image of shapes: behind the triangles
     uvec2 environment_size;  // pixels of its picture; unused without one
     uint pad1;
     uint pad2;

@@ -95,6 +95,7 @@ struct SegmentCounters {
     uint frame_flips;   // of these, how many went from one label to another
     uint frame_due;     // blocks that had their turn in this frame, times kLabelQuads; of settled ones a part had it
     uint frame_seen;    // and those in sight
+    uint capacity;      // labels, label 0 included, as of this frame
 };
 
 struct SegmentationParams {

@@ -39,6 +39,7 @@ struct MapCounters {
     uint refused_samples;  // over the whole run: ray samples that found the table full
     uint outside_samples;  // over the whole run: ray samples outside the range of keys
     uint deleted_blocks;   // over the whole run: blocks that held no surface
+    uint capacity;         // places in the pool, as of this frame
 };
 
 INTEROP_CONST uint kAcceptBins = 1024u;

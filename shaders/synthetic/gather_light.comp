@@ -16,12 +16,12 @@ layout(constant_id = 0) const uint kShadows = 0u;      // of lamps
 layout(constant_id = 1) const uint kDirect = 0u;       // whether the first vertex asks for lamps
 layout(constant_id = 2) const uint kEnvironment = 0u;  // whether there is one
 layout(rgba32f, binding = 10) uniform image2D radiance;
-layout(r32f, binding = 11) uniform readonly image2D depth_m;
-layout(r32ui, binding = 12) uniform readonly uimage2D object_id;
-layout(rgba32f, binding = 13) uniform readonly image2D normal;
-layout(rgba32f, binding = 14) uniform readonly image2D kd;
-layout(rgba32f, binding = 15) uniform readonly image2D ks_alpha;
-layout(rgba32f, binding = 16) uniform readonly image2D lifted_m;
+layout(binding = 11) uniform sampler2D depth_m;
+layout(binding = 12) uniform usampler2D object_id;
+layout(binding = 13) uniform sampler2D normal;
+layout(binding = 14) uniform sampler2D kd;
+layout(binding = 15) uniform sampler2D ks_alpha;
+layout(std430, binding = 16) readonly buffer Lifted { vec4 lifted_m[]; };
 layout(push_constant) uniform Push { GatherLightParams params; };
 
 const float kFar_m = 1e6;  // a point in a direction from afar, for shadow rays
@@ -193,12 +193,12 @@ void gather(Vertex first[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], out vec3 shar
 // What the camera sees at a pixel; a path that has ended where this is no surface, or beyond the image's edge.
 Vertex load(ivec2 pixel, Ray ray) {
     Surface s;
-    s.point_m = ray.origin_m + imageLoad(depth_m, pixel).x * ray.direction;
-    s.normal = imageLoad(normal, pixel).xyz;
-    s.lifted_m = imageLoad(lifted_m, pixel).xyz;
-    s.kd = imageLoad(kd, pixel).rgb;
-    s.ks_alpha = imageLoad(ks_alpha, pixel);
-    s.object_id = imageLoad(object_id, pixel).x;
+    s.point_m = ray.origin_m + texelFetch(depth_m, pixel, 0).x * ray.direction;
+    s.normal = texelFetch(normal, pixel, 0).xyz;
+    s.lifted_m = lifted_m[min(uint(pixel.y), params.camera.extent.y - 1u) * params.camera.extent.x + uint(pixel.x)].xyz;
+    s.kd = texelFetch(kd, pixel, 0).rgb;
+    s.ks_alpha = texelFetch(ks_alpha, pixel, 0);
+    s.object_id = texelFetch(object_id, pixel, 0).x;
     return Vertex(s, -normalize(ray.direction), vec3(s.object_id != 0u ? 1.0 : 0.0));
 }
 

@@ -9,18 +9,17 @@
 // one and the same point (pass the same variable: the arithmetic that depends on it alone is then done once).
 // Lamps are no part of the geometry: they never block light; see hit_lamps().
 //
-// Bindings 0 to 4 are declared here (SceneModel::bind_geometry), 5 to 7 in synthetic/surface.glsl; a pass's own begin
-// at 8. Specialization constants and push constants are the pass's own.
+// Bindings 0 to 3 are declared here (SceneModel::bind_geometry), 5 to 7 in synthetic/surface.glsl; a pass's own begin
+// at 8. Images are few: a stage has 8 of them. Specialization constants and push constants are the pass's own.
 #ifndef PATINA_SYNTHETIC_SCENE_GLSL
 #define PATINA_SYNTHETIC_SCENE_GLSL
 #extension GL_EXT_control_flow_attributes : require
 #include "shared/scene.h"
 
 layout(std140, binding = 0) uniform Scene { SceneInfo scene; };
-layout(rgba32ui, binding = 1) uniform readonly uimage2D nodes;    // SceneNode, in kNodeOrders orders
-layout(rgba32f, binding = 2) uniform readonly image2D triangles;  // kTriangleTexels each
-layout(rgba32f, binding = 3) uniform readonly image2D parts;      // ScenePart
-layout(std430, binding = 4) readonly buffer Lights { SceneLight lights[]; };
+layout(rgba32ui, binding = 1) uniform readonly uimage2D nodes;  // SceneNode, in kNodeOrders orders
+layout(rgba32f, binding = 2) uniform readonly image2D shapes;   // triangles, kTriangleTexels each; then ScenePart
+layout(std430, binding = 3) readonly buffer Lights { SceneLight lights[]; };
 
 #ifndef BUNDLE_RAYS
 #define BUNDLE_RAYS kBundleRays
@@ -63,10 +62,10 @@ LocalRay in_part(ScenePart part, Ray ray) {
 }
 
 ScenePart load_part(uint index) {
-    const uint first = index * kPartTexels;
-    return ScenePart(imageLoad(parts, texel_of(first)), imageLoad(parts, texel_of(first + 1u)),
-                     imageLoad(parts, texel_of(first + 2u)), imageLoad(parts, texel_of(first + 3u)),
-                     imageLoad(parts, texel_of(first + 4u)));
+    const uint first = scene.first_part_texel + index * kPartTexels;
+    return ScenePart(imageLoad(shapes, texel_of(first)), imageLoad(shapes, texel_of(first + 1u)),
+                     imageLoad(shapes, texel_of(first + 2u)), imageLoad(shapes, texel_of(first + 3u)),
+                     imageLoad(shapes, texel_of(first + 4u)));
 }
 
 // Where a line enters and leaves the quadric of a part. From the line's point nearest to the axis: the textbook's
@@ -166,9 +165,9 @@ void traverse(Ray rays[BUNDLE_RAYS], bool any_hit, inout Hit hits[BUNDLE_RAYS]) 
         node = entered ? node + 1u : low_skip.w;
         // Loops, not branches: software devices run both sides of a branch, but no loop that no invocation enters.
         for (uint i = first; i < (holds_parts ? first : last); ++i) {
-            const vec3 a = imageLoad(triangles, texel_of(i * kTriangleTexels)).xyz;
-            const vec3 b = imageLoad(triangles, texel_of(i * kTriangleTexels + 1u)).xyz;
-            const vec3 c = imageLoad(triangles, texel_of(i * kTriangleTexels + 2u)).xyz;
+            const vec3 a = imageLoad(shapes, texel_of(i * kTriangleTexels)).xyz;
+            const vec3 b = imageLoad(shapes, texel_of(i * kTriangleTexels + 1u)).xyz;
+            const vec3 c = imageLoad(shapes, texel_of(i * kTriangleTexels + 2u)).xyz;
             EACH_RAY keep(hits[k], hit_triangle(a, b, c, rays[k]), i | kTriangleHit, any_hit);
         }
         for (uint i = first; i < (holds_parts ? last : first); ++i) {

@@ -9,12 +9,12 @@
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(constant_id = 0) const uint kShadows = 0u;
 layout(rgba32f, binding = 8) uniform image2D radiance;
-layout(r32f, binding = 9) uniform readonly image2D depth_m;
-layout(r32ui, binding = 10) uniform readonly uimage2D object_id;
-layout(rgba32f, binding = 11) uniform readonly image2D normal;
-layout(rgba32f, binding = 12) uniform readonly image2D kd;
-layout(rgba32f, binding = 13) uniform readonly image2D ks_alpha;
-layout(rgba32f, binding = 14) uniform readonly image2D lifted_m;
+layout(binding = 9) uniform sampler2D depth_m;
+layout(binding = 10) uniform usampler2D object_id;
+layout(binding = 11) uniform sampler2D normal;
+layout(binding = 12) uniform sampler2D kd;
+layout(binding = 13) uniform sampler2D ks_alpha;
+layout(std430, binding = 14) readonly buffer Lifted { vec4 lifted_m[]; };
 layout(push_constant) uniform Push { TraceSceneParams params; };
 
 struct Seen {
@@ -30,9 +30,10 @@ struct Seen {
 // Beyond the image's edge nothing is seen.
 Seen load(ivec2 pixel, vec3 center_m) {
     const vec3 direction = to_world_direction(params.camera, unproject(params.camera, vec2(pixel)));
-    return Seen(center_m + imageLoad(depth_m, pixel).x * direction, imageLoad(lifted_m, pixel).xyz,
-                imageLoad(normal, pixel).xyz, -normalize(direction), imageLoad(kd, pixel).rgb,
-                imageLoad(ks_alpha, pixel), imageLoad(object_id, pixel).x != 0u);
+    return Seen(center_m + texelFetch(depth_m, pixel, 0).x * direction,
+                lifted_m[min(uint(pixel.y), params.camera.extent.y - 1u) * params.camera.extent.x + uint(pixel.x)].xyz,
+                texelFetch(normal, pixel, 0).xyz, -normalize(direction), texelFetch(kd, pixel, 0).rgb,
+                texelFetch(ks_alpha, pixel, 0), texelFetch(object_id, pixel, 0).x != 0u);
 }
 
 void add_light(SceneLight light, Seen seen[kBundleRays], inout vec3 sums[kBundleRays]) {

@@ -6,7 +6,7 @@
 
 layout(std430, binding = 5) readonly buffer Objects { SceneObject objects[]; };
 layout(std430, binding = 6) readonly buffer TriangleSurfaces { SceneTriangle triangle_surfaces[]; };
-layout(rgba32f, binding = 7) uniform readonly image2D texels;  // rgb: kd; the pictures of all objects
+layout(binding = 7) uniform sampler2D texels;  // rgb: kd; the pictures of all objects
 
 // Rays leave from this far above a surface, times 1 m plus the point's largest coordinate: well above what fp32 loses
 // there, well below a millimetre in a room.
@@ -79,9 +79,9 @@ vec3 below_corner(vec3 point_m, vec3 corner_m, vec3 normal) {
 }
 
 Place triangle_place(uint index, Ray ray, float t) {
-    const vec3 a = imageLoad(triangles, texel_of(index * kTriangleTexels)).xyz;
-    const vec3 b = imageLoad(triangles, texel_of(index * kTriangleTexels + 1u)).xyz;
-    const vec3 c = imageLoad(triangles, texel_of(index * kTriangleTexels + 2u)).xyz;
+    const vec3 a = imageLoad(shapes, texel_of(index * kTriangleTexels)).xyz;
+    const vec3 b = imageLoad(shapes, texel_of(index * kTriangleTexels + 1u)).xyz;
+    const vec3 c = imageLoad(shapes, texel_of(index * kTriangleTexels + 2u)).xyz;
     const SceneTriangle s = triangle_surfaces[index];
     const vec3 volumes = edge_volumes(a, b, c, ray);
     const vec3 share = volumes / (volumes.x + volumes.y + volumes.z);
@@ -109,10 +109,10 @@ vec3 kd_at(SceneObject object, vec2 uv) {
     const uvec2 i = uvec2(first);
     const uvec2 j = mix(i + 1u, uvec2(0u), equal(i + 1u, object.texture_size));
     const uvec2 row = object.first_texel + object.texture_size.x * uvec2(i.y, j.y);
-    const vec3 top_left = imageLoad(texels, texel_of(row.x + i.x)).rgb;
-    const vec3 top_right = imageLoad(texels, texel_of(row.x + j.x)).rgb;
-    const vec3 bottom_left = imageLoad(texels, texel_of(row.y + i.x)).rgb;
-    const vec3 bottom_right = imageLoad(texels, texel_of(row.y + j.x)).rgb;
+    const vec3 top_left = texelFetch(texels, texel_of(row.x + i.x), 0).rgb;
+    const vec3 top_right = texelFetch(texels, texel_of(row.x + j.x), 0).rgb;
+    const vec3 bottom_left = texelFetch(texels, texel_of(row.y + i.x), 0).rgb;
+    const vec3 bottom_right = texelFetch(texels, texel_of(row.y + j.x), 0).rgb;
     // This form of the mean yields equal texels exactly.
     const vec2 share = at - low;
     const vec3 top = top_left + share.x * (top_right - top_left);

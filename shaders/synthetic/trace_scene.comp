@@ -12,7 +12,7 @@ layout(r32ui, binding = 10) uniform writeonly uimage2D object_id;
 layout(rgba32f, binding = 11) uniform writeonly image2D normal;
 layout(rgba32f, binding = 12) uniform writeonly image2D kd;
 layout(rgba32f, binding = 13) uniform writeonly image2D ks_alpha;
-layout(rgba32f, binding = 14) uniform writeonly image2D lifted_m;  // where rays that leave the surface start
+layout(std430, binding = 14) writeonly buffer Lifted { vec4 lifted_m[]; };  // where rays that leave the surface start
 layout(push_constant) uniform Push { TraceSceneParams params; };
 
 // Lamps hide what is behind them: `lamp` is the one that the ray meets at hit.t instead of the surface that it hit.
@@ -24,7 +24,8 @@ void store(ivec2 pixel, Ray ray, Hit hit, uint lamp, Surface surface) {
     imageStore(object_id, pixel, uvec4(reflects ? surface.object_id : 0u));
     imageStore(kd, pixel, reflects ? vec4(surface.kd, 0.0) : vec4(0.0));
     imageStore(ks_alpha, pixel, reflects ? surface.ks_alpha : vec4(0.0));
-    imageStore(lifted_m, pixel, reflects ? vec4(surface.lifted_m, 0.0) : vec4(0.0));
+    lifted_m[uint(pixel.y) * params.camera.extent.x + uint(pixel.x)] =
+        reflects ? vec4(surface.lifted_m, 0.0) : vec4(0.0);
     vec3 facing = surface.normal, emitted = vec3(0.0);
     if (lamp != kNothingHit) {
         facing = normalize(ray.origin_m + hit.t * ray.direction - lights[lamp].position_m.xyz);

@@ -38,6 +38,51 @@ TEST_F(Arguments, WrongUsageOfSynthIsOneLine) {
     EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(Arguments, WhatWasMeantIsNamed) {
+    const auto complaint = [](std::vector<std::string> arguments, int exit_code = kUsage) {
+        return expect_failure(patina(arguments), exit_code);
+    };
+    EXPECT_THAT(complaint({"rum", "x"}), HasSubstr("there is no subcommand 'rum'; did you mean 'run'?"));
+    EXPECT_THAT(complaint({"rum", "x", "--out", "o"}), HasSubstr("no subcommand 'rum'; did you mean 'run'?"))
+        << "not that there is no option --out";
+    EXPECT_THAT(complaint({"reconstruct"}), HasSubstr("there is no subcommand 'reconstruct' ("));
+    EXPECT_THAT(complaint({"run", "x", "--out", "o", "--frmaes", "3"}),
+                HasSubstr("run has no option '--frmaes'; did you mean '--frames'?"));
+    EXPECT_THAT(complaint({"run", "x", "--uot=o"}), HasSubstr("run has no option '--uot'; did you mean '--out'?"))
+        << "not that --out is required";
+    EXPECT_THAT(complaint({"--verison"}), HasSubstr("there is no option '--verison'; did you mean '--version'?"));
+    EXPECT_THAT(complaint({"run", "x", "--out", "o", "--gains", "of"}),
+                HasSubstr("--gains: 'of' is none of auto, on, off; did you mean 'off'?"));
+    EXPECT_THAT(complaint({"run", "x", "--out", "o", "--labels", "geometri"}), HasSubstr("did you mean 'geometry'?"));
+    EXPECT_THAT(complaint({"run", "x", "--out", "o", "--specular", "hemicn"}), HasSubstr("did you mean 'hemicnn'?"));
+    EXPECT_THAT(complaint({"render", "x", "--show", "label"}), HasSubstr("did you mean 'labels'?"));
+    EXPECT_THAT(complaint({"lights", "x", "--from", "lightning"}), HasSubstr("did you mean 'lighting'?"));
+    EXPECT_THAT(complaint({"synth-hemi", "--out", "o", "--map", "parabola"}), HasSubstr("did you mean 'parabolic'?"));
+    EXPECT_THAT(complaint({"synth", "cubs", "--out", beside("o")}, 1), HasSubstr("did you mean 'cubes'?"));
+    EXPECT_THAT(complaint({"info", "synthetic:ofice"}, 1), HasSubstr("did you mean 'office'?"));
+    EXPECT_THAT(complaint({"synth", "cubes", "--noise", "kinect", "--out", beside("o")}, 1),
+                HasSubstr("did you mean 'kinect1'?"));
+    EXPECT_THAT(complaint({"info", sequence(), "--format", "tumm"}, 1), HasSubstr("did you mean 'tum'?"));
+    EXPECT_THAT(complaint({"run", sequence(), "--out", out(), "--set", "map.voxel=0.01"}, 1),
+                AllOf(HasSubstr("there is no setting 'map.voxel'; did you mean 'map.voxel_m'?"),
+                      ::testing::Not(HasSubstr("known are"))));
+    EXPECT_THAT(complaint({"run", sequence(), "--out", out(), "--set", "colour=1"}, 1),
+                HasSubstr("there is no setting 'colour'; known are map.voxel_m, "));
+}
+
+TEST_F(Arguments, NoFramesAreRefused) {
+    const auto complaint = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--frames", "0"});
+        return expect_failure(patina(arguments), kUsage);
+    };
+    const std::string wanted = "--frames: '0' is not a whole number from 1";
+    EXPECT_THAT(complaint({"run", sequence(), "--out", out()}), HasSubstr(wanted));
+    EXPECT_THAT(complaint({"render", sequence(), "--out", out()}), HasSubstr(wanted));
+    EXPECT_THAT(complaint({"synth", "cubes", "--out", out()}), HasSubstr(wanted));
+    EXPECT_THAT(complaint({"lights", sequence()}), HasSubstr(wanted));
+    EXPECT_FALSE(fs::exists(out()));
+}
+
 TEST_F(Arguments, HelpNamesTheScenesAndTheNoisePresets) {
     const Outcome synth = patina({"synth", "--help"}), run = patina({"run", "--help"});
     EXPECT_THAT(synth.out, AllOf(HasSubstr("cubes"), HasSubstr("kinect2"), HasSubstr("--vary")));
@@ -78,8 +123,6 @@ TEST_F(Arguments, BadSettingsAreNamed) {
 TEST_F(Arguments, SettingsThatNoRunCanUse) {
     const auto complaint = [&](const char* setting) { return failure_of_run(sequence(), {"--set", setting}); };
     EXPECT_THAT(complaint("map.voxel_m=0"), HasSubstr("voxel size is 0 m"));
-    EXPECT_THAT(complaint("map.capacity_blocks=0"), HasSubstr("capacity is 0 blocks"));
-    EXPECT_THAT(complaint("map.capacity_blocks=4294967295"), HasSubstr("capacity is 4294967295 blocks"));
     EXPECT_THAT(complaint("fusion.allocation_stride_px=0"), HasSubstr("fusion.allocation_stride_px is 0"));
     EXPECT_THAT(complaint("fusion.max_weight=0"), HasSubstr("fusion.max_weight is 0"));
     EXPECT_THAT(complaint("fusion.max_color_weight=65536"), HasSubstr("fusion.max_color_weight is 65536"));

@@ -68,11 +68,10 @@ TEST_F(Eval, TheSameRunGivesTheSameBytes) {
 }
 
 TEST_F(Eval, WritesWhereItIsTold) {
-    write_text(run() / "run.json", "{}");
-    const Outcome outcome = eval({"--out", run(), "--quiet"});
+    const Outcome outcome = eval({"--out", run() / "scores", "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.out + outcome.err, "");
-    EXPECT_TRUE(fs::exists(run() / "eval.json"));
+    EXPECT_THAT(names_in(run() / "scores"), ElementsAre("eval.json", "report.html"));
     EXPECT_EQ(read_text(run() / "run.json"), "{}") << "a run stays finished";
     EXPECT_FALSE(fs::exists(run() / "eval"));
 }

@@ -1,55 +1,134 @@
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
 
-#include "sensor/exr_file.h"
 #include "tests/cli/run_folder.h"
 
 namespace patina::testing {
 namespace {
 
 namespace fs = std::filesystem;
+using sensor::testing::read_text;
 using sensor::testing::write_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class Interrupt : public RunFolderTest {
   protected:
-    /// Waits until the run has written a file or ended.
-    void await(Program& program, const fs::path& file) {
-        while (!fs::exists(file) && program.running()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    /// Waits until the run has written its second view somewhere below the test's folder, or has ended.
+    void await_frames(Program& program) {
+        const auto written = [&] {
+            std::error_code gone;  // folders are renamed meanwhile
+            for (fs::recursive_directory_iterator entry(beside("."), gone), end; !gone && entry != end;
+                 entry.increment(gone))
+                if (entry->path().filename() == "000001.exr") return true;
+            return false;
+        };
+        while (!written() && program.running()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+
+    /// Sends a second signal when the first one is more than a second old, and the program still where the first one
+    /// found it: it is stopped meanwhile.
+    void send_late(Program& program, int first, int second) {
+        program.send(first);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the handler
+        program.send(SIGSTOP);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+        program.send(second);
+        program.send(SIGCONT);
+    }
+
+    std::vector<std::string> endless(std::vector<std::string> more) {
+        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out", out()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+
+    /// What an interrupted run has fused is there, and everything says that it is not all.
+    void expect_unfinished(const Outcome& outcome, const fs::path& results) {
+        EXPECT_EQ(outcome.signal, 0);
+        EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+        EXPECT_THAT(outcome.out, StartsWith("incomplete: interrupted after "));
+        EXPECT_THAT(outcome.out, HasSubstr("of 100000 frames"));
+        const nlohmann::json record = record_of(results);
+        EXPECT_EQ(record["finished"], false);
+        EXPECT_THAT(record.value("ended", ""), AllOf(StartsWith("interrupted after "), HasSubstr("of 100000 frames")));
+        EXPECT_EQ(record["shortfalls"][0], record["ended"]);
+        EXPECT_GT(record["totals"]["triangles"], 10000);
+        EXPECT_EQ(read_text(results / "scene.glb").substr(0, 4), "glTF");
+        EXPECT_THAT(read_text(results / "report.html"), HasSubstr("interrupted after "));
+        const std::string trajectory = read_text(results / "trajectory.txt");
+        EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 1 + record["frames"]["used"].get<int>());
     }
 };
 
-TEST_F(Interrupt, LeavesWholeFilesOnly) {
+TEST_F(Interrupt, WhatWasFusedIsExtractedAndWritten) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+        await_frames(program);
+        program.send(signal);
+        expect_unfinished(program.wait(), out());
+        fs::remove_all(out());
+    }
+}
+
+TEST_F(Interrupt, AnEarlierRunThatFinishedStays) {
     fs::create_directory(out());
     write_text(out() / "scene.glb", "an earlier scene");
-    write_text(out() / "run.json", "{}");
-    Program program({"run", "synthetic:cubes", "--frames", "100000", "--lighting", "none", "--dump-every", "1", "--out",
-                     out(), "--quiet"});
-    await(program, out() / "frames/000001.exr");
+    write_text(out() / "run.json", R"({"format": "patina-run"})");
+    const auto earlier = files_in(out());
+    Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+    await_frames(program);
     program.send(SIGINT);
-    EXPECT_THAT(expect_failure(program.wait(), 130),
-                AllOf(HasSubstr("interrupted after"), HasSubstr("of 100000 frames")));
+    expect_unfinished(program.wait(), beside("out-unfinished"));
+    EXPECT_EQ(files_in(out()), earlier);
+}
 
-    size_t views = 0;
-    for (const auto& [name, content] : files_in(out())) {
-        if (name == "scene.glb") {
-            EXPECT_EQ(content, "an earlier scene");
-            continue;
-        }
-        EXPECT_TRUE(name.starts_with("frames/") && name.ends_with(".exr")) << name;
-        EXPECT_EQ(sensor::read_exr_depth(out() / name).extent(), (Extent2D{512, 424})) << name;
-        ++views;
+TEST_F(Interrupt, AfterTheLightsWereFoundItIsStillNoted) {
+    Program program(endless({"--dump-every", "1"}));
+    await_frames(program);
+    program.send(SIGINT);
+    expect_unfinished(program.wait(), out());
+    EXPECT_TRUE(fs::exists(out() / "materials.json"));
+}
+
+TEST_F(Interrupt, TheSecondSignalEndsAtOnce) {
+    Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+    await_frames(program);
+    send_late(program, SIGINT, SIGTERM);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.signal, SIGTERM) << outcome.exit_code;
+    EXPECT_FALSE(fs::exists(out() / "run.json"));
+}
+
+TEST_F(Interrupt, ASignalThatIsSentTwiceIsOneRequest) {
+    // As a terminal does that is closed, and `timeout`.
+    for (const int signal : {SIGHUP, SIGTERM}) {
+        Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+        await_frames(program);
+        program.send(signal);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // else the two become one
+        program.send(signal);
+        expect_unfinished(program.wait(), out());
+        fs::remove_all(out());
     }
-    EXPECT_GE(views, 2u);
+}
+
+TEST_F(Interrupt, ALateHangUpEndsNothing) {
+    Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+    await_frames(program);
+    send_late(program, SIGHUP, SIGHUP);
+    expect_unfinished(program.wait(), out());
 }
 
 TEST_F(Interrupt, BeforeTheFirstFrameLeavesNothing) {
-    Program program({"run", "synthetic:cubes", "--frames", "100000", "--lighting", "none", "--out", out(), "--quiet"});
-    await(program, out());
+    // Lamps are looked for in 60 frames first.
+    Program program(endless({"--quiet"}));
+    program.await_handler(SIGTERM);
     program.send(SIGTERM);
-    expect_failure(program.wait(), 130);
+    EXPECT_THAT(expect_failure(program.wait(), 130), HasSubstr("interrupted after"));
     EXPECT_TRUE(files_in(out()).empty());
 }
 
@@ -57,7 +136,7 @@ TEST_F(Interrupt, OfSynthLeavesNothing) {
     // 100000 frames and the 60 of the scene's lighting sequence.
     const fs::path out = beside("parent") / "recording";
     Program program({"synth", "cubes", "--frames", "100000", "--extent", "64x53", "--out", out, "--quiet"});
-    await(program, beside("parent"));
+    program.await_handler(SIGINT);
     program.send(SIGINT);
     EXPECT_THAT(expect_failure(program.wait(), 130),
                 AllOf(HasSubstr("interrupted after"), HasSubstr("of 100060 frames")));

@@ -1,8 +1,12 @@
 #include "tests/cli/program.h"
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <fstream>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -60,6 +64,20 @@ bool Program::running() {
     return !ended_;
 }
 
+void Program::await_handler(int signal) {
+    const auto handled = [&] {
+        std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+        for (std::string word; status >> word;) {
+            if (word != "SigCgt:") continue;
+            uint64_t mask = 0;
+            status >> std::hex >> mask;
+            return (mask >> (signal - 1) & 1) != 0;
+        }
+        return false;
+    };
+    while (running() && !handled()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
 void Program::send(int signal) { kill(pid_, signal); }
 
 Outcome Program::wait() {
@@ -70,6 +88,12 @@ Outcome Program::wait() {
     outcome.out = sensor::testing::read_text(output_ / "out");
     outcome.err = sensor::testing::read_text(output_ / "err");
     return outcome;
+}
+
+int shell(const std::string& line) {
+    setenv("PATINA", PATINA_PROGRAM, 1);
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 Outcome patina(const std::vector<std::string>& arguments, const Program::Environment& changes) {

@@ -29,6 +29,8 @@ class Program {
     Program& operator=(const Program&) = delete;
 
     bool running();
+    /// Waits until the program handles a signal by itself, or ends.
+    void await_handler(int signal);
     void send(int signal);
     Outcome wait();
 
@@ -40,6 +42,9 @@ class Program {
     bool ended_ = false;
     int status_ = 0;
 };
+
+/// Runs a line of the shell in which $PATINA is the program; returns the exit code, -1 where a signal ended the shell.
+int shell(const std::string& line);
 
 /// Runs `patina` to its end.
 Outcome patina(const std::vector<std::string>& arguments, const Program::Environment& changes = {});

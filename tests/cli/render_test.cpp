@@ -1,6 +1,8 @@
 #include "tools/render.h"
 
+#include <array>
 #include <numbers>
+#include <set>
 
 #include "sensor/picture_file.h"
 #include "sensor/truth.h"
@@ -98,6 +100,23 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
     EXPECT_EQ(picture("kd").pixels(), picture("kd_dim").pixels()) << "albedo does not change with the lights of a view";
 }
 
+TEST_F(Render, ShowsWhatARunWouldHaveHad) {
+    // The scene has a lighting sequence of its own, in which run finds the lights.
+    render_cubes(beside("kd"), {"--show", "kd"});
+    const auto grey_share = [](const Image<sensor::SrgbPixel>& picture) {
+        size_t grey = 0;
+        for (const sensor::SrgbPixel& pixel : picture.pixels()) grey += pixel.r == pixel.g && pixel.g == pixel.b;
+        return static_cast<double>(grey) / static_cast<double>(picture.pixels().size());
+    };
+    EXPECT_LT(grey_share(read(beside("kd") / "000001.png")), 0.9) << "albedo, not emptiness";
+    // Segments need no lights.
+    render_cubes(beside("labels"), {"--lighting", "none", "--show", "labels"});
+    std::set<std::array<uint8_t, 3>> colours;
+    const Image<sensor::SrgbPixel> labels = read(beside("labels") / "000001.png");
+    for (const sensor::SrgbPixel& pixel : labels.pixels()) colours.insert({pixel.r, pixel.g, pixel.b});
+    EXPECT_GT(colours.size(), 5u);
+}
+
 TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
     const std::string views = beside("views");
     EXPECT_THAT(complaint({}), HasSubstr("give --out FOLDER or --video FILE"));
@@ -107,14 +126,21 @@ TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
     EXPECT_THAT(complaint({"--out", views, "--extent", "0x3"}, 2), HasSubstr("WIDTHxHEIGHT"));
     EXPECT_THAT(complaint({"--out", views, "--exposure", "-1"}, 2), HasSubstr("--exposure"));
     EXPECT_THAT(complaint({"--out", views, "--show", "beauty"}, 2), HasSubstr("beauty"));
-    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}), HasSubstr("need a reconstruction with lights"));
-    EXPECT_THAT(complaint({"--out", views, "--relight", "x.json"}), HasSubstr("need a reconstruction with lights"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}), HasSubstr("--show kd needs lights: give --lights FILE"));
+    EXPECT_THAT(expect_failure(patina({"render", beside("nowhere"), "--out", views, "--show", "kd"})),
+                HasSubstr("nowhere does not exist"))
+        << "not that lights are missing";
+    EXPECT_THAT(complaint({"--out", views, "--relight", lights(1)}), HasSubstr("--relight needs lights: give"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "kd", "--lighting", "none"}), HasSubstr("--show kd needs lights"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "labels", "--labels", "off"}), HasSubstr("--labels is off"));
     EXPECT_THAT(complaint({"--out", views, "--poses", beside("none.txt")}), HasSubstr("none.txt"));
     write_text(beside("poses.txt"), "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n");
     EXPECT_THAT(complaint({"--out", views, "--poses", beside("poses.txt")}), HasSubstr("poses.txt:2"));
     EXPECT_THAT(complaint({"--video", beside("a.gif")}), HasSubstr("must be a .avi or a .mp4"));
     EXPECT_THAT(complaint({"--out", views, "--video", beside("none") / "a.avi"}), HasSubstr("there is no folder"));
-    EXPECT_THAT(expect_failure(patina({"render", sequence(), "--out", sequence()})), HasSubstr("is not empty"));
+    fs::create_directory(beside("mine"));
+    write_text(beside("mine/a.png"), "my own picture");
+    EXPECT_THAT(expect_failure(patina({"render", sequence(), "--out", beside("mine")})), HasSubstr("is not empty"));
 }
 
 RigidTransform looking(glm::dvec3 from, glm::dvec3 at) {

@@ -28,7 +28,7 @@ class RunFolderTest : public ::testing::Test {
     nlohmann::json run_quietly(const std::string& input, std::vector<std::string> more = {});
 
     /// As run_quietly, but the run must fail with one line on standard error, which is returned, and leave the files of
-    /// an earlier run alone, except for its run.json.
+    /// an earlier run alone.
     std::string failure_of_run(const std::string& input, std::vector<std::string> more = {},
                                const Program::Environment& changes = {});
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "sensor/picture_file.h"
+#include "sensor/text_file.h"
 #include "tests/eval/pictures.h"
 #include "tools/export/write_exr.h"
 
@@ -91,6 +92,7 @@ EvalRig::EvalRig() {
         sensor::write_trajectory(folder / "trajectory.txt", trajectory());
         sensor::write_lights(folder / "lights.json", lights());
     }
+    sensor::write_bytes(run() / "run.json", "{}");
     sensor::write_materials(
         truth / "materials.json",
         std::vector<sensor::Material>{{1, "floor", glm::dvec3(0.6, 0.5, 0.4), {0.1, 0.15, 0.2}, 0.2},

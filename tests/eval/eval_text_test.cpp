@@ -156,7 +156,7 @@ TEST(EvalText, NothingSeenIsSaid) {
 TEST(EvalText, NamesCannotMoveTheCursor) {
     Evaluation evaluation = full_evaluation();
     evaluation.objects[0].name = "a\033[2Jb\nc";
-    EXPECT_THAT(eval_text(evaluation), HasSubstr("S1 a?[2Jb?c"));
+    EXPECT_THAT(eval_text(evaluation), HasSubstr("S1 a\\x1b[2Jb"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "sensor/picture_file.h"
+#include "sensor/text_file.h"
 #include "sensor/write_sequence.h"
 #include "tests/eval/pictures.h"
 
@@ -62,6 +63,7 @@ SlidingRig::SlidingRig() {
         fs::create_directories(folder / "frames");
         for (uint32_t i = 0; i < kFrames; i += kEvery) write_frame(frame_file(folder, i), frame());
     }
+    sensor::write_bytes(run() / "run.json", "{}");
     sensor::write_trajectory(truth / "trajectory.txt", poses);
 }
 

@@ -167,7 +167,8 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
     sensor::write_trajectory(folder / "empty.txt", {});
     EXPECT_THAT([&] { sensor::read_trajectory(folder / "empty.txt"); },
                 test::throws_error_with("empty.txt has no poses"));
-    EXPECT_THAT([&] { sensor::read_trajectory(folder / "none.txt"); }, test::throws_error_with("none.txt is missing"));
+    EXPECT_THAT([&] { sensor::read_trajectory(folder / "none.txt"); },
+                test::throws_error_with("none.txt does not exist"));
 }
 
 }  // namespace

@@ -57,6 +57,19 @@ TEST(Report, SaysWhatTheRunDid) {
     EXPECT_THAT(html, HasSubstr("&quot;voxel_mm&quot;: 5"));
 }
 
+TEST(Report, WhatIsIncompleteComesFirst) {
+    RunRecord record = test::full_record();
+    EXPECT_THAT(report_html(record, {}), Not(HasSubstr("Incomplete")));
+    record.finished = false;
+    record.ended = "interrupted after 12 of 60 frames";
+    record.shortfalls = {"the pool <was> full"};
+    record.materials_missing = "no lights & no lamps";
+    const std::string html = report_html(record, {});
+    EXPECT_LT(html.find("interrupted after 12"), html.find("Frames used"));
+    EXPECT_LT(html.find("the pool &lt;was&gt; full"), html.find("Frames used"));
+    EXPECT_THAT(html, HasSubstr("no lights &amp; no lamps"));
+}
+
 TEST(Report, ListsLightsAndMaterials) {
     RunRecord record = test::full_record();
     record.lamps = {{{1, -2.5, 3}, {4, 5, 6}, 0.05}};

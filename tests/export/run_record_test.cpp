@@ -21,12 +21,25 @@ std::vector<std::string> keys(const ordered_json& object) {
 
 TEST(RunRecord, KeysKeepTheirOrder) {
     const ordered_json run = ordered_json::parse(run_json(test::full_record()));
-    EXPECT_THAT(keys(run),
-                ElementsAre("format", "version", "device", "driver", "seed", "settings", "lights", "sequence", "frames",
-                            "voxel_pool", "memory", "totals", "warnings", "passes", "times"));
+    EXPECT_THAT(keys(run), ElementsAre("format", "version", "id", "finished", "device", "driver", "seed", "settings",
+                                       "lights", "sequence", "frames", "voxel_pool", "memory", "totals", "shortfalls",
+                                       "warnings", "passes", "times", "files"));
     EXPECT_THAT(keys(run["settings"]), ElementsAre("voxel_mm", "truncation_vox", "note"));
     EXPECT_THAT(keys(run["passes"]), ElementsAre("input.filter_depth", "fusion.integrate", "fusion.raycast"));
     EXPECT_THAT(keys(ordered_json::parse(run_json({}))), keys(run));
+}
+
+TEST(RunRecord, TheIdIsOfAllButDurations) {
+    RunRecord record = test::full_record();
+    const std::string id = run_id(record, 7);
+    EXPECT_EQ(id.size(), 16u);
+    record.id = id;
+    record.times_s.emplace_back("more", 3);
+    record.passes.clear();
+    EXPECT_EQ(run_id(record, 7), id);
+    EXPECT_NE(run_id(record, 8), id);
+    record.seed += 1;
+    EXPECT_NE(run_id(record, 7), id);
 }
 
 TEST(RunRecord, EveryFieldArrives) {
@@ -62,6 +75,23 @@ TEST(RunRecord, ThePoolOfObservationsIsToldWhereThereIsOne) {
     EXPECT_EQ(ordered_json::parse(run_json(record))["observation_pool"],
               ordered_json(
                   {{"records_used", 900}, {"records_capacity", 1000}, {"records_refused", 7}, {"blocks_refused", 3}}));
+}
+
+TEST(RunRecord, HowARunFellShortIsToldWhereItDid) {
+    RunRecord record = test::full_record();
+    ordered_json run = ordered_json::parse(run_json(record));
+    for (const char* key : {"ended", "world_offset_m", "materials_missing"}) EXPECT_FALSE(run.contains(key)) << key;
+    EXPECT_TRUE(run["shortfalls"].empty());
+    record.finished = false;
+    record.ended = "interrupted after 12 of 60 frames";
+    record.world_offset_m = {3e6, 0, -1};
+    record.materials_missing = "no lights";
+    record.shortfalls = {"a full pool"};
+    run = ordered_json::parse(run_json(record));
+    EXPECT_EQ(run["ended"], "interrupted after 12 of 60 frames");
+    EXPECT_EQ(run["world_offset_m"], ordered_json({3e6, 0, -1}));
+    EXPECT_EQ(run["materials_missing"], "no lights");
+    EXPECT_EQ(run["shortfalls"], ordered_json({"a full pool"}));
 }
 
 TEST(RunRecord, GainsAndHeldOutPicturesAreToldWhereThereAreAny) {

@@ -5,6 +5,7 @@
 
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
+#include "tests/support/file_size_limit.h"
 
 namespace patina {
 namespace {
@@ -38,6 +39,16 @@ TEST(Video, OneThatIsNotFinishedLeavesNothing) {
     const TemporaryFolder folder;
     { VideoWriter(folder / "a.avi", kExtent, 25).write(kRed); }
     EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+/// The encoder itself reports nothing.
+TEST(Video, NoticesAFullDisk) {
+    const TemporaryFolder folder;
+    VideoWriter video(folder / "a.avi", kExtent, 25);
+    const test::FileSizeLimit limit(3000);
+    for (int i = 0; i < 50; ++i) video.write(i % 2 ? kRed : kBlue);
+    EXPECT_THAT([&] { video.finish(); }, throws_error_with("but 50 were written: is there no space left on the disk?"));
+    EXPECT_FALSE(fs::exists(folder / "a.avi"));
 }
 
 TEST(Video, SaysWhatItCannotWrite) {

@@ -35,7 +35,7 @@ void enter_records(graph::Runner& runner, const ObservationMap& map, const std::
     std::map<uint32_t, uint32_t> block_of_key;
     for (const FilledRecord& record : records)
         block_of_key.try_emplace(place_of(map, record).block_key, static_cast<uint32_t>(block_of_key.size()));
-    const uint32_t capacity = map.settings().capacity_blocks;
+    const uint32_t capacity = map.capacity_blocks();
     if (block_of_key.size() > capacity)
         throw Error(block_of_key.size(), " blocks of records, the map holds ", capacity);
     std::vector<uint32_t> keys;

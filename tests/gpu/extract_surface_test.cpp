@@ -307,10 +307,10 @@ TEST_F(ExtractSurfaceTest, SameBytesWhereverInTheChunksTheBlocksLie) {
 
     // On devices with the smallest storage range, two chunks.
     FusionRig large(device(), runner(), {0.005f, 66000});
-    std::vector<uint32_t> stack(large.map().settings().capacity_blocks);
+    std::vector<uint32_t> stack(large.map().capacity());
     std::iota(stack.begin(), stack.end(), 0u);  // popped from the end: the last id first, which lies in the last chunk
     gpu::MapCounters counters{};
-    counters.free_blocks = counters.high_water = large.map().settings().capacity_blocks;
+    counters.free_blocks = counters.high_water = large.map().capacity();
     graph::Frame frame = runner().begin();
     VoxelMapIds ids = large.map().import(frame);
     ids.free_list = frame.upload_bytes(ids.free_list, 0, std::as_bytes(std::span(stack)), true);

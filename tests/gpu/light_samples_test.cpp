@@ -68,7 +68,7 @@ std::vector<MadeUpRecord> made_up_records(std::mt19937& random) {
 
 class LightSamples : public GpuTest {
   protected:
-    std::vector<gpu::LightSample> draw(const std::vector<MadeUpRecord>& made_up) {
+    std::vector<gpu::LightSample> draw(const std::vector<MadeUpRecord>& made_up, uint32_t seed = 0) {
         std::vector<gpu::VoxelRecord> records;
         std::vector<uint32_t> directions(kRecords * gpu::kRecordQuads * 4), colors(directions.size());
         for (size_t i = 0; i < made_up.size(); ++i) {
@@ -85,7 +85,7 @@ class LightSamples : public GpuTest {
         ids.records = frame.upload<gpu::VoxelRecord>("records", std::span(std::as_const(records)));
         ids.directions = frame.upload_bytes(ids.directions, 0, std::as_bytes(std::span(directions)), true);
         ids.colors = frame.upload_bytes(ids.colors, 0, std::as_bytes(std::span(colors)), true);
-        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, map_, ids));
+        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, map_, ids, seed));
         run(std::move(frame));
         return drawn.as<gpu::LightSample>();
     }
@@ -180,6 +180,25 @@ TEST_F(LightSamples, TheDarkestTwoFifthsAreDiffuseAndWhatShinesMustStandOut) {
     EXPECT_NEAR(bright.highlight.w, 100 / 512.0, 1e-6);
     EXPECT_NEAR(sample({511, 100, 120, 140, 160, 130, 150, 170, 180, 190}).highlight.w, 0.3, 1e-6);
     EXPECT_EQ(sample({511, 100, 120}).point_m.w, 0) << "too few";
+}
+
+TEST_F(LightSamples, AnotherSeedDrawsOthers) {
+    std::mt19937 random(23);
+    const std::vector<MadeUpRecord> records = made_up_records(random);
+    const auto points_of = [](const std::vector<gpu::LightSample>& samples) {
+        std::set<std::array<float, 3>> points;
+        for (size_t i = 0; i < gpu::kLightSamples; ++i)
+            if (const glm::vec4 p = samples[i].point_m; p.w > 0) points.insert({p.x, p.y, p.z});
+        return points;
+    };
+    const auto first = points_of(draw(records)), again = points_of(draw(records, 0)),
+               other = points_of(draw(records, 5));
+    EXPECT_EQ(first, again);
+    ASSERT_GT(first.size(), 100u);
+    ASSERT_GT(other.size(), 100u);
+    size_t both = 0;
+    for (const auto& point : other) both += first.count(point);
+    EXPECT_LT(both, other.size()) << "of " << other.size();
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ class SampleSurface : public GpuTest {
 
     std::vector<gpu::LightSample> draw(ObservationRig& rig) {
         graph::Frame frame = runner().begin();
-        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, rig.map(), rig.map().import(frame)));
+        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, rig.map(), rig.map().import(frame), 0));
         run(std::move(frame));
         return drawn.as<gpu::LightSample>();
     }

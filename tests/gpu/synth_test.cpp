@@ -146,7 +146,7 @@ TEST_F(SynthTest, SeedsDecideTheBytes) {
                                      .out = out,
                                      .frames = 1,
                                      .quiet = true,
-                                     .seed = seed,
+                                     .changes = {.seed = seed},
                                      .noise = "kinect1",
                                      .extent = Extent2D{64, 53}});
         return bytes_of(out / "color/000000.png") + bytes_of(out / "depth/000000.png");

@@ -131,5 +131,25 @@ TEST_F(VisibleBlocksTest, ArgumentsCoverTheList) {
     for (const reference::DepthRange& range : nothing.tiles) EXPECT_LT(range.far_m, range.near_m);
 }
 
+TEST_F(VisibleBlocksTest, CamerasBeyondAllCoordinatesSeeNothing) {
+    FusionRig rig = filled();
+    const Intrinsics camera = pinhole_camera({16, 12});
+    for (const double far_m : {1e9, -1e12, 1e30}) {
+        RigidTransform pose(1.0);
+        pose[3] = glm::dvec4(far_m, -far_m, far_m, 1);
+        EXPECT_TRUE(look(rig, {camera, pose, 0.1, 2.1}).blocks.empty());
+        graph::Frame frame = runner().begin();
+        const VisibleBlocks visible =
+            add_visible_blocks(frame, rig.map(), rig.map().import(frame), make_camera(camera, pose), 0.1f, 2.1f);
+        const graph::Readback read = frame.read_back(visible.view);
+        run(std::move(frame));
+        const gpu::ViewParams params = read.as<gpu::ViewParams>().front();
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_LE(std::abs(int64_t{params.grid_low[axis]}), (1 << 27) + 1);
+            EXPECT_LE(params.grid_size[axis], 64u);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace patina

@@ -68,7 +68,10 @@ TEST(Inspect, WarnsOfImplausibleScale) {
     info.metres_per_unit = 1;
     EXPECT_THAT(report_of(info, test_readings(1)).warnings,
                 ElementsAre(HasSubstr("the median depth is 1013 m, outside 0.2 to 10 m; if the scale is wrong, "
-                                      "metres_per_unit may be 0.001 instead of 1")));
+                                      "metres_per_unit may be 0.001 instead of 1 in sequence.json")));
+    info.format = "tum";
+    EXPECT_THAT(report_of(info, test_readings(1)).warnings,
+                ElementsAre(HasSubstr("the unit of depth may be 0.001 m, but the format tum fixes it at 1 m")));
     std::vector<Reading> readings = test_readings(1);
     frame_at(readings, 0).depth = Image<uint16_t>({16, 12});
     EXPECT_THAT(report_of(test_info(), readings).warnings, ElementsAre("no depth picture has a valid reading"));

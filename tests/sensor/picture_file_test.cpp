@@ -1,5 +1,6 @@
 #include "sensor/picture_file.h"
 
+#include <cstring>
 #include <limits>
 
 #include <ImfChannelList.h>
@@ -127,7 +128,7 @@ TEST(PictureFile, WrongSizeAndKindNameBothValues) {
                 HasSubstr("d.png has 16 bits per channel, but colour must have 8"));
     EXPECT_THAT(error_of([&] { read_color(folder / "t.png", kExtent); }),
                 HasSubstr("t.png is neither PNG, JPEG nor OpenEXR"));
-    EXPECT_THAT(error_of([&] { read_color(folder / "no.png", kExtent); }), HasSubstr("no.png is missing"));
+    EXPECT_THAT(error_of([&] { read_color(folder / "no.png", kExtent); }), HasSubstr("no.png does not exist"));
 }
 
 TEST(PictureFile, TheInvalidValueBecomesZero) {
@@ -160,7 +161,92 @@ TEST(PictureFile, BadExrIsAnError) {
     EXPECT_THAT(error_of([&] { read_depth(folder / "c.exr", {64, 64}); }), HasSubstr("c.exr has no depth channel"));
     write_exr(folder / "d.exr", {64, 64}, {"Z"}, std::vector<float>(64 * 64, 1.0f));
     shorten(folder / "d.exr", 10);
-    EXPECT_THAT(error_of([&] { read_depth(folder / "d.exr", {64, 64}); }), HasSubstr("d.exr cannot be decoded"));
+    EXPECT_THAT(error_of([&] {
+                    read_depth(folder / "d.exr", {64, 64});
+                }),
+                HasSubstr("d.exr is truncated: it has 451 bytes"));
+}
+
+// ---- pictures that lie about their size
+// ------------------------------------------------------------------------------
+
+std::string number_of_bytes(uint64_t value, int count) {
+    std::string bytes;
+    while (count-- > 0) bytes += static_cast<char>(value >> 8 * count);
+    return bytes;
+}
+
+std::string png_chunk(const std::string& type, const std::string& data) {
+    uint32_t crc = ~0u;
+    for (const char c : type + data) {
+        crc ^= static_cast<uint8_t>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
+    }
+    return number_of_bytes(data.size(), 4) + type + data + number_of_bytes(~crc, 4);
+}
+
+std::string png_header(Extent2D extent) {
+    const std::string form("\x08\x02\0\0\0", 5);  // 8 bits, RGB
+    return png_chunk("IHDR", number_of_bytes(extent.width, 4) + number_of_bytes(extent.height, 4) + form);
+}
+
+const std::string kPngBegin = "\x89PNG\r\n\x1a\n";
+
+TEST(PictureFile, APngThatNoCameraTakesIsRefusedByItsHeader) {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "c.png").string();
+    write_text(file, kPngBegin + png_header({30000, 30000}) + png_chunk("IDAT", "x") + png_chunk("IEND", ""));
+    const std::string refusal = file + " is 30000 x 30000 pixels, at most 134217728 are decoded";
+    EXPECT_EQ(error_of([&] { picture_extent(file); }), refusal);
+    EXPECT_EQ(error_of([&] { read_color(file, {30000, 30000}); }), refusal);
+    write_text(file, kPngBegin + png_header({0, 4}) + png_chunk("IEND", ""));
+    EXPECT_THAT(error_of([&] { picture_extent(file); }), HasSubstr("c.png is 0 x 4 pixels"));
+}
+
+TEST(PictureFile, APictureHasOneHeader) {
+    const TemporaryFolder folder;
+    write_text(folder / "c.png", kPngBegin + png_header({4, 4}) + png_header({8, 8}) + png_chunk("IEND", ""));
+    EXPECT_THAT(error_of([&] { picture_extent(folder / "c.png"); }), HasSubstr("c.png is damaged: it has two IHDR"));
+    write_text(folder / "c.png", kPngBegin + png_chunk("IEND", ""));
+    EXPECT_THAT(error_of([&] { picture_extent(folder / "c.png"); }), HasSubstr("c.png is damaged: it has no IHDR"));
+
+    write_jpeg(folder / "j.jpg", color());
+    std::string jpeg = read_text(folder / "j.jpg");
+    const size_t header = jpeg.find("\xff\xc0");
+    ASSERT_NE(header, std::string::npos);
+    const size_t length = 2 + size_t{static_cast<uint8_t>(jpeg[header + 3])};
+    std::string second = jpeg.substr(header, length);
+    second[6] = 9;  // rows
+    write_text(folder / "j.jpg", jpeg.substr(0, header) + second + jpeg.substr(header));
+    EXPECT_THAT(error_of([&] { picture_extent(folder / "j.jpg"); }), HasSubstr("j.jpg is damaged: it has two frame"));
+    EXPECT_THAT(error_of([&] { read_color(folder / "j.jpg", kExtent); }), HasSubstr("it has two frame headers"));
+    write_text(folder / "j.jpg", jpeg.substr(0, header) + jpeg.substr(header + length));
+    EXPECT_THAT(error_of([&] { picture_extent(folder / "j.jpg"); }), HasSubstr("j.jpg is damaged: it has no frame"));
+}
+
+/// The file with 4 bytes behind the name of an attribute, its type and its length replaced.
+void replace_attribute(const std::filesystem::path& file, const std::string& name, size_t type_letters, size_t offset,
+                       uint32_t value) {
+    std::string bytes = read_text(file);
+    const size_t at = bytes.find(name);
+    ASSERT_NE(at, std::string::npos);
+    std::memcpy(bytes.data() + at + name.size() + 1 + type_letters + 1 + 4 + offset, &value, 4);
+    write_text(file, bytes);
+}
+
+TEST(PictureFile, AnExrThatNoCameraTakesIsRefusedByItsHeader) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "d.exr";
+    const auto error = [&] { return error_of([&] { read_depth(file, {8, 8}); }); };
+    write_exr(file, {8, 8}, {"Z"}, std::vector<float>(64, 1.0f));
+    replace_attribute(file, "dataWindow", 5, 8, 0x7ffffffe);
+    EXPECT_THAT(error(), HasSubstr("d.exr is 2147483647 x 8 pixels, at most 134217728 are decoded"));
+    replace_attribute(file, "dataWindow", 5, 8, 0x80000000);
+    EXPECT_THAT(error(), HasSubstr("d.exr is 0 x 8 pixels, which is no picture"));
+    write_exr(file, {8, 8}, {"Z"}, std::vector<float>(64, 1.0f));
+    replace_attribute(file, "dataWindow", 5, 12, 9000);
+    EXPECT_THAT(error(), HasSubstr("d.exr is 8 x 9001 pixels, but the sequence says 8 x 8"));
+    EXPECT_THAT(error_of([&] { read_depth(file, {8, 9001}); }), HasSubstr("d.exr"));
 }
 
 }  // namespace

@@ -10,6 +10,13 @@ namespace {
 
 using namespace testing;
 
+TEST(Pose, AReflectionIsCalledThat) {
+    RigidTransform mirror(1.0);
+    mirror[0][0] = -1;
+    EXPECT_THAT(error_of([&] { checked_pose(mirror, "a.txt"); }),
+                ::testing::HasSubstr("a.txt: the pose mirrors what it moves"));
+}
+
 TEST(Pose, ATrajectoryReadsBackTheSamePoses) {
     const TemporaryFolder folder;
     std::vector<StampedPose> poses;
@@ -27,19 +34,6 @@ TEST(Pose, ATrajectoryReadsBackTheSamePoses) {
             EXPECT_LT(glm::distance(pose.transform[column], poses[i].world_from_camera[column]), 1e-15) << i;
         }
     }
-}
-
-TEST(Associate, TakesTheNearestPairsFirstAndEachOnce) {
-    using Partners = std::vector<std::optional<size_t>>;
-    const std::vector<double> a{0.0, 1.0, 2.0};
-    EXPECT_EQ(associate(a, std::vector<double>{2.25, 0.25, 1.25}, 0.5), (Partners{1, 2, 0}));
-    EXPECT_EQ(associate(a, std::vector<double>{0.75}, 0.5), (Partners{std::nullopt, 0, std::nullopt}));
-    EXPECT_EQ(associate(a, std::vector<double>{0.5, 0.75}, 0.5),
-              (Partners{0, 1, std::nullopt}));  // the limit counts as within
-    EXPECT_EQ(associate(std::vector<double>{0.0, 0.25, 0.5}, std::vector<double>{0.25}, 0.5),
-              (Partners{std::nullopt, 0, std::nullopt}));
-    EXPECT_EQ(associate(a, {}, 0.5), (Partners(3)));
-    EXPECT_EQ(associate({}, a, 0.5), Partners{});
 }
 
 }  // namespace

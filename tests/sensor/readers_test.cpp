@@ -37,7 +37,8 @@ TEST(OpenSequence, AFolderOfNoFormatTellsWhatWasLookedFor) {
     fs::create_directory(folder / "empty");
     EXPECT_EQ(open_error(folder / "empty"),
               (folder / "empty").string() +
-                  " is no sequence: it holds no sequence.json, frame-NNNNNN.depth.png or rgb.txt with depth.txt");
+                  " is no sequence: it holds no sequence.json, frame-NNNNNN.depth.png, rgb.txt with depth.txt or "
+                  "camera_intrinsic.json with color/ and depth/");
 }
 
 TEST(OpenSequence, AFolderOfSequencesNamesTheFirst) {
@@ -59,8 +60,9 @@ TEST(OpenSequence, TheFormatCanBeGiven) {
     const TemporaryFolder folder;
     write_native(folder / "a", 1);
     EXPECT_EQ(open_sequence(folder / "a", "patina-sequence")->info().format, "patina-sequence");
-    EXPECT_THAT(open_error(folder / "a", "tum"), HasSubstr("depth.txt is missing"));
-    EXPECT_EQ(open_error(folder / "a", "sens"), "format 'sens' is not known, must be patina-sequence, 7-scenes or tum");
+    EXPECT_THAT(open_error(folder / "a", "tum"), HasSubstr("depth.txt does not exist"));
+    EXPECT_EQ(open_error(folder / "a", "sens"),
+              "format 'sens' is not known, must be patina-sequence, 7-scenes, tum or open3d");
 }
 
 // Native
@@ -185,9 +187,18 @@ TEST(NativeReader, ExposuresAreKnownWhereAFileTellsThem) {
     EXPECT_TRUE(open_sequence(folder / "a")->info().exposure_known);
     write_native(folder / "b", 1);
     EXPECT_TRUE(open_sequence(folder / "b")->info().exposure_known) << "sequence.json tells it";
-    EXPECT_FALSE(open_sequence(folder / "b")->info().rendered);
-    fs::create_directory(folder / "b/truth");
-    EXPECT_TRUE(open_sequence(folder / "b")->info().rendered);
+}
+
+TEST(NativeReader, MotionBlurIsAKeyAndTruthChangesNothing) {
+    const TemporaryFolder folder;
+    write_native(folder / "a", 1);
+    EXPECT_TRUE(open_sequence(folder / "a")->info().motion_blur) << "a camera's pictures blur";
+    fs::create_directory(folder / "a/truth");
+    EXPECT_TRUE(open_sequence(folder / "a")->info().motion_blur);
+    replace_text(folder / "a/sequence.json", "\"exposure_s\"", "\"motion_blur\": false, \"exposure_s\"");
+    EXPECT_FALSE(open_sequence(folder / "a")->info().motion_blur);
+    replace_text(folder / "a/sequence.json", "\"motion_blur\": false", "\"motion_blur\": 0");
+    EXPECT_THAT(open_error(folder / "a"), HasSubstr("color.motion_blur is 0, must be true or"));
 }
 
 struct ListFault {
@@ -341,15 +352,16 @@ TEST(SevenScenesReader, ADamagedFrameIsSkippedWithItsFileAndValue) {
         with_pose("skewed", "1.1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
         HasSubstr(
             "frame-000001.pose.txt: the pose is not rigid, its rotation is off by 0.21, at most 0.01 is accepted"));
-    EXPECT_THAT(with_pose("mirrored", "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"), HasSubstr("the pose is not rigid"));
+    EXPECT_THAT(with_pose("mirrored", "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
+                HasSubstr("frame-000001.pose.txt: the pose mirrors what it moves"));
     EXPECT_THAT(with_pose("transposed", "1 0 0 0\n0 1 0 0\n0 0 1 0\n5 0 0 1\n"),
                 HasSubstr("row 4, column 1 of the pose is 5, must be 0"));
     EXPECT_THAT(with_pose("short", "1 0 0 0\n"), HasSubstr("frame-000001.pose.txt has 4 numbers, must have 16"));
     EXPECT_THAT(with_pose("word", "one\n"), HasSubstr("frame-000001.pose.txt:1: 'one' in column 1 is not a number"));
     EXPECT_THAT(damaged("no_pose", [](const std::string& stem) { fs::remove(stem + ".pose.txt"); }),
-                HasSubstr("frame-000001.pose.txt is missing"));
+                HasSubstr("frame-000001.pose.txt does not exist"));
     EXPECT_THAT(damaged("no_color", [](const std::string& stem) { fs::remove(stem + ".color.jpg"); }),
-                HasSubstr("frame-000001.color.png is missing"));
+                HasSubstr("frame-000001.color.png does not exist"));
     EXPECT_THAT(damaged("cut", [](const std::string& stem) { shorten(stem + ".color.jpg", 100); }),
                 HasSubstr("frame-000001.color.jpg is truncated"));
 }
@@ -433,7 +445,7 @@ TEST(TumReader, BadListsAreErrors) {
     write_text(folder / "a/rgb.txt", "10 rgb/000000.png extra\n");
     EXPECT_THAT(open_error(folder / "a"), HasSubstr("rgb.txt:1 has 3 columns, must have 2: timestamp path"));
     write_text(folder / "a/rgb.txt", "10 rgb/none.png\n");
-    EXPECT_THAT(open_error(folder / "a"), HasSubstr("rgb/none.png is missing"));
+    EXPECT_THAT(open_error(folder / "a"), HasSubstr("rgb/none.png does not exist"));
     write_text(folder / "a/rgb.txt", "10 small.png\n");
     write_png(folder / "a/small.png", Image<SrgbPixel>({320, 240}));
     EXPECT_THAT(
@@ -450,6 +462,34 @@ TEST(TumReader, ADamagedPictureOrPoseIsSkipped) {
     replace_text(folder / "b/groundtruth.txt", " 1 0 0 0 0 0 1", " 1 0 0 0 0 0 2");
     EXPECT_THAT(only_skip_reason(folder / "b", 1),
                 HasSubstr("groundtruth.txt:3: the pose is not rigid, its rotation is off by 3"));
+}
+
+void write_open3d(const fs::path& folder, uint32_t frames) {
+    for (const char* pictures : {"color", "depth"}) fs::create_directories(folder / pictures);
+    for (uint32_t i = 0; i < frames; ++i) {
+        const Frame frame = test_frame(i, {16, 12}, {16, 12});
+        write_jpeg(folder / "color" / (picture_stem(2 * i) + ".jpg"), std::get<Image<SrgbPixel>>(frame.color));
+        write_png(folder / "depth" / (picture_stem(2 * i) + ".png"), std::get<Image<uint16_t>>(frame.depth));
+    }
+    write_text(folder / "camera_intrinsic.json",
+               R"({"width": 16, "height": 12, "intrinsic_matrix": [14, 0, 0, 0, 13, 0, 7, 6, 1]})");
+}
+
+TEST(Open3dReader, PairsPicturesByNameAndReadsTheMatrixByColumns) {
+    const TemporaryFolder folder;
+    write_open3d(folder / "a", 3);
+    const auto source = open_sequence(folder / "a");
+    EXPECT_EQ(source->info().format, "open3d");
+    EXPECT_EQ(source->info().depth, (Intrinsics{{16, 12}, 14, 13, 7, 6, {}}));
+    EXPECT_EQ(source->info().color, source->info().depth);
+    EXPECT_FALSE(source->info().has_poses);
+    const auto readings = read_all(*source);
+    ASSERT_EQ(readings.size(), 3u);
+    EXPECT_EQ(std::get<Image<uint16_t>>(frame_at(readings, 2).depth).at(3, 4), 1207);
+    fs::remove(folder / "a/color/000002.jpg");
+    EXPECT_THAT(only_skip_reason(folder / "a", 1), HasSubstr("color/000002 is missing"));
+    write_text(folder / "a/camera_intrinsic.json", R"({"width": 16, "height": 12, "intrinsic_matrix": [14]})");
+    EXPECT_THAT(open_error(folder / "a"), HasSubstr("intrinsic_matrix"));
 }
 
 }  // namespace

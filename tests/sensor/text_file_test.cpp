@@ -39,9 +39,10 @@ TEST(TextFile, NumbersAreStrict) {
 TEST(TextFile, FilesThatCannotBeReadAreNamed) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "d");
-    EXPECT_EQ(error_of([&] { read_bytes(folder / "none"); }), (folder / "none").string() + " is missing");
-    EXPECT_EQ(error_of([&] { read_bytes(folder / "d"); }), (folder / "d").string() + " is not a file");
-    EXPECT_EQ(error_of([&] { write_bytes(folder / "no/f", "x"); }), (folder / "no/f").string() + " cannot be written");
+    EXPECT_EQ(error_of([&] { read_lines(folder / "none"); }), (folder / "none").string() + " does not exist");
+    EXPECT_EQ(error_of([&] { read_lines(folder / "d"); }), (folder / "d").string() + " is a folder, not a file");
+    EXPECT_EQ(error_of([&] { write_bytes(folder / "no/f", "x"); }),
+              (folder / "no/f").string() + " cannot be written: No such file or directory");
 }
 
 TEST(TextFile, ShortestReadsBackTheSameNumber) {

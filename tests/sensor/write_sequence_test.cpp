@@ -143,7 +143,7 @@ TEST(SequenceWriter, WithoutFinishNothingIsLeft) {
     {
         SequenceWriter writer(folder / "parent/a", test_info());
         writer.write(test_frame(0, {32, 24}, {16, 12}));
-        EXPECT_EQ(writer.partial_folder(), folder / text("parent/a.partial-", getpid()));
+        EXPECT_EQ(writer.partial_folder(), folder / "parent/.a.patina-partial");
         writer.background().finish();
         EXPECT_TRUE(fs::exists(writer.partial_folder() / "color/000000.png"));
         EXPECT_FALSE(fs::exists(folder / "parent/a"));
@@ -158,7 +158,7 @@ TEST(SequenceWriter, RefusesWhatItCannotWrite) {
     EXPECT_EQ(error_of([&] { SequenceWriter(folder / "a", test_info()); }),
               (folder / "a").string() + " exists and is not empty; the result is written to a new folder");
     EXPECT_THAT(error_of([&] { SequenceWriter(folder / "file", test_info()); }), HasSubstr("file is a file"));
-    EXPECT_THAT(error_of([&] { SequenceWriter(folder / "file/a", test_info()); }), HasSubstr("cannot be created"));
+    EXPECT_THAT(error_of([&] { SequenceWriter(folder / "file/a", test_info()); }), HasSubstr("cannot be written to"));
     fs::create_directory(folder / "empty");
     EXPECT_NO_THROW(SequenceWriter(folder / "empty", test_info()));
 
@@ -180,8 +180,9 @@ TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
     writer.write(test_frame(0, {32, 24}, {16, 12}));
     fs::create_directory(folder / "a");
     write_text(folder / "a/mine", "x");
-    EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("cannot be renamed to"));
+    EXPECT_THAT(error_of([&] { writer.finish(); }), AllOf(HasSubstr("cannot be renamed to"), HasSubstr("a-new'")));
     EXPECT_EQ(read_text(folder / "a/mine"), "x");
+    EXPECT_TRUE(fs::exists(folder / "a-new/sequence.json")) << "the recording is kept";
 }
 
 }  // namespace

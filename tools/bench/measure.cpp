@@ -130,7 +130,7 @@ class Bench {
 
     void extract_surfaces() {
         const gpu::MapCounters& counters = reconstruction_.counters();
-        const uint32_t used = reconstruction_.settings().map.capacity_blocks - counters.free_blocks;
+        const uint32_t used = counters.capacity - counters.free_blocks;
         result_.allocated_mvoxel = static_cast<float>(used) * gpu::kBlockVoxels * 1e-6f;
         result_.refused_blocks = counters.refused_blocks;
         std::vector<float> gpu_ms, wall_ms;

@@ -110,7 +110,8 @@ void print_memory(const Measurement& m) {
 void print_warnings(const Measurement& m) {
     if (m.late_compilations > 0)
         fmt::print("warning: {} frames compiled a new shape; raise --warmup\n", m.late_compilations);
-    if (m.refused_blocks > 0) fmt::print("warning: the voxel pool was full; raise map.capacity_blocks with --set\n");
+    if (m.refused_blocks > 0)
+        fmt::print("warning: the voxel pool grew late or was full: {} requests found no room\n", m.refused_blocks);
 }
 
 void print(const Measurement& m, const Recording& recording) {
@@ -158,7 +159,8 @@ int main(int argc, char** argv) {
     CLI::App app("Measures how fast a recording is reconstructed", "patina_bench");
     bench::Options options;
     app.add_option("sequence", options.recording.sequence, "Folder of a sequence, or synthetic:SCENE")->required();
-    app.add_option("--format", options.recording.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
+    app.add_option("--format", options.recording.format,
+                   "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
     app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT");
     app.add_option("--frames", options.frames, "How many frames to measure")
         ->capture_default_str()

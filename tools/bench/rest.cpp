@@ -58,7 +58,7 @@ double FrameTimes::stage_ms(Stage stage) const {
 ReconstructionSettings settings_of(const Options& options) {
     ReconstructionSettings settings;
     settings.reflectance.emplace();
-    set_observation_voxel(*settings.reflectance, options.voxel_m);
+    settings.reflectance->voxel_m = options.voxel_m;
     return settings;
 }
 

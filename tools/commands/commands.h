@@ -14,8 +14,9 @@ namespace patina::tools {
 struct DeviceArguments {
     std::string selector;
     bool validation = false;
+    uint64_t memory_mib = 0;  ///< 0: no limit
 
-    /// Adds --device (also from PATINA_DEVICE) and --validation.
+    /// Adds --device (also from PATINA_DEVICE), --validation and --memory.
     void add_to(CLI::App& command);
     /// With the pipeline cache in the user's cache folder.
     vulkan::DeviceOptions options() const;
@@ -33,13 +34,14 @@ struct SequenceArguments {
     void finish(SequenceOptions& options) const;
 };
 
-/// Each adds one subcommand with its options; the work happens in its callback. Errors are thrown.
+/// Each adds one subcommand with its options; the work happens in its callback. Errors are thrown; `exit_code` becomes
+/// that of a subcommand that wrote results which fall short (outcome.h), and must outlive the parsing.
 void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_synth_hemi(CLI::App& app);
-void add_run(CLI::App& app);
-void add_render(CLI::App& app);
+void add_run(CLI::App& app, int& exit_code);
+void add_render(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);
 

@@ -22,12 +22,16 @@ void DeviceArguments::add_to(CLI::App& command) {
         ->envname("PATINA_DEVICE");
     command.add_flag("--validation", validation,
                      "Check every Vulkan call (slow); a message ends the command with an error");
+    command.add_option("--memory", memory_mib, "Device memory in MiB beyond which pools do not grow")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 24))
+        ->option_text("MIB");
 }
 
 vulkan::DeviceOptions DeviceArguments::options() const {
     vulkan::DeviceOptions options;
     options.selector = selector;
     options.validation = validation;
+    options.memory_limit = memory_mib << 20;
     options.pipeline_cache_folder = cache_folder();
     return options;
 }

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/vulkan/floor.h"
 #include "tools/commands/commands.h"
+#include "tools/standard_streams.h"
 
 namespace patina::tools {
 
@@ -12,27 +14,28 @@ namespace {
 
 void print(const vulkan::DeviceReport& device) {
     const vulkan::DeviceCaps& caps = device.caps;
-    fmt::print("device {}: {} ({})\n", device.index, caps.name, vulkan::name_of(caps.type));
-    fmt::print("  driver            {}, Vulkan {}\n", caps.driver, caps.api_version);
-    fmt::print("  memory            {} MiB local, {} MiB per allocation\n", caps.device_memory >> 20,
-               caps.max_allocation >> 20);
-    fmt::print("  storage buffers   {} MiB each, {} per stage\n", caps.max_storage_range >> 20,
-               caps.max_storage_buffers);
-    fmt::print("  texel buffers     {} elements\n", caps.max_texel_elements);
-    fmt::print("  workgroups        {} invocations, {} KiB shared, subgroups of {}\n", caps.max_group_invocations,
-               caps.max_shared_bytes >> 10, caps.subgroup_size);
+    print_out("device {}: {} ({})\n", device.index, caps.name, vulkan::name_of(caps.type));
+    print_out("  driver            {}, Vulkan {}\n", caps.driver, caps.api_version);
+    print_out("  memory            {} MiB local, {} MiB per allocation\n", caps.device_memory >> 20,
+              caps.max_allocation >> 20);
+    print_out("  storage buffers   {} MiB each, {} per stage\n", caps.max_storage_range >> 20,
+              caps.max_storage_buffers);
+    print_out("  storage images    {} per stage\n", caps.max_storage_images);
+    print_out("  texel buffers     {} elements\n", caps.max_texel_elements);
+    print_out("  workgroups        {} invocations, {} KiB shared, subgroups of {}\n", caps.max_group_invocations,
+              caps.max_shared_bytes >> 10, caps.subgroup_size);
     // The default pool's chunks of distances have 2^25 voxels.
-    const bool texels = caps.software() && caps.max_texel_elements >= (1u << 25);
-    fmt::print("  map access        {}\n", texels ? "texel buffers (faster on software devices)" : "storage buffers");
-    fmt::print("  16-bit floats     {}\n", caps.float16 ? "yes" : "no");
-    fmt::print("  pass times        {}\n",
-               caps.timestamps ? "measured" : "not available: the device has no timestamps");
+    const bool texels = caps.software() && caps.max_texel_elements >= (1u << 25) &&
+                        caps.max_storage_images >= vulkan::floor::kTexelVariantImages;
+    print_out("  map access        {}\n", texels ? "texel buffers (faster on software devices)" : "storage buffers");
+    print_out("  16-bit floats     {}\n", caps.float16 ? "yes" : "no");
+    print_out("  pass times        {}\n", caps.timestamps ? "measured" : "not available: the device has no timestamps");
     if (device.missing.empty()) {
-        fmt::print("  usable            yes\n");
+        print_out("  usable            yes\n");
         return;
     }
-    for (const std::string& missing : device.missing) fmt::print("  lacks             {}\n", missing);
-    fmt::print("  usable            no\n");
+    for (const std::string& missing : device.missing) print_out("  lacks             {}\n", missing);
+    print_out("  usable            no\n");
 }
 
 }  // namespace
@@ -45,7 +48,7 @@ void add_doctor(CLI::App& app) {
         const auto devices = vulkan::list_devices();
         for (const vulkan::DeviceReport& device : devices) print(device);
         const uint32_t chosen = vulkan::choose_device(devices, arguments->selector);
-        fmt::print("patina uses device {}: {}\n", chosen, devices[chosen].caps.name);
+        print_out("patina uses device {}: {}\n", chosen, devices[chosen].caps.name);
     });
 }
 

@@ -2,7 +2,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "engine/core/expect_path.h"
+#include "engine/core/printable.h"
+#include "sensor/output/apart.h"
 #include "tools/commands/commands.h"
 #include "tools/eval/eval_json.h"
 #include "tools/eval/eval_report.h"
@@ -31,21 +35,30 @@ eval::Evaluation evaluate_with_progress(const EvalArguments& arguments) {
     return eval::evaluate(arguments.sequence, arguments.run, settings);
 }
 
-/// eval.json is written last: its presence says that the evaluation finished.
-void write_files(const eval::Evaluation& evaluation, const std::filesystem::path& folder) {
-    const std::string report = eval_report_html(evaluation, eval::error_figures(evaluation));
-    OutputFolder out(folder, "eval.json");
-    out.write("report.html", report);
+/// An evaluation may go to a folder of its own in the run's, but not to one of the run's results.
+std::vector<std::filesystem::path> inputs_of(const EvalArguments& arguments, const std::filesystem::path& folder) {
+    const std::filesystem::path run = sensor::resolved(arguments.run);
+    const std::filesystem::path part = sensor::resolved(folder).lexically_relative(run);
+    const bool in_run = !part.empty() && part != "." && *part.begin() != "..";
+    if (!in_run) return {arguments.sequence, arguments.run};
+    return {arguments.sequence, run / "frames", run / "previews", run / "held_out"};
+}
+
+void write_files(const eval::Evaluation& evaluation, OutputFolder& out) {
+    out.write("report.html", eval_report_html(evaluation, eval::error_figures(evaluation)));
     out.write("eval.json", eval::eval_json(evaluation));
+    out.commit();
 }
 
 void run_eval(const EvalArguments& arguments) {
     const std::filesystem::path folder = arguments.out.empty() ? arguments.run / "eval" : arguments.out;
+    expect_folder(arguments.run);
+    OutputFolder out(folder, inputs_of(arguments, folder), ResultKind::kEvaluation);
     const eval::Evaluation evaluation = evaluate_with_progress(arguments);
-    write_files(evaluation, folder);
+    write_files(evaluation, out);
     if (arguments.quiet) return;
     std::fputs(eval::eval_text(evaluation).c_str(), stdout);
-    std::printf("\n%s and eval.json\n", (folder / "report.html").c_str());
+    std::printf("\n%s and eval.json\n", printable((folder / "report.html").string()).c_str());
 }
 
 }  // namespace

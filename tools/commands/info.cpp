@@ -4,6 +4,9 @@
 #include "sensor/inspect.h"
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
+#include "sensor/synthetic/scene_file.h"
+#include "sensor/synthetic/scene_report.h"
+#include "sensor/synthetic/synthetic_source.h"
 #include "tools/commands/commands.h"
 
 namespace patina::tools {
@@ -15,9 +18,16 @@ void add_info(CLI::App& app) {
         std::string sequence, format;
     };
     const auto arguments = std::make_shared<Arguments>();
-    command->add_option("sequence", arguments->sequence, "Folder of a sequence")->required();
-    command->add_option("--format", arguments->format, "patina-sequence, 7-scenes or tum, instead of recognising it");
+    command->add_option("sequence", arguments->sequence, "Folder of a sequence, or synthetic:SCENE")->required();
+    command->add_option("--format", arguments->format,
+                        "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
     command->callback([arguments] {
+        if (const auto scene = sensor::scene_name(arguments->sequence)) {
+            const std::string report =
+                sensor::format_scene_report(sensor::load_scene(*scene), sensor::SyntheticOptions{}.frames);
+            std::fputs(report.c_str(), stdout);
+            return;
+        }
         sensor::PrefetchSource source(sensor::open_sequence(arguments->sequence, arguments->format));
         std::fputs(sensor::format_report(sensor::inspect(source)).c_str(), stdout);
     });

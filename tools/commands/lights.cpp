@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 
 namespace patina::tools {
 
@@ -25,10 +26,10 @@ void add_lights(CLI::App& app) {
             "lighting: frames of low exposure, those of lighting/ if there is one; self: what the lamps light; "
             "by default lighting where there is one")
         ->transform(
-            CLI::CheckedTransformer(std::map<std::string, LightsFrom>{{"lighting", LightsFrom::kLightingSequence},
-                                                                      {"self", LightsFrom::kMainSequence}},
-                                    CLI::ignore_case));
-    command->add_option("--frames", options.frames, "Use at most so many frames");
+            one_of<LightsFrom>({{"lighting", LightsFrom::kLightingSequence}, {"self", LightsFrom::kMainSequence}}))
+        ->option_text("lighting|self");
+    command->add_option("--frames", options.frames, "Use at most so many frames; without it all")
+        ->check(at_least_one());
     command
         ->add_option("--threshold", options.settings.find.threshold,
                      "Luminance of a pixel value, 1 being full scale, from which a pixel shines")
@@ -40,7 +41,8 @@ void add_lights(CLI::App& app) {
     arguments->device.add_to(*command);
     command->callback([arguments] {
         arguments->lights.device = arguments->device.options();
-        find_lights(arguments->lights);
+        const Illumination found = find_lights(arguments->lights);
+        if (!arguments->lights.quiet) print_lights(found);
     });
 }
 

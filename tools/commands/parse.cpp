@@ -1,10 +1,29 @@
 #include "tools/commands/parse.h"
 
 #include <algorithm>
+#include <cstdint>
 
-#include <CLI/CLI.hpp>
+#include "engine/core/did_you_mean.h"
 
 namespace patina::tools {
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const std::string list = CLI::detail::join(words, ", ");
+    return {[words, list](std::string& given) -> std::string {
+                if (std::find(words.begin(), words.end(), given) != words.end()) return "";
+                return text("'", given, "' is none of ", list, did_you_mean(given, words));
+            },
+            "{" + CLI::detail::join(words, ",") + "}"};
+}
+
+CLI::Validator at_least_one() {
+    return {[](std::string& given) -> std::string {
+                uint32_t number = 0;
+                if (parse<uint32_t>(given, number) && number > 0) return "";
+                return text("'", given, "' is not a whole number from 1");
+            },
+            ""};
+}
 
 Extent2D parse_extent(const std::string& text) {
     constexpr uint32_t kMost =

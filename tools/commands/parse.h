@@ -4,6 +4,10 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "engine/core/image.h"
 
@@ -22,6 +26,29 @@ bool parse_pair(std::string_view text, char separator, Number& first, Number& se
     const size_t at = text.find(separator);
     return at != text.npos && parse(text.substr(0, at), first) && parse(text.substr(at + 1), second);
 }
+
+/// Takes one of the words. Another is refused with the list of them, and with the one that was meant.
+CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// The same for an option that is an enumeration: each word stands for a value.
+template <class Value>
+CLI::Validator one_of(const std::vector<std::pair<std::string, Value>>& values) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : values) words.push_back(word);
+    const CLI::Validator check = one_of(words);
+    return {[values, check](std::string& given) -> std::string {
+                for (const auto& [word, value] : values) {
+                    if (word != given) continue;
+                    given = std::to_string(static_cast<int>(value));  // CLI11 reads enumerations as numbers
+                    return "";
+                }
+                return check(given);
+            },
+            check.get_description()};
+}
+
+/// Takes whole numbers from 1.
+CLI::Validator at_least_one();
 
 /// The value of --extent, WIDTHxHEIGHT. Throws CLI::ValidationError for anything else, and beyond 8192 pixels.
 Extent2D parse_extent(const std::string& text);

@@ -1,6 +1,5 @@
 #include "tools/render.h"
 
-#include <map>
 #include <memory>
 
 #include "tools/commands/commands.h"
@@ -8,7 +7,7 @@
 
 namespace patina::tools {
 
-void add_render(CLI::App& app) {
+void add_render(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("render", "Reconstruct a sequence and render views of the model");
     struct Arguments {
         RenderOptions render;
@@ -31,17 +30,19 @@ void add_render(CLI::App& app) {
         "--extent", [&options](const std::string& text) { options.extent = parse_extent(text); },
         "Size of the pictures, WIDTHxHEIGHT; the vertical field of view stays");
     command->add_option("--relight", options.relight, "lights.json to show the model under, instead of its own lights");
-    const std::map<std::string, Show> shown{
-        {"rgb", Show::kRgb}, {"kd", Show::kKd}, {"normals", Show::kNormals}, {"labels", Show::kLabels}};
     command->add_option("--show", options.show, "rgb (re-rendering), kd (diffuse albedo), normals or labels")
-        ->transform(CLI::CheckedTransformer(shown))
+        ->transform(one_of<Show>(
+            {{"rgb", Show::kRgb}, {"kd", Show::kKd}, {"normals", Show::kNormals}, {"labels", Show::kLabels}}))
         ->option_text("rgb|kd|normals|labels");
     command->add_option("--exposure", options.exposure, "What radiance is multiplied with before it is clipped at 1")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command->callback([arguments] {
-        arguments->sequence.finish(arguments->render);
-        render(arguments->render);
+    command->callback([arguments, &exit_code] {
+        RenderOptions& render_options = arguments->render;
+        arguments->sequence.finish(render_options);
+        if (render_options.show == Show::kKd) render_options.reflectance_for = "--show kd";
+        if (!render_options.relight.empty()) render_options.reflectance_for = "--relight";
+        exit_code = render(render_options).exit_code();
     });
 }
 

@@ -1,13 +1,13 @@
 #include "tools/run.h"
 
-#include <map>
 #include <memory>
 
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 
 namespace patina::tools {
 
-void add_run(CLI::App& app) {
+void add_run(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
     struct Arguments {
         RunOptions run;
@@ -22,25 +22,22 @@ void add_run(CLI::App& app) {
         ->add_option("--gains", run_options.gains,
                      "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
                      "recording does not tell the exposure), on, off")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, GainMode>{{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
+        ->transform(one_of<GainMode>({{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
         ->option_text("auto|on|off");
     command
         ->add_option("--poses", run_options.poses,
                      "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
                      "by default given where there are any")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, PoseMode>{
-            {"given", PoseMode::kGiven}, {"track", PoseMode::kTrack}, {"prior", PoseMode::kPrior}}))
+        ->transform(
+            one_of<PoseMode>({{"given", PoseMode::kGiven}, {"track", PoseMode::kTrack}, {"prior", PoseMode::kPrior}}))
         ->option_text("given|track|prior");
     command->add_option("--hold-out", run_options.hold_out,
                         "Keep the colours of every so many-th frame out of the model, and compare them in the end");
-    command->add_option("--seed", run_options.seed, "Seed of everything that is drawn at random")
-        ->capture_default_str();
     command->add_option("--dump-graph", run_options.dump_graph,
                         "Write PATH.dot and PATH.json of the last frame's last graph");
-    command->callback([arguments] {
+    command->callback([arguments, &exit_code] {
         arguments->sequence.finish(arguments->run);
-        run(arguments->run);
+        exit_code = run(arguments->run).exit_code();
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include "sensor/synthetic/scene_file.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 #include "tools/run_settings.h"
 
 namespace patina::tools {
@@ -16,7 +17,7 @@ void add_truth_option(CLI::App& command, const std::string& name, bool& wanted, 
     command
         .add_option_function<std::string>(
             name, [&wanted](const std::string&) { wanted = true; }, help)
-        ->check(CLI::IsMember({"truth"}));
+        ->check(one_of({"truth"}));
 }
 
 }  // namespace
@@ -28,8 +29,11 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
                     "of: " +
                         sensor::scene_names())
         ->required();
-    command.add_option("--format", options.format, "patina-sequence, 7-scenes or tum, instead of recognising it");
-    command.add_option("--frames", options.frames, "Use at most so many frames (synthetic scenes: 120 by default)");
+    command.add_option("--format", options.format,
+                       "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
+    command
+        .add_option("--frames", options.frames, "Use at most so many frames; without it all (of a synthetic scene 120)")
+        ->check(at_least_one());
     command.add_option("--lights", options.lights,
                        "lights.json: estimate what surfaces reflect under these lights, not only where they are");
     command.add_option(
@@ -39,7 +43,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command
         .add_option("--labels", options.labels,
                     "Segments: geometry finds them, truth takes those of truth/labels, off does without")
-        ->check(CLI::IsMember({"off", "geometry", "truth"}))
+        ->check(one_of({"off", "geometry", "truth"}))
         ->capture_default_str();
     add_truth_option(command, "--materials", options.truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
@@ -48,7 +52,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
                     "Specular materials of segments: fit (Ward's model, to the observations), hemicnn (the network), "
                     "both (its estimates hold where observations do not tell) or off; by default both where there is "
                     "a network, else fit")
-        ->check(CLI::IsMember({"fit", "hemicnn", "both", "off"}));
+        ->check(one_of({"fit", "hemicnn", "both", "off"}));
     command.add_option("--network", options.network, "Weights of the network, instead of those that ship with patina");
     command.add_flag_callback(
         "--no-shadows", [&options] { reflectance_of(options.settings).refine.shadows = false; },
@@ -56,11 +60,12 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     command
         .add_option_function<uint32_t>(
             "--observation-mm",
-            [&options](uint32_t mm) {
-                set_observation_voxel(reflectance_of(options.settings), static_cast<float>(mm) / 1000);
-            },
-            "Size of the voxels of reflectance, 20 or 10; records for them are allotted accordingly")
-        ->check(CLI::IsMember({10, 20}));
+            [&options](uint32_t mm) { reflectance_of(options.settings).voxel_m = static_cast<float>(mm) / 1000; },
+            "Size of the voxels of reflectance, 20 or 10")
+        ->check(one_of({"10", "20"}));
+    command.add_option_function<uint64_t>(
+        "--seed", [&options](const uint64_t& seed) { options.seed = options.settings.seed = seed; },
+        "Another seed for everything that is drawn at random; of a synthetic scene also for noise and samples");
     command.add_flag("--quiet", options.quiet, "Print nothing but errors");
     command.add_option("--settings", settings_file, "TOML file with settings");
     command.add_option("--set", assignments, "One setting as KEY=VALUE, such as fusion.max_depth_m=3; may be repeated")
@@ -71,6 +76,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
 void SequenceArguments::finish(SequenceOptions& options) const {
     if (!settings_file.empty()) load_settings(options.settings, settings_file);
     for (const std::string& assignment : assignments) apply_setting(options.settings, assignment);
+    options.settings_file = settings_file;
     options.device = device.options();
 }
 

@@ -66,10 +66,12 @@ void add_synth(CLI::App& app) {
     command->add_option("scene", options.scene, "JSON file of a scene, or one of: " + sensor::scene_names())
         ->required();
     command->add_option("--out", options.out, "Folder to create")->required();
-    command->add_option("--frames", options.frames, "How many frames to record")->capture_default_str();
+    command->add_option("--frames", options.frames, "How many frames to record")
+        ->check(at_least_one())
+        ->capture_default_str();
     command->add_option("--truth-every", options.truth_every,
                         "Write truth/frames/NNNNNN.exr of every so many frames: materials, normals, depth, radiance");
-    add_optional(*command, "--seed", options.seed, "Seed of noise and random samples");
+    add_optional(*command, "--seed", options.changes.seed, "Seed of noise and random samples");
     add_optional(*command, "--vary", options.changes.vary, "Seed of other materials, lights and path of the same kind");
     command->add_option("--mesh", options.changes.mesh, "Mesh in place of those whose height the scene sets");
     command->add_flag("--quiet", options.quiet, "Print nothing but errors");

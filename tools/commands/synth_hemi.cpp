@@ -1,9 +1,9 @@
 #include "tools/synth_hemi.h"
 
-#include <map>
 #include <memory>
 
 #include "tools/commands/commands.h"
+#include "tools/commands/parse.h"
 
 namespace patina::tools {
 
@@ -21,10 +21,9 @@ void add_synth_hemi(CLI::App& app) {
     command->add_option("--examples", options.examples, "How many to write")
         ->capture_default_str()
         ->check(CLI::Range(1u, 1u << 24));
-    static const std::map<std::string, HemisphereMap> kMaps{{"parabolic", HemisphereMap::kParabolic},
-                                                            {"orthogonal", HemisphereMap::kOrthogonal}};
     command->add_option("--map", options.map, "How directions become points of an image: parabolic, orthogonal")
-        ->transform(CLI::CheckedTransformer(kMaps))
+        ->transform(one_of<HemisphereMap>(
+            {{"parabolic", HemisphereMap::kParabolic}, {"orthogonal", HemisphereMap::kOrthogonal}}))
         ->default_str("parabolic");
     command->add_flag("--quiet", options.quiet, "Print nothing but errors");
     arguments->device.add_to(*command);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/printable.h"
 #include "tools/eval/table.h"
 
 namespace patina::eval {
@@ -19,13 +20,6 @@ bool continues_character(char byte) { return (static_cast<unsigned char>(byte) &
 /// Code points, which for names are as good as columns.
 size_t length_of(const std::string& text) {
     return static_cast<size_t>(std::ranges::count_if(text, [](char byte) { return !continues_character(byte); }));
-}
-
-/// Without what would move the terminal's cursor.
-std::string printable(std::string text) {
-    std::ranges::replace_if(
-        text, [](char byte) { return static_cast<unsigned char>(byte) < ' ' || byte == 0x7f; }, '?');
-    return text;
 }
 
 std::string shortened(std::string name) {
@@ -145,16 +139,17 @@ std::string light_text(const LightErrors& lights) {
 }  // namespace
 
 std::string eval_text(const Evaluation& evaluation) {
-    std::string text = fmt::format("{} against {}: {} frames of {} x {} (truth has {}, the run {})\n\n", evaluation.run,
-                                   evaluation.sequence, evaluation.frames.size(), evaluation.extent.width,
-                                   evaluation.extent.height, evaluation.truth_frames, evaluation.run_frames);
+    std::string text =
+        fmt::format("{} against {}: {} frames of {} x {} (truth has {}, the run {})\n\n", printable(evaluation.run),
+                    printable(evaluation.sequence), evaluation.frames.size(), evaluation.extent.width,
+                    evaluation.extent.height, evaluation.truth_frames, evaluation.run_frames);
     text += score_text(evaluation);
     const std::vector<Finding> list = findings(evaluation);
-    for (const Finding& finding : list) text += padded(finding.name, 16) + finding.value + '\n';
+    for (const Finding& finding : list) text += padded(finding.name, 16) + printable(finding.value) + '\n';
     if (evaluation.lights) text += light_text(*evaluation.lights);
     const std::vector<std::string> notes = absences(evaluation);
     if (!list.empty() && !notes.empty()) text += '\n';
-    for (const std::string& note : notes) text += "Note: " + note + '\n';
+    for (const std::string& note : notes) text += "Note: " + printable(note) + '\n';
     return text;
 }
 

@@ -6,8 +6,11 @@
 #include <thread>
 
 #include "engine/core/error.h"
+#include "engine/core/expect_path.h"
+#include "engine/core/input_file.h"
 #include "sensor/truth.h"
 #include "tools/eval/exr_planes.h"
+#include "tools/eval/finished_run.h"
 #include "tools/eval/frame_channels.h"
 #include "tools/eval/lights.h"
 #include "tools/eval/measure_frame.h"
@@ -34,10 +37,6 @@ struct FramePair {
 
 std::string range_of(const std::map<uint32_t, fs::path>& frames) {
     return text(frames.size(), " from ", frames.begin()->first, " to ", frames.rbegin()->first);
-}
-
-void expect_folder(const fs::path& folder) {
-    if (!fs::is_directory(folder)) throw Error(folder.string(), " is not a folder");
 }
 
 std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& run, Evaluation& result) {
@@ -72,7 +71,7 @@ std::map<uint32_t, fs::path> truth_files(std::span<const FramePair> pairs) {
 /// The poses that sequence and run have in common, compared where they are enough; empty where one of them has none.
 std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "trajectory.txt", run_file = run / "trajectory.txt";
-    if (!fs::exists(truth_file) || !fs::exists(run_file)) {
+    if (!path_exists(truth_file) || !path_exists(run_file)) {
         result.no_trajectory = "truth and run do not both have one";
         return {};
     }
@@ -94,7 +93,7 @@ std::vector<PosePair> read_poses(const fs::path& sequence, const fs::path& run, 
 void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTransform& truth_from_run,
                     double radius_m, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "lights.json", run_file = run / "lights.json";
-    if (!fs::exists(truth_file) || !fs::exists(run_file)) return;
+    if (!path_exists(truth_file) || !path_exists(run_file)) return;
     std::vector<sensor::PointLight> lights = sensor::read_lights(run_file);
     for (sensor::PointLight& light : lights) {
         light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
@@ -104,6 +103,7 @@ void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTr
 
 /// Everything that all frames are measured with.
 struct Reference {
+    std::string run_id;  ///< of run.json; empty where it has none
     Extent2D extent;
     std::set<std::string> groups;
     std::string file;                               ///< the run's first frame, which the above come from
@@ -111,9 +111,9 @@ struct Reference {
     std::optional<SeenPixels> seen;                 ///< empty where every pixel is scored
 };
 
-Reference reference_of(const FramePair& first, std::span<const PosePair> poses) {
+Reference reference_of(const FramePair& first, std::span<const PosePair> poses, std::string run_id) {
     const ExrPlanes frame = ExrPlanes::read(first.run);
-    Reference reference{frame.extent(), groups_of(frame), frame.file(), {}, {}};
+    Reference reference{std::move(run_id), frame.extent(), groups_of(frame), frame.file(), {}, {}};
     if (!reference.groups.contains("valid")) throw Error(frame.file(), " has no channel valid");
     // truth/trajectory.txt has one line per frame of the sequence, so that a pose's index is its frame's.
     for (const PosePair& pair : poses) {
@@ -123,6 +123,13 @@ Reference reference_of(const FramePair& first, std::span<const PosePair> poses) 
     return reference;
 }
 
+/// Pictures of another run stay where a run was killed, or where files were copied together.
+void expect_run(const ExrPlanes& frame, const std::string& run_id) {
+    if (frame.run_id() == run_id) return;
+    const auto named = [](const std::string& id) { return id.empty() ? "of a run without an id" : "of run " + id; };
+    throw Error(frame.file(), " is ", named(frame.run_id()), ", but its run.json is ", named(run_id));
+}
+
 FrameMeasurement measure(const FramePair& pair, const Reference& reference) {
     const ExrPlanes truth = ExrPlanes::read(pair.truth), run = ExrPlanes::read(pair.run);
     for (const ExrPlanes* frame : {&truth, &run}) {
@@ -130,6 +137,7 @@ FrameMeasurement measure(const FramePair& pair, const Reference& reference) {
         throw Error(frame->file(), " is ", frame->extent(), " pixels, but ", reference.file, " is ", reference.extent);
     }
     expect_groups(run, reference.groups, reference.file);
+    expect_run(run, reference.run_id);
     const auto rotation = reference.truth_from_run.find(pair.index);
     return measure_frame(pair.index, truth, run,
                          reference.seen ? reference.seen->mask(pair.index, truth) : Image<uint8_t>(),
@@ -212,7 +220,7 @@ void measure_frames(std::span<const FramePair> pairs, const Reference& reference
 }
 
 void name_objects(const fs::path& materials_file, std::vector<ObjectResult>& objects) {
-    if (!fs::exists(materials_file)) return;
+    if (!path_exists(materials_file)) return;
     for (const sensor::Material& material : sensor::read_materials(materials_file)) {
         const auto object = std::find_if(objects.begin(), objects.end(),
                                          [&](const ObjectResult& each) { return each.id == material.id; });
@@ -229,11 +237,12 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     result.sequence = sequence.string();
     result.run = run.string();
     const std::vector<FramePair> pairs = common_frames(sequence, run, result);
+    const std::string run_id = id_of_finished_run(run);
     const std::vector<PosePair> poses = read_poses(sequence, run, result);
     result.states = read_frame_states(run);
     measure_lights(sequence, run, poses.empty() ? RigidTransform(1.0) : align_worlds(poses), settings.light_radius_m,
                    result);
-    Reference reference = reference_of(pairs.front(), poses);
+    Reference reference = reference_of(pairs.front(), poses, run_id);
     result.extent = reference.extent;
     result.seen_frames = settings.seen_frames;
     if (settings.seen_frames > 1) reference.seen.emplace(sequence, truth_files(pairs), settings.seen_frames);

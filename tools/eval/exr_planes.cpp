@@ -6,9 +6,12 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
+#include "sensor/exr_input.h"
+#include "tools/export/run_id.h"
 
 namespace patina::eval {
 namespace {
@@ -27,26 +30,28 @@ std::optional<uint32_t> frame_index(const fs::path& file) {
 }  // namespace
 
 ExrPlanes ExrPlanes::read(const fs::path& path, const std::set<std::string>& only) {
-    if (!fs::exists(path)) throw Error(path.string(), " is missing");
     ExrPlanes picture;
     picture.file_ = path.string();
     try {
-        Imf::InputFile file(path.c_str());
-        const Imath::Box2i window = file.header().dataWindow();
-        picture.extent_ = {static_cast<uint32_t>(window.max.x - window.min.x + 1),
-                           static_cast<uint32_t>(window.max.y - window.min.y + 1)};
+        sensor::ExrInput input(picture.file_, read_file(path, limits::kPlanesBytes));
+        picture.extent_ = input.extent();
+        const auto* id = input.file().header().findTypedAttribute<Imf::StringAttribute>(kRunIdAttribute);
+        if (id) picture.run_id_ = id->value();
         Imf::FrameBuffer target;
-        const Imf::ChannelList& channels = file.header().channels();
+        const Imath::Box2i window = input.file().header().dataWindow();
+        const Imf::ChannelList& channels = input.file().header().channels();
         for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
             if (!only.empty() && !only.contains(channel.name())) continue;
             std::vector<float>& plane = picture.planes_[channel.name()];
             plane.resize(picture.extent_.area());
             target.insert(channel.name(), Imf::Slice::Make(Imf::FLOAT, plane.data(), window));
         }
-        file.setFrameBuffer(target);
-        file.readPixels(window.min.y, window.max.y);
+        input.file().setFrameBuffer(target);
+        input.file().readPixels(window.min.y, window.max.y);
+    } catch (const Error&) {
+        throw;
     } catch (const std::exception& failure) {
-        throw Error(path.string(), " cannot be decoded: ", failure.what());
+        throw Error(path.string(), " cannot be decoded: ", reason_of(failure));
     }
     return picture;
 }
@@ -68,13 +73,9 @@ Image<glm::vec3> ExrPlanes::rgb(const std::string& name) const {
 
 std::map<uint32_t, fs::path> exr_frames(const fs::path& folder) {
     std::map<uint32_t, fs::path> frames;
-    if (!fs::exists(folder)) return frames;
-    try {
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-            if (const auto index = frame_index(entry.path())) frames.emplace(*index, entry.path());
-        }
-    } catch (const fs::filesystem_error& failure) {
-        throw Error(folder.string(), " cannot be read: ", failure.code().message());
+    if (!path_exists(folder)) return frames;
+    for (const fs::path& entry : entries_of(folder)) {
+        if (const auto index = frame_index(entry)) frames.emplace(*index, entry);
     }
     return frames;
 }

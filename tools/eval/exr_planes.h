@@ -21,6 +21,8 @@ class ExrPlanes {
 
     const std::string& file() const { return file_; }
     Extent2D extent() const { return extent_; }
+    /// The id of the run that wrote the file (tools/export/run_id.h); empty where it has none.
+    const std::string& run_id() const { return run_id_; }
     const std::map<std::string, std::vector<float>>& planes() const { return planes_; }
     bool has(const std::string& channel) const { return planes_.contains(channel); }
 
@@ -31,7 +33,7 @@ class ExrPlanes {
     Image<glm::vec3> rgb(const std::string& name) const;
 
   private:
-    std::string file_;
+    std::string file_, run_id_;
     Extent2D extent_;
     std::map<std::string, std::vector<float>> planes_;
 };

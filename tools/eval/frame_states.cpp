@@ -1,5 +1,6 @@
 #include "tools/eval/frame_states.h"
 
+#include "engine/core/input_file.h"
 #include "sensor/json_file.h"
 
 namespace patina::eval {
@@ -12,7 +13,7 @@ constexpr uint64_t kMostFrames = UINT32_MAX;
 
 std::optional<FrameStates> read_frame_states(const std::filesystem::path& run) {
     const std::filesystem::path file = run / "run.json";
-    if (!std::filesystem::exists(file)) return std::nullopt;
+    if (!path_exists(file)) return std::nullopt;
     const auto tracking = sensor::JsonValue::read(file).find("tracking");
     if (!tracking) return std::nullopt;
     const auto count = [&](const char* state) { return tracking->at(state).whole_number(kMostFrames); };

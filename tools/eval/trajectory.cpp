@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "engine/core/error.h"
+#include "sensor/associate.h"
 #include "sensor/text_file.h"
 
 namespace patina::eval {

@@ -2,96 +2,140 @@
 
 #include <fstream>
 #include <system_error>
-#include <utility>
 
+#include "engine/core/digest.h"
 #include "engine/core/error.h"
+#include "sensor/output/apart.h"
+#include "sensor/output/new_file.h"
+#include "sensor/output/place.h"
+#include "tools/export/swap_folder.h"
 
 namespace patina {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Beside `place`, so that the rename stays within one file system.
-fs::path temporary_for(const fs::path& place) {
-    return place.parent_path() / (".patina-partial-" + place.filename().string());
-}
-
-void create_folder(const fs::path& folder) {
-    std::error_code failure;
-    if (fs::exists(folder, failure) && !fs::is_directory(folder, failure)) {
-        throw Error("output folder ", folder, ": is a file, not a folder");
+uint64_t digest_of_file(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    Digest digest;
+    std::string block(size_t{1} << 20, '\0');
+    while (file) {
+        file.read(block.data(), static_cast<std::streamsize>(block.size()));
+        digest.add(std::string_view(block).substr(0, static_cast<size_t>(file.gcount())));
     }
-    fs::create_directories(folder, failure);
-    if (failure) throw Error("output folder ", folder, ": cannot be created: ", failure.message());
+    return digest.value();
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) throw Error("cannot write ", bytes.size(), " bytes to ", path);
-}
-
-/// Permissions alone do not tell (read-only file systems, root), so a file is really written.
-void check_writable(const fs::path& folder) {
-    const fs::path probe = temporary_for(folder / "probe");
-    std::ofstream file(probe);
-    if (!file.put('\n').flush()) throw Error("output folder ", folder, ": cannot be written to");
-    file.close();
-    std::error_code failure;
-    if (!fs::remove(probe, failure))
-        throw Error("output folder ", folder, ": files in it cannot be removed: ", failure.message());
-}
-
-void remove_finished_mark(const fs::path& folder, const std::string& mark) {
-    std::error_code failure;
-    fs::remove(folder / mark, failure);
-    if (failure) {
-        throw Error("output folder ", folder, ": an earlier ", mark, " cannot be removed: ", failure.message());
+/// The first that is free, or holds results that are not whole either.
+fs::path place_for_unfinished(const fs::path& place, ResultKind kind) {
+    for (int i = 1; i <= sensor::kMostNumbered; ++i) {
+        const fs::path other = sensor::numbered(place, "-unfinished", i);
+        const EarlierResults found = results_in(other, kind);
+        if (!sensor::is_taken(other) || (!found.finished && found.files.contains(mark_of(kind)))) return other;
     }
-}
-
-void check_name(const fs::path& name) {
-    bool inside = name.is_relative() && name.has_filename();
-    for (const fs::path& part : name) inside = inside && part != ".." && part != ".";
-    PATINA_ASSERT(inside, "an output file's name must be a plain relative path: ", name);
+    return sensor::numbered(place, "-unfinished", sensor::kMostNumbered);  // refused later, and kept under another name
 }
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path, const std::string& finished_mark) : path_(std::move(path)) {
-    create_folder(path_);
-    check_writable(path_);
-    remove_finished_mark(path_, finished_mark);
-}
-
-OutputFolder::~OutputFolder() {
-    for (const std::string& name : staged_) {
-        std::error_code ignored;
-        fs::remove(temporary_for(path_ / name), ignored);
+OutputFolder::OutputFolder(const fs::path& path, const std::vector<fs::path>& inputs, ResultKind kind)
+    : path_(path), kind_(kind) {
+    sensor::expect_apart(path, inputs);
+    try {
+        const fs::path place = sensor::resolved(path);
+        expect_replaceable(place, kind);
+        partial_.emplace(place);
+        settle(place, kind);
+        expect_replaceable(place, kind);  // with what has come back
+    } catch (const std::exception& failure) {
+        throw Error("output folder ", path, ": ", failure.what());
     }
 }
 
 void OutputFolder::write(const std::string& name, std::string_view bytes) {
-    write_file(stage(name), bytes);
+    sensor::NewFile file(stage(name));
+    file.write(bytes);
+    file.close();
     publish(name);
 }
 
 fs::path OutputFolder::stage(const std::string& name) {
-    check_name(name);
-    const fs::path place = path_ / name;
-    create_folder(place.parent_path());
+    PATINA_ASSERT(is_result_name(kind_, name), "not listed as the name of a result: ", name);
+    const fs::path place = partial_->path() / name;
+    std::error_code failure;
+    fs::create_directories(place.parent_path(), failure);
+    if (failure)
+        throw Error("output folder ", path_, ": a folder for ", name,
+                    " cannot be created: ", sensor::disk_reason(failure.value()));
     staged_.insert(name);
-    return temporary_for(place);
+    return place;
 }
 
 void OutputFolder::publish(const std::string& name) {
     PATINA_ASSERT(staged_.contains(name), "published without being staged: ", name);
-    const fs::path place = path_ / name;
-    std::error_code failure;
-    fs::rename(temporary_for(place), place, failure);
-    if (failure) throw Error("output file ", place, ": cannot be put in place: ", failure.message());
+    const fs::path place = partial_->path() / name;
+    if (!sensor::is_real_file(place)) throw Error("output folder ", path_, ": ", name, " was not written");
+    digests_[name] = digest_of_file(place);
     staged_.erase(name);
+}
+
+void OutputFolder::discard_staged() {
+    for (const std::string& name : staged_) {
+        std::error_code ignored;
+        fs::remove(partial_->path() / name, ignored);
+    }
+    staged_.clear();
+}
+
+fs::path OutputFolder::published(const std::string& name) const {
+    PATINA_ASSERT(digests_.contains(name), "not published: ", name);
+    return partial_->path() / name;
+}
+
+std::vector<std::string> OutputFolder::files() const {
+    std::vector<std::string> names;
+    for (const auto& [name, digest] : digests_) names.push_back(name);
+    return names;
+}
+
+uint64_t OutputFolder::digest() const {
+    Digest digest;
+    for (const auto& [name, value] : digests_) {
+        if (name == "report.html") continue;
+        digest.add(name);
+        digest.add(text(":", value, "\n"));
+    }
+    return digest.value();
+}
+
+void OutputFolder::commit() { put_in(partial_->target()); }
+
+fs::path OutputFolder::commit_unfinished() {
+    const fs::path target = partial_->target();
+    const bool whole = results_in(target, kind_).finished;
+    const fs::path place = whole ? place_for_unfinished(target, kind_) : target;
+    put_in(place);
+    return whole ? place : path_;
+}
+
+/// Results that cannot be put in place, of hours of work perhaps, are kept under another name.
+void OutputFolder::put_in(const fs::path& place) {
+    PATINA_ASSERT(staged_.empty(), "staged, but not published: ", *staged_.begin());
+    try {
+        sensor::flush_to_disk(partial_->path());
+        settle(place, kind_);
+        swap_in(*partial_, place, kind_);
+    } catch (const std::exception& failure) {
+        if (partial_->released()) throw;
+        const fs::path kept = partial_->keep_beside(place);
+        throw Error(reason_of(failure), "; the results are in '", kept.string(), "'");
+    }
+}
+
+std::optional<fs::path> OutputFolder::keep() {
+    discard_staged();
+    if (digests_.empty()) return std::nullopt;
+    return partial_->keep_beside(partial_->target());
 }
 
 }  // namespace patina

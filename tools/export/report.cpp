@@ -25,6 +25,8 @@ std::string bar_svg(double low, double value, double high) {
         100 * low, 100 * std::max(0.0, high - low), 100 * value);
 }
 
+std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
+
 std::string facts(const RunRecord& record) {
     const FrameLedger& frames = record.frames;
     const VoxelPoolRecord& pool = record.voxel_pool;
@@ -43,6 +45,9 @@ std::string facts(const RunRecord& record) {
     for (const auto& [name, count] : record.totals) html += report_fact(name, grouped(count));
     for (const auto& [name, seconds] : record.times_s)
         html += report_fact("Time, " + name, fmt::format("{:.2f} s", seconds));
+    if (record.ambient != glm::dvec3(0)) html += report_fact("Ambient light, RGB", vector_text(record.ambient));
+    if (record.world_offset_m != glm::dvec3(0))
+        html += report_fact("World moved by, m", vector_text(record.world_offset_m));
     html += report_fact("Device", html_escaped(record.device.name));
     html += report_fact("Driver", html_escaped(record.device.driver));
     html += report_fact("Seed", fmt::format("{}", record.seed));
@@ -98,8 +103,6 @@ std::string memory_table(const std::vector<MemoryRecord>& pools) {
                     mebibytes(bytes)));
 }
 
-std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
-
 std::string light_table(const std::vector<sensor::PointLight>& lights) {
     if (lights.empty()) return {};
     std::string rows;
@@ -136,6 +139,18 @@ std::string segment_table(const std::vector<SegmentRecord>& segments) {
         rows);
 }
 
+std::string materials_missing(const RunRecord& record) {
+    if (record.materials_missing.empty()) return {};
+    return "<p>" + html_escaped(record.materials_missing) + "</p>\n";
+}
+
+/// Why the run ended before its time comes first.
+std::vector<std::string> shortfalls_of(const RunRecord& record) {
+    std::vector<std::string> all = record.shortfalls;
+    if (!record.finished && std::ranges::find(all, record.ended) == all.end()) all.insert(all.begin(), record.ended);
+    return all;
+}
+
 std::string skipped_table(const std::vector<sensor::Skipped>& skipped) {
     if (skipped.empty()) return {};
     std::string rows;
@@ -152,6 +167,12 @@ std::string settings_text(const nlohmann::ordered_json& settings) {
     return "<pre>" + html_escaped(text) + "</pre>";
 }
 
+/// A sentence that says what is shown, above it; nothing where nothing is.
+std::string explained(std::string_view sentence, const std::string& html) {
+    if (html.empty()) return {};
+    return fmt::format("<p class='quiet'>{}</p>\n{}", html_escaped(sentence), html);
+}
+
 }  // namespace
 
 std::string report_html(const RunRecord& record, std::span<const ReportPicture> pictures) {
@@ -162,11 +183,22 @@ std::string report_html(const RunRecord& record, std::span<const ReportPicture> 
         html_escaped(sequence.name), html_escaped(record.version), grouped(sequence.frames),
         html_escaped(sequence.format), sequence.color.extent.width, sequence.color.extent.height,
         sequence.depth.extent.width, sequence.depth.extent.height);
+    html += report_section("Incomplete", report_warnings(shortfalls_of(record)));
     html += facts(record);
     html += report_section("Warnings", report_warnings(record.warnings));
-    html += report_section("Pictures", report_figures(pictures));
-    html += report_section("Lights", light_table(record.lamps));
-    html += report_section("Materials", segment_table(record.segments));
+    html +=
+        report_section("Pictures", explained("From where the colour camera was, what stands above each panel. Grey: "
+                                             "the model has no surface there.",
+                                             report_figures(pictures)));
+    html += report_section("Lights", explained("A point at distance r (m) receives intensity / r², in linear pixel "
+                                               "values: 1 is the brightest that 8 bits hold.",
+                                               light_table(record.lamps)));
+    html +=
+        report_section("Materials", materials_missing(record) +
+                                        explained("Of Ward's model, by segment: diffuse albedo kd and specular albedo "
+                                                  "ks (red, green, blue; 0 to 1), roughness alpha. Confidence is that "
+                                                  "of kd, from 0 to 1.",
+                                                  segment_table(record.segments)));
     html += report_section("Tracking", tracking_table(record.tracking));
     html += report_section("GPU time per pass", pass_table(record.passes));
     html += report_section("Device memory", memory_table(record.memory));

@@ -1,5 +1,7 @@
 #include "tools/export/run_record.h"
 
+#include "engine/core/digest.h"
+
 namespace patina {
 namespace {
 
@@ -76,12 +78,15 @@ Json object_of(const std::vector<std::pair<std::string, Value>>& pairs, const ch
     return result;
 }
 
-}  // namespace
+std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
-std::string run_json(const RunRecord& record) {
+Json json_of(const RunRecord& record) {
     Json run;
     run["format"] = "patina-run";
     run["version"] = record.version;
+    run["id"] = record.id;
+    run["finished"] = record.finished;
+    if (!record.finished) run["ended"] = record.ended;
     run["device"] = {
         {"name", record.device.name}, {"type", record.device.type}, {"vulkan", record.device.vulkan_version}};
     run["driver"] = record.device.driver;
@@ -104,10 +109,28 @@ std::string run_json(const RunRecord& record) {
     if (!record.tracking.empty()) run["tracking"] = tracking_json(record.tracking);
     if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);
     if (record.held_out) run["held_out"] = held_out_json(*record.held_out);
+    if (record.world_offset_m != glm::dvec3(0))
+        run["world_offset_m"] = {record.world_offset_m.x, record.world_offset_m.y, record.world_offset_m.z};
+    if (!record.materials_missing.empty()) run["materials_missing"] = record.materials_missing;
+    run["shortfalls"] = record.shortfalls;
     run["warnings"] = record.warnings;
     run["passes"] = passes_json(record.passes);
     run["times"] = object_of(record.times_s, "_s");
-    return run.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    run["files"] = record.files;
+    return run;
+}
+
+}  // namespace
+
+std::string run_json(const RunRecord& record) { return dumped(json_of(record)) + '\n'; }
+
+std::string run_id(const RunRecord& record, uint64_t files_digest) {
+    Json what = json_of(record);
+    for (const char* key : {"id", "passes", "times"}) what.erase(key);
+    Digest digest;
+    digest.add(dumped(what));
+    digest.add(std::to_string(files_digest));
+    return digest.digits();
 }
 
 }  // namespace patina

@@ -85,7 +85,11 @@ struct SegmentRecord {
 /// Everything that run.json and report.html say about a finished run. Durations belong into `passes` and `times_s`
 /// only: all the rest is equal between two runs of the same input on the same device.
 struct RunRecord {
-    std::string version;  ///< of Patina
+    std::string version;               ///< of Patina
+    std::string id{};                  ///< of the run, run_id(); empty where it is not known yet
+    bool finished = true;              ///< false: the run was stopped before its last frame
+    std::string ended{};               ///< by what it was stopped, as "interrupted after 12 of 60 frames"
+    std::vector<std::string> files{};  ///< all that the run wrote, itself too, by names relative to its folder
     DeviceRecord device;
     uint64_t seed = 0;
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();  ///< as given and defaulted, in reading order
@@ -99,8 +103,12 @@ struct RunRecord {
     std::vector<TrackedFrame> tracking{};                  ///< each frame that was read; empty where poses were given
     std::vector<ValueRange> color_gains;    ///< of red, green and blue over the frames; empty where there are none
     std::optional<HeldOutRecord> held_out;  ///< empty where no picture was held out
+    glm::dvec3 world_offset_m{0};  ///< of the scene's coordinates, to be added for those of the recording's world
+    glm::dvec3 ambient{0};         ///< for report.html: irradiance over pi that every surface receives
     std::vector<sensor::PointLight> lamps;  ///< like the segments for report.html: they have files of their own
     std::vector<SegmentRecord> segments;
+    std::string materials_missing;        ///< why materials are not all that they could be, and what to give
+    std::vector<std::string> shortfalls;  ///< of what was asked for: the run ended with exit code 3
     std::vector<std::string> warnings;
     std::vector<PassTime> passes;                         ///< in the order of execution
     std::vector<std::pair<std::string, double>> times_s;  ///< wall times in seconds, as {"reading", 1.5}
@@ -110,5 +118,9 @@ struct RunRecord {
 /// objects "passes" and "times"; without these two, the text is equal between two runs that did the same. Numbers that
 /// are not finite become null; text that is not UTF-8 has its bad bytes replaced.
 std::string run_json(const RunRecord& record);
+
+/// The run's id, 16 hexadecimal digits: of the record without id and durations, and of OutputFolder::digest() of the
+/// files it wrote. Runs that did the same have the same id, others another.
+std::string run_id(const RunRecord& record, uint64_t files_digest);
 
 }  // namespace patina

@@ -6,8 +6,11 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include "engine/core/error.h"
+#include "sensor/output/exr_stream.h"
+#include "tools/export/run_id.h"
 
 namespace patina {
 namespace {
@@ -63,17 +66,24 @@ std::vector<ExrChannel> xyz_channels(const std::string& name, const Image<glm::v
     return vector_channels(name, image, "XYZ");
 }
 
-void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels) {
+void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels, const std::string& run_id) {
     check_channels(path, channels);
     const Extent2D extent = channels.front().extent;
     Imf::Header header(static_cast<int>(extent.width), static_cast<int>(extent.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer pixels;
     for (const ExrChannel& channel : channels) add_channel(path, channel, header, pixels);
+    if (!run_id.empty()) header.insert(kRunIdAttribute, Imf::StringAttribute(run_id));
     try {
-        Imf::OutputFile file(path.c_str(), header);
-        file.setFrameBuffer(pixels);
-        file.writePixels(static_cast<int>(extent.height));
+        sensor::ExrStream stream(path);
+        {
+            Imf::OutputFile file(stream, header);
+            file.setFrameBuffer(pixels);
+            file.writePixels(static_cast<int>(extent.height));
+        }
+        stream.close();
+    } catch (const Error&) {
+        throw;
     } catch (const std::exception& failure) {
         throw Error(path, ": cannot be written: ", failure.what());
     }

@@ -27,9 +27,10 @@ std::vector<ExrChannel> rgb_channels(const std::string& name, const Image<glm::v
 std::vector<ExrChannel> xyz_channels(const std::string& name, const Image<glm::vec3>& image);
 
 /// Writes one multi-channel OpenEXR: float32, ZIP compressed. The file lists channels by name, whatever order they are
-/// given in. The same pixels give the same bytes. Throws Error for no channel, an empty picture, extents that differ, a
-/// name given twice, or a disk that refuses.
-void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels);
+/// given in. The same pixels give the same bytes. `run_id` is that of the run in whose folder the file will be, see
+/// tools/export/run_id.h; empty: the file has none. Throws Error for no channel, an empty picture, extents that differ,
+/// a name given twice, or a disk that refuses.
+void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> channels, const std::string& run_id = {});
 
 /// What one colour camera sees, of a run's model or of the truth; all pictures have one extent. Groups that are empty
 /// are left out of the file.

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <ostream>
 #include <utility>
 
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
+#include "sensor/output/new_file.h"
 #include "tools/export/gltf_arrays.h"
 #include "tools/export/gltf_material.h"
 #include "tools/export/mesh_parts.h"
@@ -179,6 +180,8 @@ class GlbBuilder {
         tinygltf::Node root;
         root.name = info.name;
         root.rotation = {turn.x, turn.y, turn.z, turn.w};
+        if (info.world_offset_m != glm::dvec3(0))
+            root.extras = Value(Value::Object{{"world_offset_m", array_of(info.world_offset_m)}});
         model_.nodes.push_back(std::move(root));
         tinygltf::Scene scene;
         scene.name = info.name;
@@ -313,10 +316,13 @@ class GlbBuilder {
 
 void write_model(const std::filesystem::path& path, const tinygltf::Model& model) {
     constexpr bool kPretty = false, kBinary = true;
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, file, kPretty, kBinary);
+    sensor::NewFile file(path);
+    sensor::NewFileStream bytes(file);
+    std::ostream stream(&bytes);
+    const bool written = tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, kPretty, kBinary);
+    bytes.expect_written();
+    if (!written || !stream) throw Error(path, ": the scene cannot be written");
     file.close();
-    if (!written || !file) throw Error(path, ": the scene cannot be written");
 }
 
 }  // namespace

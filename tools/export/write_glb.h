@@ -22,6 +22,8 @@ struct GlbInfo {
     std::string version;                       ///< of Patina; asset.generator becomes "Patina VERSION"
     std::string name = "scene";                ///< of the scene and its root node
     glm::dquat y_up_from_world = kYDownToYUp;  ///< the root node's rotation
+    /// What was taken from all positions, metres; told in the root node's extras as "world_offset_m" where it is not 0.
+    glm::dvec3 world_offset_m{0};
 };
 
 /// What a mesh becomes in its file: colours alone, or materials and lights too.

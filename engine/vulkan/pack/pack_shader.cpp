@@ -4,10 +4,13 @@
 // HEADER...
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
+#include <initializer_list>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -16,24 +19,32 @@
 
 #include <spirv_cross/spirv_cross_c.h>
 
+#include "engine/vulkan/floor.h"
+
 namespace {
 
 struct Module {
-    spvc_context context = nullptr;
+    struct Destroy {
+        void operator()(spvc_context context) const { spvc_context_destroy(context); }
+    };
+    std::unique_ptr<spvc_context_s, Destroy> context;  ///< owns the others
     spvc_compiler compiler = nullptr;
     spvc_resources resources = nullptr;
 };
 
 void check(const Module& module, spvc_result result) {
-    if (result != SPVC_SUCCESS) throw std::runtime_error(spvc_context_get_last_error_string(module.context));
+    if (result != SPVC_SUCCESS) throw std::runtime_error(spvc_context_get_last_error_string(module.context.get()));
 }
 
 Module parse(const std::vector<SpvId>& words) {
     Module module;
-    check(module, spvc_context_create(&module.context));
+    spvc_context context = nullptr;
+    const spvc_result created = spvc_context_create(&context);
+    module.context.reset(context);
+    check(module, created);
     spvc_parsed_ir ir = nullptr;
-    check(module, spvc_context_parse_spirv(module.context, words.data(), words.size(), &ir));
-    check(module, spvc_context_create_compiler(module.context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
+    check(module, spvc_context_parse_spirv(context, words.data(), words.size(), &ir));
+    check(module, spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
                                                &module.compiler));
     check(module, spvc_compiler_create_shader_resources(module.compiler, &module.resources));
     return module;
@@ -215,6 +226,33 @@ std::vector<Binding> reflect_bindings(const Module& module, LayoutAssertions& la
     return bindings;
 }
 
+/// Throws where the shader `name` needs more than a device of the portability floor must have.
+void check_floor(const std::string& name, const std::vector<Binding>& bindings, size_t push_bytes,
+                 unsigned invocations) {
+    namespace floor = patina::vulkan::floor;
+    const auto bound = [&](std::initializer_list<const char*> kinds) {
+        unsigned total = 0;
+        for (const Binding& b : bindings) {
+            if (std::find(kinds.begin(), kinds.end(), b.kind) != kinds.end()) total += b.count;
+        }
+        return total;
+    };
+    const auto check_most = [&](const char* what, size_t has, size_t most) {
+        if (has <= most) return;
+        throw std::runtime_error("the shader " + name + " needs " + std::to_string(has) + ' ' + what +
+                                 ", every element of an array counted, but at most " + std::to_string(most) +
+                                 " are portable");
+    };
+    const bool texel_variant = name.ends_with("_texel");
+    check_most("storage buffers", bound({"kStorageBuffer"}), floor::kStorageBuffers);
+    check_most("storage images", bound({"kStorageImage", "kTexelBuffer"}),
+               texel_variant ? floor::kTexelVariantImages : floor::kStorageImages);
+    check_most("sampled images", bound({"kSampledImage"}), floor::kSampledImages);
+    check_most("uniform buffers", bound({"kUniformBuffer"}), floor::kUniformBuffers);
+    check_most("bytes of push constants", push_bytes, floor::kPushBytes);
+    check_most("invocations in a group", invocations, floor::kGroupInvocations);
+}
+
 size_t reflect_push(const Module& module, LayoutAssertions& layouts) {
     const spvc_reflected_resource* list = nullptr;
     size_t count = 0;
@@ -274,6 +312,12 @@ void pack(const char* path, const char* name, const char* identifier, const std:
     LayoutAssertions layouts(module);
     const std::vector<Binding> bindings = reflect_bindings(module, layouts);
     const size_t push_bytes = reflect_push(module, layouts);
+    std::array<unsigned, 3> group{};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        group[axis] =
+            spvc_compiler_get_execution_mode_argument_by_index(module.compiler, SpvExecutionModeLocalSize, axis);
+    }
+    check_floor(name, bindings, push_bytes, group[0] * group[1] * group[2]);
 
     out << "// Generated from the SPIR-V of " << name
         << ".\n#include <cstddef>\n#include <type_traits>\n#include <vector>\n"
@@ -285,12 +329,8 @@ void pack(const char* path, const char* name, const char* identifier, const std:
     write_constants(module, out);
     out << "}\nconst patina::vulkan::Shader patina::spirv::" << identifier << " = {\"" << name
         << "\", kWords, kBindings, kConstants, " << push_bytes << "u, {";
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        out << spvc_compiler_get_execution_mode_argument_by_index(module.compiler, SpvExecutionModeLocalSize, axis)
-            << "u,";
-    }
+    for (const unsigned invocations : group) out << invocations << "u,";
     out << "}};\n";
-    spvc_context_destroy(module.context);
 }
 
 }  // namespace

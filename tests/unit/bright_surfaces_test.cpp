@@ -1,0 +1,56 @@
+#include "tools/bright_surfaces.h"
+
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace patina::tools {
+namespace {
+
+constexpr uint32_t kTaken = 61;  // of so many pixels one is taken, the first of a row here
+constexpr float kUsualAlbedo = 0.8f;
+
+/// A picture of which these values are taken, and no others.
+Image<glm::vec3> picture_of(const std::vector<float>& values) {
+    Image<glm::vec3> picture({kTaken, static_cast<uint32_t>(values.size())}, glm::vec3(100));
+    for (uint32_t y = 0; y < values.size(); ++y) picture.at(0, y) = glm::vec3(0.5f * values[y], values[y], 0);
+    return picture;
+}
+
+TEST(BrightSurfaces, WithoutAPixelThereIsNoLight) {
+    BrightSurfaces bright;
+    EXPECT_EQ(bright.ambient(), glm::vec3(0));
+    bright.add(picture_of({std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}));
+    EXPECT_EQ(bright.ambient(), glm::vec3(0));
+}
+
+TEST(BrightSurfaces, AValueThatIsAloneComesOutAsItIs) {
+    BrightSurfaces bright;
+    bright.add(picture_of(std::vector<float>(30, 0.37f)));
+    EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo);
+    bright.add(picture_of(std::vector<float>(30, 0)));
+    EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo) << "half of the pixels are more than a twentieth";
+    bright.add(Image<sensor::SrgbPixel>({kTaken, 2000}, sensor::SrgbPixel(10, 200, 30)));
+    EXPECT_FLOAT_EQ(bright.ambient().r, linear_color(sensor::SrgbPixel(10, 200, 30)).g / kUsualAlbedo);
+}
+
+TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {
+    std::mt19937 random(7);
+    std::lognormal_distribution<float> values(-2, 3);  // over ten decades
+    BrightSurfaces bright;
+    std::vector<float> all;
+    for (int frame = 0; frame < 20; ++frame) {
+        std::vector<float> some(101);
+        for (float& value : some) value = values(random);
+        bright.add(picture_of(some));
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    std::sort(all.begin(), all.end());
+    const float quantile = all[static_cast<size_t>(0.95 * static_cast<double>(all.size() - 1))];
+    EXPECT_NEAR(bright.ambient().g * kUsualAlbedo, quantile, quantile / 128);
+    EXPECT_EQ(bright.ambient().r, bright.ambient().b);
+}
+
+}  // namespace
+}  // namespace patina::tools

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "tools/export/run_record.h"
+#include "tools/export/write_glb.h"
+#include "tools/run.h"
+
+namespace patina::tools {
+
+/// What run.json and report.html say of a run, but for its ending, its times and what was compared: of the settings,
+/// the frames, the pools, the passes. `scene` is what became of the mesh. Asks nothing of the device, which may be
+/// lost.
+RunRecord make_record(const RunOptions& options, SequenceFusion& fusion, const GlbSummary& scene);
+
+/// Adds what the keyframes counted. Waits for the device; throws Error where it was lost.
+void add_keyframes(RunRecord& record, SequenceFusion& fusion);
+
+}  // namespace patina::tools

@@ -1,0 +1,65 @@
+#include "tools/shortfalls.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace patina::tools {
+
+namespace {
+
+constexpr double kLeastFramesUsed = 0.9;
+
+/// Of the frames that had their turn: a run that ended before its time says so itself.
+std::string unused_frames(const sensor::Ledger& ledger) {
+    const size_t tried = ledger.used() + ledger.skipped().size();
+    if (ledger.used() >= kLeastFramesUsed * static_cast<double>(tried)) return "";
+    return fmt::format("only {} of {} frames were used; the first was left out because: {}", ledger.used(), tried,
+                       ledger.skipped().front().reason);
+}
+
+}  // namespace
+
+std::string lost_for_good(const std::vector<TrackedFrame>& tracked) {
+    if (tracked.empty() || tracked.back().report.state != TrackingState::kLost) return "";
+    const auto found = std::find_if(tracked.rbegin(), tracked.rend(), [](const TrackedFrame& frame) {
+        return frame.report.state == TrackingState::kTracking;
+    });
+    const TrackedFrame& first = *found.base();
+    const auto count = found - tracked.rbegin();
+    return fmt::format("tracking was lost at frame {} and not found again: {}; the last {} left out", first.index,
+                       first.report.reason, count == 1 ? "frame is" : fmt::format("{} frames are", count));
+}
+
+std::vector<std::string> refusals(SequenceFusion& fusion) {
+    std::vector<std::string> list;
+    Reconstruction& reconstruction = fusion.reconstruction();
+    for (const PoolState& pool : fusion.pools()) {
+        if (!pool.is_full()) continue;
+        list.push_back(full_pool_warning(pool) +
+                       (pool.limit == PoolLimit::kSetting ? fmt::format("; raise {}", pool.setting) : ""));
+    }
+    if (const uint32_t refused = reconstruction.counters().refused_samples; refused > 0)
+        list.push_back(fmt::format("the voxel table was full: {} ray samples were left out", refused));
+    return list;
+}
+
+void note_shortfalls(SequenceFusion& fusion, Outcome& outcome) {
+    for (std::string& refusal : refusals(fusion)) outcome.fall_short(std::move(refusal));
+    if (std::string lost = lost_for_good(fusion.tracked()); !lost.empty()) outcome.fall_short(std::move(lost));
+    if (std::string unused = unused_frames(fusion.ledger()); !unused.empty()) outcome.fall_short(std::move(unused));
+    for (const std::string& shortfall : fusion.shortfalls()) outcome.fall_short(shortfall);
+}
+
+std::vector<std::string> warnings(SequenceFusion& fusion) {
+    std::vector<std::string> list = fusion.warnings();
+    const gpu::MapCounters& counters = fusion.reconstruction().counters();
+    if (counters.outside_samples > 0) {
+        list.push_back(
+            fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",
+                        counters.outside_samples));
+    }
+    return list;
+}
+
+}  // namespace patina::tools
