@@ -12,26 +12,49 @@ namespace {
 
 using nlohmann::json;
 
-/// Follows the parser through the document, to know where it is: nlohmann::json keeps the last of two equal keys, and
-/// does not tell where a number is too large.
-class Progress {
-  public:
-    explicit Progress(const std::string& file) : file_(file) {}
+/// nlohmann's messages begin with "[json.exception.NAME.NUMBER] ".
+std::string message_of(const json::exception& error) {
+    const std::string message = error.what();
+    const size_t end = message.find("] ");
+    return end == std::string::npos ? message : message.substr(end + 2);
+}
 
-    bool operator()(int, json::parse_event_t event, const json& parsed) {
-        using Event = json::parse_event_t;
-        switch (event) {
-            case Event::object_start: levels_.push_back({.is_array = false}); break;
-            case Event::array_start: levels_.push_back({.is_array = true}); break;
-            case Event::key: enter(parsed.get<std::string>()); break;
-            case Event::object_end:
-            case Event::array_end: levels_.pop_back(); [[fallthrough]];
-            case Event::value:
-                if (!levels_.empty()) ++levels_.back().elements;
-                break;
-        }
+/// Reads a document without keeping it, and throws Error where it is none. json::parse() keeps the last of two equal
+/// keys and does not tell where a number is too large; with a callback, its time is quadratic in an array's length.
+class Checker : public nlohmann::json_sax<json> {
+  public:
+    explicit Checker(const std::string& file) : file_(file) {}
+
+    bool null() override { return value(); }
+    bool boolean(bool) override { return value(); }
+    bool number_integer(number_integer_t) override { return value(); }
+    bool number_unsigned(number_unsigned_t) override { return value(); }
+    bool number_float(number_float_t, const string_t&) override { return value(); }
+    bool string(string_t&) override { return value(); }
+    bool binary(binary_t&) override { return value(); }
+    bool start_object(std::size_t) override { return start(false); }
+    bool start_array(std::size_t) override { return start(true); }
+    bool end_object() override { return end(); }
+    bool end_array() override { return end(); }
+
+    bool key(string_t& key) override {
+        levels_.back().key = key;
+        if (!levels_.back().keys.insert(key).second) throw Error(file_, ": ", key_path(), " is there twice");
         return true;
     }
+
+    bool parse_error(std::size_t, const std::string&, const json::exception& error) override {
+        const bool out_of_range = dynamic_cast<const json::out_of_range*>(&error) != nullptr;
+        throw Error(file_, " is not valid JSON: ", out_of_range ? key_path() + ": " : "", message_of(error));
+    }
+
+  private:
+    struct Level {
+        bool is_array;
+        size_t elements = 0;  ///< that are complete
+        std::string key{};    ///< the latest
+        std::set<std::string> keys{};
+    };
 
     /// "lights[2].radius"
     std::string key_path() const {
@@ -46,40 +69,30 @@ class Progress {
         return path;
     }
 
-  private:
-    struct Level {
-        bool is_array;
-        size_t elements = 0;  ///< that are complete
-        std::string key{};    ///< the latest
-        std::set<std::string> keys{};
-    };
+    bool start(bool is_array) {
+        levels_.push_back({.is_array = is_array});
+        return true;
+    }
 
-    void enter(const std::string& key) {
-        levels_.back().key = key;
-        if (!levels_.back().keys.insert(key).second) throw Error(file_, ": ", key_path(), " is there twice");
+    bool end() {
+        levels_.pop_back();
+        return value();
+    }
+
+    bool value() {
+        if (!levels_.empty()) ++levels_.back().elements;
+        return true;
     }
 
     const std::string& file_;
     std::vector<Level> levels_;
 };
 
-/// nlohmann's messages begin with "[json.exception.NAME.NUMBER] ".
-std::string message_of(const json::exception& error) {
-    const std::string message = error.what();
-    const size_t end = message.find("] ");
-    return end == std::string::npos ? message : message.substr(end + 2);
-}
-
 json parse_json(const std::string& file, std::span<const uint8_t> bytes) {
     check_json_depth(file, bytes);
-    Progress progress(file);
-    try {
-        return json::parse(bytes.begin(), bytes.end(), std::ref(progress));
-    } catch (const json::out_of_range& error) {
-        throw Error(file, " is not valid JSON: ", progress.key_path(), ": ", message_of(error));
-    } catch (const json::exception& error) {
-        throw Error(file, " is not valid JSON: ", message_of(error));
-    }
+    Checker checker(file);
+    json::sax_parse(bytes.begin(), bytes.end(), &checker);
+    return json::parse(bytes.begin(), bytes.end());
 }
 
 }  // namespace

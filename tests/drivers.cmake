@@ -2,6 +2,7 @@
 # exactly one driver, so that no test can end up on another.
 
 set(PATINA_SWIFTSHADER_ICD "" CACHE FILEPATH "Manifest of SwiftShader's Vulkan driver; tools/fetch_swiftshader prints it")
+option(PATINA_TEST_FULL "Runs tests that take minutes each, too: other builds, and whole reconstructions on every driver" OFF)
 option(PATINA_TEST_HARDWARE "Runs the GPU tests on a discrete GPU too" OFF)
 
 file(GLOB LAVAPIPE_ICD /usr/share/vulkan/icd.d/lvp_icd*.json)
@@ -35,10 +36,19 @@ endif()
 # shaders between processes.
 set(PATINA_SUITES_TOGETHER lavapipe256 lavapipe128 swiftshader)
 
+# Suites and TESTs that reconstruct whole scenes. They take most of the time on SwiftShader, which is three times slower
+# than lavapipe, so that only PATINA_TEST_FULL runs them there.
+set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|ReconstructionTest|Relocalisation|SegmentationModelTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
+set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
+
 # Registers each suite of a GoogleTest program as "PREFIX.Suite", with a label and what follows it as environment.
 function(patina_test_suites TARGET PREFIX LABEL)
     set(PROGRAM ${CMAKE_BINARY_DIR}/${TARGET})
     set(ENVIRONMENT ${ARGN})
+    set(LEFT_OUT "^$")
+    if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
+        set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
+    endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
     configure_file(discover_suites.cmake.in ${DISCOVERY_FILE} @ONLY)
     set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${DISCOVERY_FILE})
@@ -60,7 +70,11 @@ function(patina_test_on_drivers TARGET PREFIX)
             continue()
         endif()
         string(MAKE_C_IDENTIFIER "${TARGET}_${DRIVER}_${ARG_FILTER}" LIST)
-        gtest_discover_tests(${TARGET} TEST_PREFIX "${PREFIX}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${ARG_FILTER}"
+        set(FILTER "${ARG_FILTER}")
+        if(DRIVER STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
+            string(APPEND FILTER "-${PATINA_WHOLE_TESTS}")
+        endif()
+        gtest_discover_tests(${TARGET} TEST_PREFIX "${PREFIX}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${FILTER}"
                              DISCOVERY_MODE PRE_TEST)
         # The environment is a list, which gtest_discover_tests() cannot pass on; ctest sets it after discovery.
         set(ENVIRONMENT ${PATINA_ENVIRONMENT_${DRIVER}})

@@ -80,8 +80,9 @@ class IntegrateTest : public GpuTest {
     static void expect_same(const Volume& got, const Volume& expected, double color_tolerance) {
         size_t seen = 0, weights = 0, distances = 0, colored = 0, colors = 0;
         for (const auto& [block, voxels] : expected.blocks) {
+            const std::vector<Voxel>& found = got.blocks.at(block);
             for (size_t i = 0; i < 512; ++i) {
-                const Voxel &want = voxels[i], &have = got.blocks.at(block)[i];
+                const Voxel &want = voxels[i], &have = found[i];
                 seen += want.weight > 0;
                 weights += std::abs(want.weight - have.weight) > 0;
                 distances += std::abs(want.sdf_m - have.sdf_m) > 3 * kStepM + 1e-6;

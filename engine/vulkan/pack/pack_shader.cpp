@@ -323,12 +323,14 @@ void pack(const char* path, const char* name, const char* identifier, const std:
         << ".\n#include <cstddef>\n#include <type_traits>\n#include <vector>\n"
         << "#include \"engine/vulkan/shader.h\"\n#include \"spirv/shaders.h\"\n";
     for (const std::string& header : headers) out << "#include \"" << header << "\"\n";
-    out << layouts.text() << "\nnamespace {\n";
+    const std::string parts =
+        std::string("patina::spirv::parts_of_") + identifier;  // several may share one translation unit
+    out << layouts.text() << "\nnamespace " << parts << " {\n";
     write_words(words, out);
     write_bindings(bindings, out);
     write_constants(module, out);
-    out << "}\nconst patina::vulkan::Shader patina::spirv::" << identifier << " = {\"" << name
-        << "\", kWords, kBindings, kConstants, " << push_bytes << "u, {";
+    out << "}\nconst patina::vulkan::Shader patina::spirv::" << identifier << " = {\"" << name << "\", " << parts
+        << "::kWords, " << parts << "::kBindings, " << parts << "::kConstants, " << push_bytes << "u, {";
     for (const unsigned invocations : group) out << invocations << "u,";
     out << "}};\n";
 }
