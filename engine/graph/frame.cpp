@@ -82,12 +82,22 @@ void Frame::add_transfer(const std::string& name, uint32_t resource, Use use, Wo
     work_.push_back(std::move(work));
 }
 
+void Frame::check_range(const char* transfer, BufferId id, uint64_t offset, uint64_t bytes) const {
+    const std::string& name = description_.resources[id.resource].name;
+    const Physical& physical = physical_[id.resource];
+    if (physical.buffers.size() > 1) {
+        throw Error("the ", transfer, " '", name, "' spans ", physical.buffers.size(),
+                    " chunks; it can have one alone");
+    }
+    if (bytes > physical.bytes || offset > physical.bytes - bytes) {
+        throw Error("the ", transfer, " '", name, "' takes ", bytes, " bytes from byte ", offset, ", of ",
+                    physical.bytes);
+    }
+}
+
 BufferId Frame::upload_bytes(BufferId id, uint64_t offset, std::span<const std::byte> bytes, bool whole) {
     const std::string& name = description_.resources[id.resource].name;
-    if (offset + bytes.size() > physical_[id.resource].bytes) {
-        throw Error("the upload to '", name, "' ends at byte ", offset + bytes.size(), " of ",
-                    physical_[id.resource].bytes);
-    }
+    check_range("upload to", id, offset, bytes.size());
     if (bytes.empty()) return whole ? fill(id, 0) : id;
     const Staging staging = runner_->stage(bytes.size());
     std::memcpy(staging.mapped, bytes.data(), bytes.size());
@@ -123,6 +133,8 @@ BufferId Frame::copy(BufferId source, uint64_t source_offset, BufferId destinati
                      uint64_t bytes) {
     const std::string name = "copy." + description_.resources[destination.resource].name;
     if (source.resource == destination.resource) throw Error("the pass '", name, "' copies a buffer onto itself");
+    check_range("copy from", source, source_offset, bytes);
+    check_range("copy to", destination, destination_offset, bytes);
     description_.passes.push_back({name,
                                    {{source.resource, source.version, Use::kTransferRead},
                                     {destination.resource, destination.version, Use::kTransferModify}}});
@@ -132,11 +144,7 @@ BufferId Frame::copy(BufferId source, uint64_t source_offset, BufferId destinati
 
 Readback Frame::read_back(BufferId id, uint64_t offset, uint64_t bytes) {
     const std::string name = description_.resources[id.resource].name;
-    if (physical_[id.resource].buffers.size() > 1) throw Error("the read-back of '", name, "' spans several chunks");
-    if (offset + bytes > physical_[id.resource].bytes) {
-        throw Error("the read-back of '", name, "' ends at byte ", offset + bytes, " of ",
-                    physical_[id.resource].bytes);
-    }
+    check_range("read-back of", id, offset, bytes);
     Readback target;
     target.state_ = std::make_shared<Readback::State>();
     target.state_->name = name;

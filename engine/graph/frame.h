@@ -216,7 +216,8 @@ class Frame {
 
     PassBuilder compute(const std::string& name, const vulkan::Shader& shader) { return {*this, name, shader}; }
 
-    /// Copies host data into a new transient resource, or over a part of a buffer.
+    /// Copies host data into a new transient resource, or over a part of a buffer. Uploads, copies and read-backs throw
+    /// Error where they leave a buffer, or where it has several chunks.
     template <class T>
     BufferId upload(const std::string& name, std::span<const T> values) {
         const BufferId id = create_buffer(name, values.size_bytes());
@@ -266,6 +267,8 @@ class Frame {
 
     Frame(vulkan::Device& device, class Runner& runner) : device_(&device), runner_(&runner) {}
     uint32_t add_resource(Resource resource, Physical physical);
+    /// Throws Error where a transfer would leave the buffer, or the buffer has several chunks.
+    void check_range(const char* transfer, BufferId id, uint64_t offset, uint64_t bytes) const;
     uint32_t current_version(uint32_t resource) const { return versions_[resource]; }
     void add_transfer(const std::string& name, uint32_t resource, Use use, Work work);
     MemoryNeed need_of(uint64_t bytes);

@@ -78,7 +78,9 @@ class Recorder {
 
     void run() {
         const Plan& plan = compiled_.plan;
-        if (into_.queries) into_.commands.resetQueryPool(**into_.queries, 0, into_.max_timed_passes * 2);
+        if (into_.queries) {
+            into_.commands.resetQueryPool(**into_.queries, 0, 2 * static_cast<uint32_t>(plan.order.size()));
+        }
         size_t barrier = 0;
         for (uint32_t position = 0; position < plan.order.size(); ++position) {
             const size_t first = barrier;
@@ -141,10 +143,9 @@ class Recorder {
 
     void record_timed(uint32_t pass) {
         const uint32_t slot = static_cast<uint32_t>(into_.timed_passes.size());
-        const bool timed = into_.queries && slot < into_.max_timed_passes;
-        if (timed) into_.commands.writeTimestamp2(Stage::eAllCommands, **into_.queries, slot * 2);
+        if (into_.queries) into_.commands.writeTimestamp2(Stage::eAllCommands, **into_.queries, slot * 2);
         std::visit([&](const auto& work) { record_work(work); }, frame_.work()[pass]);
-        if (!timed) return;
+        if (!into_.queries) return;
         into_.commands.writeTimestamp2(Stage::eAllCommands, **into_.queries, slot * 2 + 1);
         into_.timed_passes.push_back(compiled_.description.passes[pass].name);
     }

@@ -70,8 +70,7 @@ struct PendingRead {
 /// Where a frame's commands go.
 struct RecordInto {
     const vk::raii::CommandBuffer& commands;
-    const vk::raii::QueryPool* queries;  ///< null without timestamps
-    uint32_t max_timed_passes;
+    const vk::raii::QueryPool* queries;  ///< with room for two of every pass; null without timestamps
     std::vector<std::string>& timed_passes;
     std::vector<PendingRead>& reads;
     std::function<Staging(uint64_t)> stage_download;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kFramesInFlight = 2;
 constexpr size_t kCachedShapes = 16;          // run loops alternate between a handful of shapes
-constexpr uint32_t kQueriesPerFrame = 512;    // two per pass
+constexpr uint32_t kTimedPasses = 256;        // at first
 constexpr uint64_t kStagingBlock = 4u << 20;  // one 640 x 480 frame fits
 
 /// Host-visible memory handed out front to back and reused as a whole once its frame has finished.
@@ -71,7 +71,8 @@ struct Slot {
 
     vk::raii::CommandPool pool;
     vk::raii::CommandBuffer commands = nullptr;
-    vk::raii::QueryPool queries = nullptr;
+    vk::raii::QueryPool queries = nullptr;  ///< null without timestamps
+    uint32_t timed_capacity = 0;            ///< passes whose queries fit
     StagingArena upload;
     StagingArena download;
     uint64_t submitted = 0;                 ///< timeline value of its last frame
@@ -79,6 +80,9 @@ struct Slot {
     std::vector<PendingRead> reads;
     std::vector<Frame::Physical> resources;  ///< kept alive until the frame has finished
     std::shared_ptr<const Transients> transients;
+
+    /// Makes room for the times of as many passes; nothing of the slot is in flight.
+    void hold_times_of(const vulkan::Context& context, uint32_t passes);
 
     /// Forgets a frame that was recorded and could not be submitted: its read-backs never become ready.
     void drop_recording() {
@@ -97,10 +101,15 @@ Slot::Slot(vulkan::Device& device, uint32_t index)
     commands = std::move(made.front());
     context.set_name(pool, text("frame.", index, ".pool"));
     context.set_name(commands, text("frame.", index));
-    if (context.caps().timestamps) {
-        queries = context.device().createQueryPool({{}, vk::QueryType::eTimestamp, kQueriesPerFrame});
-        context.set_name(queries, text("frame.", index, ".timestamps"));
-    }
+    hold_times_of(context, kTimedPasses);
+}
+
+void Slot::hold_times_of(const vulkan::Context& context, uint32_t passes) {
+    if (!context.caps().timestamps || passes <= timed_capacity) return;
+    const uint32_t most = std::max(passes, 2 * timed_capacity);
+    queries = context.device().createQueryPool({{}, vk::QueryType::eTimestamp, 2 * most});
+    context.set_name(queries, "frame.timestamps");
+    timed_capacity = most;
 }
 
 /// A compiled shape with the physical memory of its transient resources.
@@ -237,11 +246,11 @@ void Runner::submit(Frame frame) {
     const CachedShape& shape = find_shape(*state_, device_, frame, frame.description());
     state_->last = shape.compiled;
     vulkan::guarded(text("recording frame ", state_->submitted + 1), [&] {
+        slot.hold_times_of(context, static_cast<uint32_t>(shape.compiled->plan.order.size()));
         slot.pool.reset();
         slot.commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-        RecordInto into{slot.commands,        *slot.queries ? &slot.queries : nullptr,
-                        kQueriesPerFrame / 2, slot.timed_passes,
-                        slot.reads,           [&](uint64_t bytes) { return slot.download.take(bytes); }};
+        RecordInto into{slot.commands, *slot.queries ? &slot.queries : nullptr, slot.timed_passes, slot.reads,
+                        [&](uint64_t bytes) { return slot.download.take(bytes); }};
         record(context, frame, *shape.compiled, *shape.transients, state_->descriptors, into);
         slot.commands.end();
     });

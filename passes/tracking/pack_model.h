@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "passes/fusion/raycast.h"
+#include "passes/model/raycast_images.h"
 #include "passes/tracking/track_level.h"
 #include "shared/camera.h"
 

@@ -1,7 +1,6 @@
 #ifndef PATINA_LIB_CONE_GLSL
 #define PATINA_LIB_CONE_GLSL
-
-const float kPi = 3.14159265358979;
+#include "lib/pi.glsl"
 
 // The sine of a cone's half angle, whose solid angle is 2 pi (1 - cos): written without the difference of near-equals.
 float sine_of_cone(float angle_sr) {

@@ -2,6 +2,7 @@
 //   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
 #ifndef PATINA_LIB_FIT_LIGHTS_GLSL
 #define PATINA_LIB_FIT_LIGHTS_GLSL
+#include "lib/brdf/ward.glsl"
 #include "lib/reflectance.glsl"
 
 struct FitLight {
@@ -19,10 +20,8 @@ FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
     return FitLight(to_light, cosine, bit_is_set(reached, i) ? gloss : vec3(0.0));
 }
 
-// tan^2 of the angle between normal and half vector: with unit l and v, h = l + v has |h|^2 = 2 + 2 l.v.
 float tan2_of_half(FitLight light, vec3 to_viewer, float viewer_cosine) {
-    const float along = light.cosine + viewer_cosine;
-    return max((2.0 + 2.0 * dot(light.to_light, to_viewer)) / (along * along) - 1.0, 0.0);
+    return ward_half_tan2(light.cosine, viewer_cosine, dot(light.to_light, to_viewer));
 }
 
 #endif

@@ -2,7 +2,6 @@
 // numbers in [0, 1); densities are per steradian.
 #ifndef PATINA_LIB_SAMPLING_GLSL
 #define PATINA_LIB_SAMPLING_GLSL
-#include "lib/ward.glsl"
 
 // The point of the unit circle after so many turns from the x axis, turns in [0, 1], to 3e-7; sin() and cos() may be
 // off by 5e-4. Polynomials: Cephes sinf and cosf.
@@ -35,29 +34,6 @@ vec3 sample_cosine(vec2 u) { return vec3(sqrt(u.x) * circle_point(u.y), sqrt(1.0
 vec3 sample_cap(float cap_height, vec2 u) {
     const float height = u.x * cap_height;
     return vec3(sqrt(height * (2.0 - height)) * circle_point(u.y), 1.0 - height);
-}
-
-// A direction to light for the Ward lobe, drawn by way of the half vector (Walter, Notes on the Ward BRDF, 2005, Eq. 6
-// to 8). It may lie below the horizon, where the lobe is 0; elsewhere its density is ward_density().
-vec3 sample_ward(float alpha, vec3 normal, vec3 to_viewer, vec2 u) {
-    const float tan_h = alpha * sqrt(-log(1.0 - u.x));
-    const vec3 half_vector =
-        basis_around(normal) * (vec3(tan_h * circle_point(u.y), 1.0) * inversesqrt(1.0 + tan_h * tan_h));
-    return normalize(2.0 * dot(half_vector, to_viewer) * half_vector - to_viewer);
-}
-
-// The density of sample_ward() at `to_light`; 0 where the light or the viewer is at or below the horizon. Walter's
-// Eq. 9.
-float ward_density(float alpha, vec3 normal, vec3 to_light, vec3 to_viewer) {
-    if (min(dot(normal, to_light), dot(normal, to_viewer)) <= 0.0) return 0.0;
-    const vec3 sum = to_light + to_viewer;
-    const float along = dot(normal, sum);
-    const vec3 across = sum - along * normal;
-    const float tan2_h = dot(across, across) / (along * along);
-    const float cos_h = inversesqrt(1.0 + tan2_h);
-    const float alpha2 = alpha * alpha;
-    // The half vector's angle to either direction has the cosine |sum| / 2.
-    return exp(-tan2_h / alpha2) / (2.0 * kWardPi * alpha2 * cos_h * cos_h * cos_h * length(sum));
 }
 
 // The weight of a sample of density `own` where another technique would have drawn it with density `other` (Veach,

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // What each trial lamp of intensity 1 gives each sample of the surface: its cosine over pi and the squared distance, 0
 // where the model stands in the way.
+#include "lib/pi.glsl"
 #include "shared/fit_lights.h"
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Samples { LightSample samples[]; };
@@ -17,7 +18,6 @@ layout(push_constant) uniform Push { TrialParams params; };
 #define VOXEL(C, i) tsdf[C].voxels[i]
 #include "lib/march_map.glsl"
 
-const float kPi = 3.14159265358979;
 const float kLiftVox = 4.0;          // above the surface, where the way begins
 const float kMostSkippedVox = 16.0;  // of the way, to get there
 

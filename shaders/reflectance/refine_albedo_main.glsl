@@ -6,10 +6,11 @@
 //
 // One invocation per record; lights in the outer loop, so that what a light and a surface have in common is computed
 // once, and observations unrolled in the inner one.
+#include "lib/brdf/ward.glsl"
 #include "lib/mean.glsl"
+#include "lib/pi.glsl"
 #include "lib/reflectance.glsl"
 #include "lib/voxel_chunks.glsl"
-#include "lib/ward.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -33,8 +34,6 @@ const float kClippedShare = 1e-3;      // the weight of what is only a lower bou
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
-const float kLeastExponent = -60.0;  // denormal numbers, which an open end would lead to, take processors half the time
-const float kLog2E = 1.442695;
 const uint kAnyClipped = 7u << 26;  // of a direction word
 const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
 
@@ -59,9 +58,7 @@ float brightness[kMaxObservations];   // of that
 float trust[kMaxObservations];        // its inverse variance, relative to one without a highlight; 0: no observation
 float whole_trust[kMaxObservations];  // less where a channel is clipped
 
-// Adds up all lights. Ward's lobe (lib/ward.glsl) in a form without trigonometry: with unit l and v, h = l + v has
-// |h|^2 = 2 + 2 l.v, and tan^2 of its angle to the normal is |h|^2 / (n.h)^2 - 1. The error of this difference, 1e-6,
-// is small beside alpha^2.
+// Adds up all lights.
 Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scale, bool specular, uvec2 reached,
                       uvec2 uncertain) {
     Irradiance irradiance = Irradiance(header.ambient.rgb, vec3(0.0));
@@ -71,7 +68,7 @@ Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scal
         const vec3 to_light = offset_m * inversesqrt(distance2);
         const float cosine = max(dot(normal, to_light), 0.0);
         const vec3 facing = lights[i].intensity.rgb / distance2;
-        const vec3 received = facing * (cosine / kWardPi);
+        const vec3 received = facing * (cosine / kPi);
         const bool lit = bit_is_set(reached, i);
         irradiance.sum += lit ? received : vec3(0.0);
         irradiance.uncertain += bit_is_set(uncertain, i) ? received : vec3(0.0);
@@ -79,9 +76,8 @@ Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scal
         const vec3 gloss = lit ? facing * sqrt(cosine) : vec3(0.0);
         if (!specular) continue;
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
-            const float along = cosine + normal_cosine[k];
-            const float tan2 = (2.0 + 2.0 * dot(to_light, direction_of[k])) / (along * along) - 1.0;
-            highlight[k] += gloss * exp2(clamp(exponent_scale * tan2, kLeastExponent, 0.0));
+            const float tan2 = ward_half_tan2(cosine, normal_cosine[k], dot(to_light, direction_of[k]));
+            highlight[k] += gloss * ward_falloff(exponent_scale * tan2);
         }
     }
     return irradiance;
@@ -208,10 +204,10 @@ void main() {
     unpack_directions(record, normal);
     // Were it the uniform alone, lavapipe would compile the loop anew in every frame: 6 ms.
     const uint light_count = count > 0u ? header.count : 0u;
-    const Irradiance irradiance = add_lights(light_count, point_m, normal, -kLog2E / (alpha * alpha), specular,
+    const Irradiance irradiance = add_lights(light_count, point_m, normal, kWardExponent / (alpha * alpha), specular,
                                              visibility[record], status[record].uncertain);
     const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
-    const Center guess = remove_highlights(record, count, ks / (4.0 * kWardPi * alpha * alpha));
+    const Center guess = remove_highlights(record, count, ks * ward_scale(alpha));
     const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);
     set_trust(count, noise);
     const Estimate estimate = robust_mean(find_center(guess, noise), noise);

@@ -5,9 +5,10 @@
 //   ENTRY(i)     uint, an entry of the table of records by voxel of each block
 //   PACKED(i)    uvec4, a packed record
 #include "lib/blend_records.glsl"
+#include "lib/brdf/ward.glsl"
 #include "lib/camera.glsl"
+#include "lib/pi.glsl"
 #include "lib/view_grid.glsl"
-#include "lib/ward.glsl"
 #include "shared/predict_radiance.h"
 
 layout(local_size_x = kPredictGroupX, local_size_y = kPredictGroupY) in;
@@ -168,7 +169,7 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss) {
     } else {
         for (uint i = 0u; i < count; ++i) add_lamp(sums, i, true, point, point_m, alpha);
     }
-    const vec3 light = header.ambient.rgb + sums.received * (1.0 / kWardPi);
+    const vec3 light = header.ambient.rgb + sums.received * (1.0 / kPi);
     return Shade(kd * light + gloss.rgb * sums.glossy, light, sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
 

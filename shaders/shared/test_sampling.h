@@ -1,4 +1,4 @@
-// For the tests of lib/random.glsl, lib/sampling.glsl and lib/ward.glsl: one of everything per query.
+// For the tests of lib/random.glsl, lib/sampling.glsl and lib/brdf/ward.glsl: one of everything per query.
 #ifndef PATINA_SHARED_TEST_SAMPLING_H
 #define PATINA_SHARED_TEST_SAMPLING_H
 #include "shared/interop.h"

@@ -4,6 +4,7 @@
 // ks follows for each alpha. What observations do not tell comes from a prior, whose alpha is the network's where there
 // is one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model
 // averaging): an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
+#include "lib/brdf/ward.glsl"
 #include "lib/fit_alphas.glsl"
 #include "lib/set_material.glsl"
 #include "shared/specular_estimates.h"
@@ -54,7 +55,7 @@ Prior prior_of(uint label, float unit) {
 
 // `unit`: of the misfit, what is as unlikely as one deviation of one independent observation.
 vec3 solve_alpha(uint a, FitSums sum, Prior prior, float unit) {
-    const float alpha = fit_alpha(float(a)), scale = lobe_scale(alpha);
+    const float alpha = fit_alpha(float(a)), scale = ward_scale(alpha);
     const float seen = clamp((sum.lobe2.w - kIgnoredVoxels) / (kSeenVoxels - kIgnoredVoxels), 0.0, 1.0);
     const vec3 lobe2 = seen * scale * scale * sum.lobe2.rgb, product = seen * scale * sum.product.rgb;
     const vec3 stiffness = lobe2 + prior.ks_weight;

@@ -8,6 +8,7 @@
 // says nothing where it is not (a censored regression); before the first fit it says nothing. Left out altogether, only
 // those of a sharp highlight's observations would remain that missed its peak; taken as recorded, they would hold down
 // what its flanks tell.
+#include "lib/brdf/ward.glsl"
 #include "lib/fit_alphas.glsl"
 #include "lib/reflectance.glsl"
 #include "lib/voxel_chunks.glsl"
@@ -61,7 +62,7 @@ BlurredLobe blurred[kAlphas];
 void blur_lobes(uint first_alpha, float blur2) {
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         const float alpha = fit_alpha(float(first_alpha + a)), inverse = 1.0 / (alpha * alpha + blur2);
-        blurred[a] = BlurredLobe(-kFitLog2E * inverse, log2(alpha * alpha * inverse));
+        blurred[a] = BlurredLobe(kWardExponent * inverse, log2(alpha * alpha * inverse));
     }
 }
 
@@ -77,7 +78,7 @@ void add_lobes(vec3 gloss, float tan2) {
     const float lit = any(greaterThan(gloss, vec3(0.0))) ? tan2 : kFarTan2;
     nearest_tan2 = min(nearest_tan2, lit);
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobes[a] +=
-        gloss * exp2(max(tan2 * blurred[a].exponent_scale + blurred[a].log_peak, kFitLeastExponent));
+        gloss * ward_falloff(tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
 }
 
 void find_lobes(Voxel voxel, uint direction_word) {
@@ -187,7 +188,7 @@ void add_voxel(Voxel voxel, bool fitted) {
         const vec3 mean_color = own.color / max(own.weight, kNoWeight);
         // Views count as near a peak where they are clipped, too, even if all of the voxel's are: that it is bright is
         // known, though not how bright.
-        const float peak = exp2(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
+        const float peak = ward_falloff(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
         segment_sums[a].lobe2 += vec4(max(own.lobe2 - mean_lobe * own.lobe, 0.0), min(peak * (1.0 / kSeenLobe), 1.0));
         segment_sums[a].product += vec4(own.product - mean_color * own.lobe, 0.0);
         segment_sums[a].color2 += vec4(max(own.color2 - mean_color * own.color, 0.0), own.count);
@@ -228,7 +229,7 @@ void main() {
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
         segment_sums[a] = FitSums(vec4(0.0), vec4(0.0), vec4(0.0));
         ks_scaled[a] =
-            ks_before[segment * kFitAlphas + first_alpha + a].rgb * lobe_scale(fit_alpha(float(first_alpha + a)));
+            ks_before[segment * kFitAlphas + first_alpha + a].rgb * ward_scale(fit_alpha(float(first_alpha + a)));
     }
     for (uint slot = gl_LocalInvocationIndex; slot < kSegmentSamples; slot += kFitGroup) {
         const FitVoxel chosen = voxels[segment * kSegmentSamples + slot];

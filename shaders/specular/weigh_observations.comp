@@ -4,6 +4,7 @@
 // One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance.
 // What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure). A
 // clipped channel is at least as bright as it was recorded: here it counts where that estimate is darker.
+#include "lib/brdf/ward.glsl"
 #include "lib/fit_alphas.glsl"
 #include "lib/mean.glsl"
 #include "lib/reflectance.glsl"
@@ -66,12 +67,12 @@ void unpack_directions(uint record, vec3 normal) {
 }
 
 void add_highlights(vec3 point_m, vec3 normal, uvec2 reached, float alpha, uint count) {
-    const float exponent_scale = -kFitLog2E / (alpha * alpha);
+    const float exponent_scale = kWardExponent / (alpha * alpha);
     for (uint i = 0u; i < count; ++i) {
         const FitLight light = fit_light(i, point_m, normal, reached);
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float tan2 = tan2_of_half(light, direction_of[k], max(viewer_cosine[k], kFitLeastCosine));
-            highlight[k] += light.gloss * exp2(max(exponent_scale * tan2, kFitLeastExponent));
+            highlight[k] += light.gloss * ward_falloff(exponent_scale * tan2);
         }
     }
 }
@@ -152,7 +153,7 @@ void main() {
     unpack_directions(record, normal);
     add_highlights(surface_point_m(known, params.records, params.edge_shift), normal, visibility[record], alpha,
                    estimated ? header.count : 0u);
-    take_highlights(record, estimated ? fit.ks_alpha.rgb * lobe_scale(alpha) : vec3(0.0));
+    take_highlights(record, estimated ? fit.ks_alpha.rgb * ward_scale(alpha) : vec3(0.0));
     set_trust(observation_count(known));
     take_clipped();
     const bool glossy = any(greaterThan(fit.ks_alpha.rgb, vec3(kTrustedKs)));

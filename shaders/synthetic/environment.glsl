@@ -2,6 +2,7 @@
 // begins its own at 10.
 #ifndef PATINA_SYNTHETIC_ENVIRONMENT_GLSL
 #define PATINA_SYNTHETIC_ENVIRONMENT_GLSL
+#include "lib/pi.glsl"
 #include "lib/random.glsl"
 #include "lib/sampling.glsl"
 #include "shared/environment.h"
@@ -19,8 +20,8 @@ struct FarLight {
 // What shines from a direction of unit length.
 FarLight far_light_from(vec3 direction) {
     const vec2 size = vec2(scene.environment_size);
-    const float turns = angle_of(direction.x, direction.z) * (0.5 / kWardPi) + 0.5;
-    const float descent = angle_of(length(direction.xz), -direction.y) / kWardPi;
+    const float turns = angle_of(direction.x, direction.z) * (0.5 / kPi) + 0.5;
+    const float descent = angle_of(length(direction.xz), -direction.y) / kPi;
     const uvec2 cell = min(uvec2(vec2(turns, descent) * size), scene.environment_size - 1u);
     const vec4 light = environment[cell.y * scene.environment_size.x + cell.x];
     return FarLight(direction, light.rgb, light.w);

@@ -1,6 +1,7 @@
 // What a camera sees of the voxels of example scenes (shared/example_scenes.h). Bindings 0 to 6; push constants.
 #ifndef PATINA_SYNTHETIC_EXAMPLE_LIGHT_GLSL
 #define PATINA_SYNTHETIC_EXAMPLE_LIGHT_GLSL
+#include "lib/brdf/ward.glsl"
 #include "lib/random.glsl"
 #include "lib/sampling.glsl"
 #include "shared/example_scenes.h"

@@ -4,10 +4,11 @@
 // Paths soon go their own ways, so that a bundle has little to share; and SwiftShader takes many minutes to compile
 // this shader for four of them.
 #define BUNDLE_RAYS 1u
+#include "lib/brdf/ward.glsl"
 #include "lib/camera.glsl"
+#include "lib/pi.glsl"
 #include "lib/random.glsl"
 #include "lib/sampling.glsl"
-#include "lib/ward.glsl"
 #include "shared/gather_light.h"
 #include "synthetic/environment.glsl"
 
@@ -73,7 +74,7 @@ vec3 draw_bounce(Vertex v, vec2 u) {
 // The density of draw_bounce() in a direction, of either lobe.
 float bounce_density(Vertex v, vec3 to_light) {
     const Surface s = v.surface;
-    const float diffuse = max(dot(s.normal, to_light), 0.0) / kWardPi;
+    const float diffuse = max(dot(s.normal, to_light), 0.0) / kPi;
     return mix(diffuse, ward_density(s.ks_alpha.a, s.normal, to_light, v.to_viewer), lobe_share(s));
 }
 

@@ -1,8 +1,8 @@
 // The light that point lights send to a camera by way of the surfaces it sees: the sum of the paper's Eq. 6.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "lib/brdf/ward.glsl"
 #include "lib/camera.glsl"
-#include "lib/ward.glsl"
 #include "shared/trace_scene.h"
 #include "synthetic/scene.glsl"
 

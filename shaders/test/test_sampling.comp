@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "lib/brdf/ward.glsl"
 #include "lib/random.glsl"
 #include "lib/sampling.glsl"
 #include "shared/test_sampling.h"

@@ -120,5 +120,68 @@ TEST_F(RunnerTest, FramesThatMemoryRefusesLeaveNothingToTheNext) {
     EXPECT_GT(options.fail_allocation_at, 3u) << "transient memory and two blocks of staging memory can be refused";
 }
 
+TEST_F(RunnerTest, EveryPassOfALongFrameIsTimed) {
+    if (!device().caps().timestamps) GTEST_SKIP() << "the device has no timestamps";
+    for (const size_t passes : {3, 300, 2}) {
+        runner().clear_timings();
+        graph::Frame frame = runner().begin();
+        auto id = frame.fill(frame.create_buffer("words", 64), 0);
+        const uint32_t word = 7;  // over a part each time, so that no pass makes the one before needless
+        for (size_t i = 0; i < passes; ++i)
+            id = frame.upload_bytes(id, 4 * (i % 16), std::as_bytes(std::span(&word, 1)), false);
+        frame.read_back(id);
+        run(std::move(frame));
+        size_t timed = 0;
+        for (const graph::Timing& timing : runner().pass_timings()) timed += timing.samples_ms.size();
+        EXPECT_EQ(timed, passes + 2) << "with the fill and the read-back";
+    }
+}
+
+TEST_F(RunnerTest, TransfersStayWithinTheirBuffer) {
+    const std::vector<float> values(4);
+    const auto bytes = std::as_bytes(std::span(values));
+    const vulkan::BufferRef buffer = device().create_buffer({"small", 32}),
+                            other = device().create_buffer({"other", 64});
+    const auto error_of = [&](const auto& transfer) {
+        graph::Frame frame = runner().begin();
+        try {
+            transfer(frame, frame.import(buffer), frame.import(other));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(error_of([&](auto& frame, auto small, auto) { frame.upload_bytes(small, 20, bytes, false); }),
+              "the upload to 'small' takes 16 bytes from byte 20, of 32");
+    EXPECT_EQ(error_of([&](auto& frame, auto small, auto) { frame.read_back(small, UINT64_MAX, 4); }),
+              "the read-back of 'small' takes 4 bytes from byte 18446744073709551615, of 32");
+    EXPECT_EQ(error_of([&](auto& frame, auto small, auto large) { frame.copy(small, 0, large, 0, 36); }),
+              "the copy from 'small' takes 36 bytes from byte 0, of 32");
+    EXPECT_EQ(error_of([&](auto& frame, auto small, auto large) { frame.copy(large, 0, small, 4, 32); }),
+              "the copy to 'small' takes 32 bytes from byte 4, of 32");
+    EXPECT_EQ(error_of([&](auto& frame, auto small, auto large) { frame.copy(large, 32, small, 0, 32); }), "");
+}
+
+TEST_F(RunnerTest, TransfersKnowOneChunkAlone) {
+    const vulkan::ChunkedBuffer chunked(device(), "chunked", 24, 4, 16, 4);
+    const vulkan::BufferRef whole = device().create_buffer({"whole", 96});
+    const std::vector<float> values(4);
+    const auto expect_refused = [&](const std::string& transfer, const auto& do_it) {
+        graph::Frame frame = runner().begin();
+        try {
+            do_it(frame, frame.import(chunked), frame.import(whole));
+            FAIL() << transfer;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.what(), "the " + transfer + " 'chunked[0]' spans 2 chunks; it can have one alone");
+        }
+    };
+    expect_refused("upload to", [&](auto& frame, auto chunks, auto) {
+        frame.upload_bytes(chunks, 0, std::as_bytes(std::span(values)), false);
+    });
+    expect_refused("read-back of", [&](auto& frame, auto chunks, auto) { frame.read_back(chunks, 0, 16); });
+    expect_refused("copy from", [&](auto& frame, auto chunks, auto one) { frame.copy(chunks, 0, one, 0, 16); });
+    expect_refused("copy to", [&](auto& frame, auto chunks, auto one) { frame.copy(one, 0, chunks, 0, 16); });
+}
+
 }  // namespace
 }  // namespace patina
