@@ -41,9 +41,13 @@ void OutputFile::finish() {
     flush_to_disk(partial_.path());
     // A link, unlike a rename, does not replace; file systems without links take the rename.
     const bool linked = existing_ == Existing::kRefused && link(place_.c_str(), path().c_str()) == 0;
-    if (!linked && existing_ == Existing::kRefused && errno == EEXIST) throw Error(path().string(), " exists already");
-    if (!linked && std::rename(place_.c_str(), path().c_str()) != 0)
-        throw Error("'", path().string(), "' cannot be put in place: ", disk_reason(errno));
+    const bool taken = !linked && existing_ == Existing::kRefused && errno == EEXIST;
+    if (taken || (!linked && std::rename(place_.c_str(), path().c_str()) != 0)) {
+        const std::string reason = taken ? "it exists already" : disk_reason(errno);
+        const fs::path kept = partial_.keep_beside(path()) / place_.filename();
+        throw Error("'", path().string(), "' cannot be put in place: ", reason, "; what was written is '",
+                    kept.string(), "'");
+    }
     flush_names(path().parent_path());
 }
 

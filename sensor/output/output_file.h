@@ -23,7 +23,7 @@ class OutputFile {
     const std::filesystem::path& partial_path() const { return place_; }     ///< where to write it; has its extension
 
     /// Brings what was written to the disk and puts it in place. Throws Error when that fails, or a file that may not
-    /// be replaced has appeared.
+    /// be replaced has appeared; what was written is then kept in a folder beside it, which the message names.
     void finish();
 
   private:

@@ -109,8 +109,22 @@ TEST(OutputFile, SaysWhatItCannotWrite) {
     OutputFile file(folder / "new", {}, OutputFile::Existing::kRefused);
     write_bytes(file.partial_path(), "late");
     write_text(folder / "new", "mine");
-    EXPECT_THAT(error_of([&] { file.finish(); }), HasSubstr("exists already"));
+    EXPECT_THAT(error_of([&] { file.finish(); }),
+                AllOf(HasSubstr("exists already"), HasSubstr("what was written is"), HasSubstr("new-new/new'")));
     EXPECT_EQ(read_text(folder / "new"), "mine");
+    EXPECT_EQ(read_text(folder / "new-new/new"), "late");
+}
+
+TEST(OutputFile, IsKeptWhereItCannotBePutInPlace) {
+    const TemporaryFolder folder;
+    {
+        OutputFile file(folder / "video.avi");
+        write_bytes(file.partial_path(), "hours of work");
+        fs::create_directory(folder / "video.avi");
+        EXPECT_THAT(error_of([&] { file.finish(); }),
+                    AllOf(HasSubstr("cannot be put in place"), HasSubstr("video.avi-new/video.avi'")));
+    }
+    EXPECT_EQ(read_text(folder / "video.avi-new/video.avi"), "hours of work");
 }
 
 /// Makes a folder the working one as long as it lives.
