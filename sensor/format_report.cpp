@@ -1,9 +1,9 @@
 #include <sstream>
 
 #include "engine/core/printable.h"
+#include "sensor/files/text_file.h"
 #include "sensor/inspect.h"
 #include "sensor/report_lines.h"
-#include "sensor/text_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -40,7 +40,8 @@ std::string format_report(const SequenceReport& report) {
     const auto line = [&](const char* label, const std::string& value) { out << label << printable(value) << "\n"; };
     line("sequence      ", text(info.name, " (", info.format, ")"));
     line("frames        ",
-         text(info.frames, ", ", report.usable_frames, " usable, ", report.skipped.size(), " skipped"));
+         text(info.frames.value_or(report.usable_frames + static_cast<uint32_t>(report.skipped.size())), ", ",
+              report.usable_frames, " usable, ", report.skipped.size(), " skipped"));
     line("time          ", text(fixed(report.duration_s, 2), " s at ", info.fps, " frames/s"));
     line("colour camera ", camera_line(info.color));
     line("              ", offset_line(info.color_from_depth));

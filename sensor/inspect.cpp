@@ -11,6 +11,7 @@ namespace patina::sensor {
 namespace {
 
 constexpr uint32_t kSampledFrames = 50;
+constexpr uint32_t kLiveFrames = 1000;  // samples of a source without a known length spread over so many, and go on
 /// Percentiles use every 7th valid reading: millions remain, and 7 shares no factor with the grids that registered
 /// depth shows.
 constexpr size_t kReadingStride = 7;
@@ -128,7 +129,7 @@ void compare_to_last(SequenceReport& report, const Frame& frame, const Frame& la
 struct Inspector::State {
     State(const SequenceInfo& info, ConventionCheck check)
         : pixels(info.metres_per_unit),
-          sample_every(std::max(1u, (info.frames + kSampledFrames - 1) / kSampledFrames)) {
+          sample_every(std::max(1u, (info.frames.value_or(kLiveFrames) + kSampledFrames - 1) / kSampledFrames)) {
         if (check == ConventionCheck::kOn) convention.emplace(info);
         report.info = info;
         report.color_view_deg = field_of_view_deg(info.color);

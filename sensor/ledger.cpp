@@ -27,10 +27,10 @@ void Ledger::settle(uint32_t index) {
 }
 
 std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
-    if (read_ != info.frames) {
-        return text(info.name, " has ", info.frames, " frames, but ", read_,
-                    " were read: ", read_ < info.frames ? info.frames - read_ : read_ - info.frames,
-                    read_ < info.frames ? " missing" : " too many");
+    if (const uint32_t frames = info.frames.value_or(read_); read_ != frames) {
+        return text(info.name, " has ", frames, " frames, but ", read_,
+                    " were read: ", read_ < frames ? frames - read_ : read_ - frames,
+                    read_ < frames ? " missing" : " too many");
     }
     const size_t settled = used_ + skipped_.size();
     if (settled != read_) {

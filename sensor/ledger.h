@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 
@@ -27,7 +27,7 @@ class Ledger {
     const std::vector<Skipped>& skipped() const { return skipped_; }
 
     /// Empty when every frame of the sequence was read once, and used or skipped once; otherwise one sentence that says
-    /// by how much the numbers disagree.
+    /// by how much the numbers disagree. Of a source without a known length, what was read is what there was.
     std::optional<std::string> discrepancy(const SequenceInfo& info) const;
 
   private:

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "sensor/files/text_file.h"
 #include "sensor/recentred_source.h"
-#include "sensor/text_file.h"
 
 namespace patina::sensor {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/camera.h"
-#include "sensor/text_file.h"
+#include "patina/camera.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::sensor {
 

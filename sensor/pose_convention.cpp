@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
-#include "sensor/text_file.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::sensor {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 

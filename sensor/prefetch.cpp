@@ -1,5 +1,7 @@
 #include "sensor/prefetch.h"
 
+#include "engine/core/error.h"
+
 namespace patina::sensor {
 
 PrefetchSource::PrefetchSource(std::unique_ptr<Source> source, size_t capacity)

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/camera.h"
+#include "patina/camera.h"
 
 namespace patina::sensor {
 

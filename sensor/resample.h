@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
-#include "sensor/json_file.h"
-#include "sensor/text_file.h"
+#include "sensor/files/json_file.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -55,9 +55,9 @@ double read_alpha(const JsonValue& value) {
 
 }  // namespace
 
-void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights, glm::dvec3 ambient) {
+void write_lights(const std::filesystem::path& file, std::span<const Light> lights, glm::dvec3 ambient) {
     Json list = Json::array();
-    for (const PointLight& light : lights) {
+    for (const Light& light : lights) {
         Json entry{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
         if (light.radius_m > 0) entry["radius"] = light.radius_m;
         list.push_back(std::move(entry));
@@ -79,11 +79,11 @@ void write_materials(const std::filesystem::path& file, std::span<const Material
     write_bytes(file, Json{{"materials", list}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::vector<PointLight> read_lights(const std::filesystem::path& file) {
+std::vector<Light> read_lights(const std::filesystem::path& file) {
     const std::vector<JsonValue> elements = JsonValue::read(file).at("lights").elements();
     if (elements.size() > kMostLights)
         throw Error(file.string(), ": lights has ", elements.size(), " elements, at most ", kMostLights, " are read");
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
     for (const JsonValue& light : elements) {
         const auto radius = light.find("radius");
         lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity")),
@@ -111,3 +111,15 @@ std::vector<Material> read_materials(const std::filesystem::path& file) {
 }
 
 }  // namespace patina::sensor
+
+namespace patina {
+
+Lighting read_lighting(const std::filesystem::path& file) {
+    return {.lights = sensor::read_lights(file), .ambient = sensor::read_ambient(file), .found_by = "file"};
+}
+
+void write_lighting(const std::filesystem::path& file, const Lighting& lighting) {
+    sensor::write_lights(file, lighting.lights, lighting.ambient);
+}
+
+}  // namespace patina

@@ -8,14 +8,9 @@
 
 #include <glm/glm.hpp>
 
-namespace patina::sensor {
+#include "patina/lighting.h"
 
-/// A point light: the radiance arriving at distance r is intensity / r^2, in the sequence's linear pixel values.
-struct PointLight {
-    glm::dvec3 position_m{0};  ///< world
-    glm::dvec3 intensity{0};   ///< RGB
-    double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for, 0 when it is a point or unknown
-};
+namespace patina::sensor {
 
 /// A Ward material (paper, Eq. 2-4).
 struct Material {
@@ -29,14 +24,13 @@ struct Material {
 /// Write lights.json and materials.json of the sequence format. `ambient`, the irradiance over pi that every surface
 /// receives from all around (linear pixel value), is written where it is not 0. Throw Error when the file cannot be
 /// written.
-void write_lights(const std::filesystem::path& file, std::span<const PointLight> lights,
-                  glm::dvec3 ambient = glm::dvec3(0));
+void write_lights(const std::filesystem::path& file, std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
 void write_materials(const std::filesystem::path& file, std::span<const Material> materials);
 
 /// Read what write_lights and write_materials write. Throw Error when the file is missing or no JSON, a
 /// member is missing, no finite number, or outside what it may be: an intensity or a radius below 0, an id of 0 or
 /// another material's, kd or ks outside 0 .. 1, alpha outside (0, 1].
-std::vector<PointLight> read_lights(const std::filesystem::path& file);
+std::vector<Light> read_lights(const std::filesystem::path& file);
 glm::dvec3 read_ambient(const std::filesystem::path& file);  ///< 0 where the file has none
 std::vector<Material> read_materials(const std::filesystem::path& file);
 

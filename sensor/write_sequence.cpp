@@ -6,9 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sensor/exr_file.h"
-#include "sensor/picture_file.h"
-#include "sensor/text_file.h"
+#include "engine/core/error.h"
+#include "sensor/files/exr_file.h"
+#include "sensor/files/picture_file.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::sensor {
 namespace {

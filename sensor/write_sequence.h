@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "patina/frame.h"
 #include "sensor/background_work.h"
-#include "sensor/frame.h"
 #include "sensor/output/new_folder.h"
 #include "sensor/pose.h"
 

@@ -38,7 +38,7 @@ set(PATINA_SUITES_TOGETHER lavapipe256 lavapipe128 swiftshader)
 
 # Suites and TESTs that reconstruct whole scenes. They take most of the time on SwiftShader, which is three times slower
 # than lavapipe, so that only PATINA_TEST_FULL runs them there.
-set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|ReconstructionTest|Relocalisation|SegmentationModelTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
+set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|Relocalisation|SegmentationStageTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
 # Registers each suite of a GoogleTest program as "PREFIX.Suite", with a label and what follows it as environment.

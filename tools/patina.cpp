@@ -7,12 +7,12 @@
 
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "engine/core/version.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/usage.h"
-#include "tools/interrupt.h"
-#include "tools/outcome.h"
-#include "tools/standard_streams.h"
-#include "tools/version.h"
+#include "tools/program/interrupt.h"
+#include "tools/program/outcome.h"
+#include "tools/program/standard_streams.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ int fail(std::string message, int exit_code) {
 int run_command(int argc, char** argv) {
     using namespace patina;
     CLI::App app{"From RGB-D recordings to geometry with materials, on any Vulkan device", "patina"};
-    app.set_version_flag("--version", std::string("patina ") + tools::kVersion);
+    app.set_version_flag("--version", std::string("patina ") + kVersion);
     app.require_subcommand(1);
     tools::add_doctor(app);
     tools::add_info(app);
@@ -38,13 +38,15 @@ int run_command(int argc, char** argv) {
     tools::add_render(app, exit_code);
     tools::add_eval(app);
     tools::add_lights(app);
+    tools::add_settings(app);
+    tools::add_bench(app);
     try {
         app.parse(argc, argv);
         return exit_code;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
         return fail(tools::usage_message(app, error) + " (patina --help shows the usage)", tools::kExitUsage);
-    } catch (const tools::Interrupted& interrupted) {
+    } catch (const Interrupted& interrupted) {
         return fail(interrupted.what(), tools::kExitInterrupted);
     } catch (const std::exception& error) {
         return fail(reason_of(error), tools::kExitFailed);

@@ -1,28 +1,11 @@
 #pragma once
 
 #include <exception>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 
+#include "patina/error.h"
+
 namespace patina {
-
-/// Joins its arguments into one string, as an output stream would print them.
-template <class... Parts>
-std::string text(const Parts&... parts) {
-    std::ostringstream out;
-    (out << ... << parts);
-    return out.str();
-}
-
-/// What the outside causes: a file, a device, memory, settings, or a badly wired graph. The message is one sentence
-/// that names the pass or file, the resource or line, and the two values that disagree. Caught once, at a program's
-/// border.
-class Error : public std::runtime_error {
-  public:
-    template <class... Parts>
-    explicit Error(const Parts&... parts) : std::runtime_error(text(parts...)) {}
-};
 
 /// What an exception means, in words for a message: std::bad_alloc's own is the name of a class.
 std::string reason_of(const std::exception& failure);

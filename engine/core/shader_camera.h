@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/core/camera.h"
-#include "shared/camera.h"
+#include "patina/camera.h"
+#include "shared/input/camera.h"
 
 namespace patina {
 

@@ -7,7 +7,7 @@ namespace patina::graph {
 namespace {
 
 /// Copies all of `from` to byte `offset` of `to`.
-void copy_whole(Frame& frame, const vulkan::BufferRef& from, const vulkan::BufferRef& to, uint64_t offset) {
+void copy_whole(FrameGraph& frame, const vulkan::BufferRef& from, const vulkan::BufferRef& to, uint64_t offset) {
     frame.copy(frame.import(from), 0, frame.import(to), offset, from->bytes());
 }
 
@@ -35,7 +35,7 @@ void Enlargement::allocate() {
     for (Array& each : arrays_) each.larger = each.array->with_room_for(each.elements);
 }
 
-void Enlargement::commit(Frame& frame) {
+void Enlargement::commit(FrameGraph& frame) {
     for (const Single& single : singles_) {
         if (single.content.fill) frame.fill(frame.import(single.larger), *single.content.fill);
         if (single.content.kept) copy_whole(frame, *single.buffer, single.larger, single.content.offset);
@@ -71,7 +71,7 @@ void Enlargement::accept() {
     exchanges_.clear();
 }
 
-void Enlargement::keep(Frame& frame) const {
+void Enlargement::keep(FrameGraph& frame) const {
     for (const vulkan::BufferRef& buffer : committed_) frame.keep(frame.import(buffer));
 }
 

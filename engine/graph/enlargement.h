@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "engine/vulkan/resources.h"
 
 namespace patina::graph {
@@ -46,10 +46,10 @@ class Enlargement {
 
     /// Copies the content within `frame`, and puts the larger buffers in the places of the old ones. What the frame
     /// imports from then on is the larger ones.
-    void commit(Frame& frame);
+    void commit(FrameGraph& frame);
 
     /// Marks the larger buffers as needed after the frame, in the versions that they have by now.
-    void keep(Frame& frame) const;
+    void keep(FrameGraph& frame) const;
 
     /// The frame was submitted: the old buffers are not needed any more.
     void accept();

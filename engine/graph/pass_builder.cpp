@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 
 namespace patina::graph {
 
@@ -13,7 +13,7 @@ void PassBuilder::fail(const Parts&... parts) const {
     throw Error("the pass '", pass_.name, "' ", parts...);
 }
 
-PassBuilder::PassBuilder(Frame& frame, std::string name, const vulkan::Shader& shader) : frame_(frame) {
+PassBuilder::PassBuilder(FrameGraph& frame, std::string name, const vulkan::Shader& shader) : frame_(frame) {
     pass_.name = std::move(name);
     dispatch_.shader = &shader;
     dispatch_.bound.reserve(shader.bindings.size());
@@ -36,7 +36,7 @@ Use PassBuilder::use_of(const ShaderBinding& binding, Intent intent) const {
 }
 
 void PassBuilder::check_shape(const ShaderBinding& binding, uint32_t resource) const {
-    const Frame::Physical& physical = frame_.physical_[resource];
+    const FrameGraph::Physical& physical = frame_.physical_[resource];
     const std::string& name = frame_.description_.resources[resource].name;
     if (binding.kind == BindingKind::kStorageImage && binding.format != physical.shape.format) {
         fail("binds the ", name_of(physical.shape.format), " image '", name, "' to '", binding.name, "', which is ",

@@ -7,36 +7,62 @@ namespace patina::graph {
 using Stage = vk::PipelineStageFlagBits2;
 using AccessFlag = vk::AccessFlagBits2;
 
-Transients::Transients(vulkan::Device& device, const Frame& frame, const Plan& plan) {
-    const Description& description = frame.description();
-    vulkan::MemoryRef buffer_memory, image_memory;
-    if (plan.buffer_arena.bytes > 0)
-        buffer_memory = device.create_memory("graph.buffers", plan.buffer_arena.bytes, false);
-    if (plan.image_arena.bytes > 0) image_memory = device.create_memory("graph.images", plan.image_arena.bytes, true);
-    bytes_ = plan.buffer_arena.bytes + plan.image_arena.bytes;
-    buffers_.resize(description.resources.size());
-    images_.resize(description.resources.size());
-    for (uint32_t i = 0; i < description.resources.size(); ++i) {
+TransientSizes::TransientSizes(const FrameGraph& frame, const Plan& plan)
+    : bytes_(plan.placements.size()), shapes_(plan.placements.size()) {
+    for (uint32_t i = 0; i < plan.placements.size(); ++i) {
         if (!plan.placements[i]) continue;
-        const std::string& name = description.resources[i].name;
-        const uint64_t offset = plan.placements[i]->offset;
-        if (description.resources[i].kind == ResourceKind::kBuffer) {
-            buffers_[i] = device.create_placed_buffer({name, frame.bytes(BufferId{{i}})}, buffer_memory, offset);
+        if (frame.description().resources[i].kind == ResourceKind::kBuffer) {
+            bytes_[i] = frame.bytes(BufferId{{i}});
         } else {
-            const ImageShape shape = frame.shape(ImageId{{i}});
-            images_[i] = device.create_placed_image({name, shape.extent, shape.format}, image_memory, offset);
+            shapes_[i] = frame.shape(ImageId{{i}});
         }
     }
 }
 
-bool Transients::fit(const Frame& frame) const {
-    for (uint32_t i = 0; i < images_.size(); ++i) {
-        if (buffers_[i] && buffers_[i]->bytes() != frame.bytes(BufferId{{i}})) return false;
-        if (!images_[i]) continue;
-        const vulkan::ImageDesc& desc = images_[i]->desc();
-        if (frame.shape(ImageId{{i}}) != ImageShape{desc.extent, desc.format}) return false;
+bool TransientSizes::fit(const FrameGraph& frame) const {
+    for (uint32_t i = 0; i < bytes_.size(); ++i) {
+        if (bytes_[i] && *bytes_[i] != frame.bytes(BufferId{{i}})) return false;
+        if (shapes_[i] && *shapes_[i] != frame.shape(ImageId{{i}})) return false;
     }
     return true;
+}
+
+namespace {
+
+uint64_t bytes_of(const vulkan::MemoryRef& memory) { return memory ? memory->bytes : 0; }
+
+}  // namespace
+
+bool TransientMemory::holds(const Plan& plan) const {
+    return plan.buffer_arena.bytes <= bytes_of(buffers_) && plan.image_arena.bytes <= bytes_of(images_);
+}
+
+void TransientMemory::make_room(vulkan::Device& device, const Plan& plan) {
+    const auto enlarge = [&](vulkan::MemoryRef& block, const char* name, uint64_t bytes, bool for_images) {
+        if (bytes <= bytes_of(block)) return;
+        block.reset();  // before the larger one is made, so that memory need not hold both
+        block = device.create_memory(name, bytes, for_images);
+    };
+    enlarge(buffers_, "graph.buffers", plan.buffer_arena.bytes, false);
+    enlarge(images_, "graph.images", plan.image_arena.bytes, true);
+}
+
+uint64_t TransientMemory::bytes() const { return bytes_of(buffers_) + bytes_of(images_); }
+
+Transients::Transients(vulkan::Device& device, const CompiledFrame& compiled, const TransientSizes& sizes,
+                       const TransientMemory& memory) {
+    const std::vector<Resource>& resources = compiled.description.resources;
+    buffers_.resize(resources.size());
+    images_.resize(resources.size());
+    for (uint32_t i = 0; i < resources.size(); ++i) {
+        const std::optional<Placement>& placement = compiled.plan.placements[i];
+        if (const auto& bytes = sizes.bytes(i)) {
+            buffers_[i] = device.create_placed_buffer({resources[i].name, *bytes}, memory.buffers(), placement->offset);
+        } else if (const auto& shape = sizes.shape(i)) {
+            images_[i] = device.create_placed_image({resources[i].name, shape->extent, shape->format}, memory.images(),
+                                                    placement->offset);
+        }
+    }
 }
 
 namespace {
@@ -67,8 +93,8 @@ constexpr vk::ImageSubresourceLayers kWholeLayer(vk::ImageAspectFlagBits::eColor
 /// Records one frame; lives for one call of record().
 class Recorder {
   public:
-    Recorder(vulkan::Context& context, const Frame& frame, const CompiledFrame& compiled, const Transients& transients,
-             DescriptorCache& descriptors, RecordInto& into)
+    Recorder(vulkan::Context& context, const FrameGraph& frame, const CompiledFrame& compiled,
+             const Transients& transients, DescriptorCache& descriptors, RecordInto& into)
         : context_(context),
           frame_(frame),
           compiled_(compiled),
@@ -224,7 +250,7 @@ class Recorder {
     }
 
     vulkan::Context& context_;
-    const Frame& frame_;
+    const FrameGraph& frame_;
     const CompiledFrame& compiled_;
     const Transients& transients_;
     DescriptorCache& descriptors_;
@@ -326,8 +352,8 @@ void DescriptorCache::trim() {
     pools_.clear();
 }
 
-void record(vulkan::Context& context, const Frame& frame, const CompiledFrame& compiled, const Transients& transients,
-            DescriptorCache& descriptors, RecordInto& into) {
+void record(vulkan::Context& context, const FrameGraph& frame, const CompiledFrame& compiled,
+            const Transients& transients, DescriptorCache& descriptors, RecordInto& into) {
     Recorder(context, frame, compiled, transients, descriptors, into).run();
 }
 

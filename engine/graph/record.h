@@ -5,30 +5,60 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "engine/graph/runner.h"
 #include "engine/vulkan/context.h"
 
 namespace patina::graph {
 
-/// The physical transient resources of one frame shape: two blocks of memory, and buffers and images placed in them.
+/// The sizes and formats of one frame shape's transient resources. Equal needs of memory do not imply equal ones.
+class TransientSizes {
+  public:
+    TransientSizes(const FrameGraph& frame, const Plan& plan);
+
+    /// True when the frame, of the description these were made for, asks for the same.
+    bool fit(const FrameGraph& frame) const;
+
+    const std::optional<uint64_t>& bytes(uint32_t resource) const { return bytes_[resource]; }
+    const std::optional<ImageShape>& shape(uint32_t resource) const { return shapes_[resource]; }
+
+  private:
+    std::vector<std::optional<uint64_t>> bytes_;     ///< per resource; placed buffers only
+    std::vector<std::optional<ImageShape>> shapes_;  ///< per resource; placed images only
+};
+
+/// The device memory that the transient resources of all frame shapes share: one block for buffers, one for images,
+/// each as large as the largest shape needs. Shapes may share it as frames share it: every frame begins with a barrier
+/// that orders all its accesses behind all of the frames before, whatever resources these used the memory through.
+class TransientMemory {
+  public:
+    bool holds(const Plan& plan) const;
+    /// Replaces the blocks that are too small for the plan. A block is freed once no resource is placed in it, so
+    /// resources of shapes should be let go before. Throws Error when memory runs out; what was replaced is then gone.
+    void make_room(vulkan::Device& device, const Plan& plan);
+    uint64_t bytes() const;
+
+    const vulkan::MemoryRef& buffers() const { return buffers_; }
+    const vulkan::MemoryRef& images() const { return images_; }
+
+  private:
+    vulkan::MemoryRef buffers_, images_;  ///< null where no shape needs any
+};
+
+/// The transient resources of one frame shape: buffers and images placed in the memory that all shapes share.
 class Transients {
   public:
-    Transients(vulkan::Device& device, const Frame& frame, const Plan& plan);
-
-    /// True when the frame, of the description these were made for, asks for the same sizes and formats: equal needs of
-    /// memory do not imply that.
-    bool fit(const Frame& frame) const;
+    Transients(vulkan::Device& device, const CompiledFrame& compiled, const TransientSizes& sizes,
+               const TransientMemory& memory);
 
     const vulkan::BufferRef& buffer(uint32_t resource) const { return buffers_[resource]; }
     const vulkan::ImageRef& image(uint32_t resource) const { return images_[resource]; }
-    uint64_t bytes() const { return bytes_; }
 
   private:
-    uint64_t bytes_ = 0;
     std::vector<vulkan::BufferRef> buffers_;
     std::vector<vulkan::ImageRef> images_;
 };
@@ -76,7 +106,7 @@ struct RecordInto {
     std::function<Staging(uint64_t)> stage_download;
 };
 
-void record(vulkan::Context& context, const Frame& frame, const CompiledFrame& compiled, const Transients& transients,
-            DescriptorCache& descriptors, RecordInto& into);
+void record(vulkan::Context& context, const FrameGraph& frame, const CompiledFrame& compiled,
+            const Transients& transients, DescriptorCache& descriptors, RecordInto& into);
 
 }  // namespace patina::graph

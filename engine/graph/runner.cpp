@@ -78,7 +78,7 @@ struct Slot {
     uint64_t submitted = 0;                 ///< timeline value of its last frame
     std::vector<std::string> timed_passes;  ///< pass i used queries 2i and 2i + 1
     std::vector<PendingRead> reads;
-    std::vector<Frame::Physical> resources;  ///< kept alive until the frame has finished
+    std::vector<FrameGraph::Physical> resources;  ///< kept alive until the frame has finished
     std::shared_ptr<const Transients> transients;
 
     /// Makes room for the times of as many passes; nothing of the slot is in flight.
@@ -112,11 +112,12 @@ void Slot::hold_times_of(const vulkan::Context& context, uint32_t passes) {
     timed_capacity = most;
 }
 
-/// A compiled shape with the physical memory of its transient resources.
+/// A compiled shape with its transient resources.
 struct CachedShape {
     size_t hash = 0;
     std::shared_ptr<const CompiledFrame> compiled;
-    std::shared_ptr<const Transients> transients;
+    TransientSizes sizes;
+    std::shared_ptr<const Transients> transients;  ///< null until the shape is used in the memory there is now
 };
 
 struct Runner::State {
@@ -127,6 +128,7 @@ struct Runner::State {
     std::vector<std::unique_ptr<Slot>> slots;
     Slot* current = nullptr;
     std::list<CachedShape> shapes;  ///< most recently used first
+    TransientMemory memory;
     DescriptorCache descriptors;
     std::vector<Timing> timings;
     std::unordered_map<std::string, size_t> timing_index;
@@ -202,26 +204,38 @@ void retire(Runner::State& state, const vulkan::Context& context, Slot& slot) {
     slot.submitted = 0;
 }
 
-const CachedShape& find_shape(Runner::State& state, vulkan::Device& device, const Frame& frame,
-                              const Description& description) {
+/// Moves the frame's shape to the front of the list, compiled.
+CachedShape& find_shape(Runner::State& state, const FrameGraph& frame, const Description& description) {
     const size_t hash = hash_of(description);
     for (auto shape = state.shapes.begin(); shape != state.shapes.end(); ++shape) {
-        if (shape->hash == hash && shape->compiled->description == description && shape->transients->fit(frame)) {
+        if (shape->hash == hash && shape->compiled->description == description && shape->sizes.fit(frame)) {
             state.shapes.splice(state.shapes.begin(), state.shapes, shape);
             return state.shapes.front();
         }
     }
     ++state.compilations;
     auto compiled = std::make_shared<CompiledFrame>(CompiledFrame{description, compile(description)});
-    auto transients = std::make_shared<const Transients>(device, frame, compiled->plan);
-    state.shapes.push_front({hash, std::move(compiled), std::move(transients)});
+    TransientSizes sizes(frame, compiled->plan);
+    state.shapes.push_front({hash, std::move(compiled), std::move(sizes), nullptr});
     if (state.shapes.size() > kCachedShapes) state.shapes.pop_back();
     return state.shapes.front();
 }
 
+/// Gives the shape its transient resources. Where the memory that the shapes share is too small, it is replaced, and
+/// the others get theirs again when they are used next; frames in flight keep what they use.
+void place_transients(Runner::State& state, vulkan::Device& device, CachedShape& shape) {
+    if (shape.transients) return;
+    const Plan& plan = shape.compiled->plan;
+    if (!state.memory.holds(plan)) {
+        for (CachedShape& other : state.shapes) other.transients.reset();
+        state.memory.make_room(device, plan);
+    }
+    shape.transients = std::make_shared<const Transients>(device, *shape.compiled, shape.sizes, state.memory);
+}
+
 }  // namespace
 
-Frame Runner::begin() {
+FrameGraph Runner::begin() {
     Slot& slot = *state_->slots[state_->submitted % kFramesInFlight];
     retire(*state_, device_.context(), slot);
     slot.drop_recording();
@@ -229,7 +243,7 @@ Frame Runner::begin() {
     slot.download.reset();
     state_->descriptors.trim();
     state_->current = &slot;
-    return Frame(device_, *this);
+    return FrameGraph(device_, *this);
 }
 
 Staging Runner::stage(uint64_t bytes) {
@@ -237,13 +251,14 @@ Staging Runner::stage(uint64_t bytes) {
     return state_->current->upload.take(bytes);
 }
 
-void Runner::submit(Frame frame) {
+void Runner::submit(FrameGraph frame) {
     const auto start = std::chrono::steady_clock::now();
     PATINA_ASSERT(state_->current != nullptr, "submit without begin");
     Slot& slot = *state_->current;
     state_->current = nullptr;
     vulkan::Context& context = device_.context();
-    const CachedShape& shape = find_shape(*state_, device_, frame, frame.description());
+    CachedShape& shape = find_shape(*state_, frame, frame.description());
+    place_transients(*state_, device_, shape);
     state_->last = shape.compiled;
     vulkan::guarded(text("recording frame ", state_->submitted + 1), [&] {
         slot.hold_times_of(context, static_cast<uint32_t>(shape.compiled->plan.order.size()));
@@ -283,15 +298,14 @@ void Runner::clear_timings() {
     state_->host.samples_ms.clear();
 }
 
-void Runner::forget_shapes() { state_->shapes.clear(); }
+void Runner::forget_shapes() {
+    state_->shapes.clear();
+    state_->memory = {};
+}
 
 uint32_t Runner::compilations() const { return state_->compilations; }
 
-uint64_t Runner::transient_bytes() const {
-    uint64_t total = 0;
-    for (const CachedShape& shape : state_->shapes) total += shape.transients->bytes();
-    return total;
-}
+uint64_t Runner::transient_bytes() const { return state_->memory.bytes(); }
 
 const CompiledFrame& Runner::last_frame() const { return *state_->last; }
 

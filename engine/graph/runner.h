@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "engine/graph/plan/plan.h"
 #include "engine/vulkan/device.h"
 
@@ -25,9 +25,9 @@ struct CompiledFrame {
     Plan plan;
 };
 
-/// Runs frames on a device: compiles those of a new shape, reuses the plan and the transient memory of those seen
+/// Runs frames on a device: compiles those of a new shape, reuses the plan and the transient resources of those seen
 /// before, records, submits, times every pass, and brings read-backs home. Up to two frames are in flight; begin()
-/// waits for the one before these.
+/// waits for the one before these. The transient resources of all shapes share one memory.
 class Runner {
   public:
     explicit Runner(vulkan::Device& device);
@@ -36,10 +36,10 @@ class Runner {
     Runner& operator=(const Runner&) = delete;
 
     /// Starts a frame. Throws Error when the device was lost.
-    Frame begin();
+    FrameGraph begin();
 
     /// Compiles, records and submits. Throws Error for a badly wired frame, on lack of memory, on a lost device.
-    void submit(Frame frame);
+    void submit(FrameGraph frame);
 
     /// Waits for everything submitted; afterwards all read-backs are ready.
     void wait();
@@ -58,7 +58,8 @@ class Runner {
 
     /// How often a frame's shape was new and had to be compiled.
     uint32_t compilations() const;
-    /// Bytes of device memory held for transient resources.
+    /// Bytes of device memory held for transient resources: what the largest shape of frames needs. Frames in flight
+    /// may hold a smaller block besides until they have finished.
     uint64_t transient_bytes() const;
     /// The last submitted frame.
     const CompiledFrame& last_frame() const;
@@ -69,7 +70,7 @@ class Runner {
     struct State;
 
   private:
-    friend class Frame;
+    friend class FrameGraph;
     vulkan::Device& device_;
     std::unique_ptr<State> state_;
 };

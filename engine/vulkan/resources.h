@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/image.h"
 #include "engine/vulkan/format.h"
+#include "patina/image.h"
 
 namespace patina::vulkan {
 

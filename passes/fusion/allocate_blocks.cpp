@@ -45,7 +45,7 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
     return params;
 }
 
-void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
+void add_allocate_blocks(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
                          graph::BufferId params, uint32_t stride_px) {
     auto touch = frame.compute("fusion.touch_blocks", spirv::touch_blocks);
     touch.read("depth_m", depth_m).read("Fusion", params);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/graph/frame.h"
-#include "passes/model/voxel_map.h"
-#include "shared/allocate_blocks.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/voxel_map.h"
+#include "shared/fusion/allocate_blocks.h"
 
 namespace patina {
 
@@ -41,7 +41,7 @@ gpu::FusionParams make_fusion_params(const VoxelMap& map, const FusionSettings& 
 /// assign (pop ids, clear voxels). `depth_m` is W x H r32f, metres along the optical axis, 0 where there is no reading;
 /// `params` holds gpu::FusionParams. A full pool or table leaves existing blocks alone and counts what was refused
 /// (gpu::MapCounters). Voxel hashing after Niessner et al. 2013, with the two-phase allocation of Kaehler et al. 2015.
-void add_allocate_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
+void add_allocate_blocks(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids, graph::ImageId depth_m,
                          graph::BufferId params, uint32_t stride_px);
 
 }  // namespace patina

@@ -1,12 +1,12 @@
 #include "passes/fusion/grow_voxels.h"
 
-#include "passes/model/rebuild_table.h"
-#include "shared/grow_pool.h"
+#include "passes/state/rebuild_table.h"
+#include "shared/observation/grow_pool.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-void add_grow_voxels(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, uint32_t before) {
+void add_grow_voxels(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids, uint32_t before) {
     const gpu::GrowParams params{before, map.capacity() - before};
     auto grow = frame.compute("fusion.grow_free_list", spirv::grow_free_list);
     grow.push(params);

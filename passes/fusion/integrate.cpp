@@ -1,6 +1,6 @@
 #include "passes/fusion/integrate.h"
 
-#include "shared/integrate.h"
+#include "shared/fusion/integrate.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -15,7 +15,7 @@ struct ColorWork {
     graph::BufferId arguments;     ///< one group per listed block, in rows of gpu::kGroupsPerRow
 };
 
-ColorWork make_color_work(graph::Frame& frame, const VoxelMap& map) {
+ColorWork make_color_work(graph::FrameGraph& frame, const VoxelMap& map) {
     const uint64_t capacity = map.capacity();
     return {
         frame.create_buffer("fusion.near_surface", capacity * gpu::kIntegrateGroup * sizeof(uint32_t)),
@@ -25,7 +25,7 @@ ColorWork make_color_work(graph::Frame& frame, const VoxelMap& map) {
 
 }  // namespace
 
-void add_integrate(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
+void add_integrate(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
                    graph::BufferId params, graph::ImageId depth_m, graph::ImageId slope,
                    std::optional<graph::ImageId> color_linear) {
     auto pass = frame.compute("fusion.integrate", color_linear ? spirv::integrate_marking : spirv::integrate);

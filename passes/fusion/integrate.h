@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/fusion/visible_blocks.h"
-#include "passes/model/voxel_map.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
@@ -15,7 +15,7 @@ namespace patina {
 /// 0: no reading), sampled at the nearest pixel through that camera's own intrinsics and pose, by voxels within
 /// color_band_m of the surface, in a second pass (fusion.integrate_color) over the blocks that have some; blocks that
 /// are settled there take turns (FusionSettings::settled_color_every).
-void add_integrate(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
+void add_integrate(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
                    graph::BufferId params, graph::ImageId depth_m, graph::ImageId slope,
                    std::optional<graph::ImageId> color_linear);
 

@@ -1,12 +1,12 @@
 #include "passes/fusion/measure_slope.h"
 
 #include "engine/core/error.h"
-#include "shared/slope.h"
+#include "shared/fusion/slope.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-graph::ImageId add_measure_slope(graph::Frame& frame, graph::ImageId smooth_depth_m, const Intrinsics& camera) {
+graph::ImageId add_measure_slope(graph::FrameGraph& frame, graph::ImageId smooth_depth_m, const Intrinsics& camera) {
     const Extent2D extent = frame.shape(smooth_depth_m).extent;
     if (extent != camera.extent) {
         throw Error("the pass 'fusion.measure_slope' got a depth image of ", extent, " pixels, its camera has ",

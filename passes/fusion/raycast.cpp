@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "shared/raycast.h"
+#include "shared/fusion/raycast.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-RaycastImages add_raycast(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+RaycastImages add_raycast(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                           const VisibleBlocks& visible, MapAccess access) {
     auto pass = frame.compute("fusion.raycast", access == MapAccess::kTexel ? spirv::raycast_texel : spirv::raycast);
     pass.read("View", visible.view).read("Tiles", visible.tiles);

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-#include "passes/model/rebuild_table.h"
+#include "passes/state/rebuild_table.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-void add_remove_empty_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
-                             graph::BufferId params) {
+void add_remove_empty_blocks(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids,
+                             const VisibleBlocks& visible, graph::BufferId params) {
     auto remove = frame.compute("fusion.remove_empty_blocks", spirv::remove_empty_blocks);
     remove.read("Visible", visible.list).read("Fusion", params).read("Tsdf", ids.tsdf);
     remove.specialise("kVoxelChunks", map.chunks());

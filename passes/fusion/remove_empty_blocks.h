@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/fusion/visible_blocks.h"
-#include "passes/model/voxel_map.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
@@ -11,7 +11,7 @@ namespace patina {
 /// remain, without tombstones and without the keys that had been refused a block, which get another chance. Voxels of
 /// the remaining blocks stay as they are; those of the others are cleared when their block is assigned again. Counts in
 /// MapCounters::deleted_blocks.
-void add_remove_empty_blocks(graph::Frame& frame, const VoxelMap& map, VoxelMapIds& ids, const VisibleBlocks& visible,
-                             graph::BufferId params);
+void add_remove_empty_blocks(graph::FrameGraph& frame, const VoxelMap& map, VoxelMapIds& ids,
+                             const VisibleBlocks& visible, graph::BufferId params);
 
 }  // namespace patina

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-graph::ImageId add_shade_color(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+graph::ImageId add_shade_color(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                const VisibleBlocks& visible, graph::ImageId position_m) {
     const Extent2D extent = frame.shape(position_m).extent;
     auto pass = frame.compute("fusion.shade_color", spirv::shade_color);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/fusion/visible_blocks.h"
-#include "passes/model/voxel_map.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
@@ -10,7 +10,7 @@ namespace patina {
 /// `visible`. Returns W x H
 /// rgba16f, linear, the trilinear mean over those neighbouring voxels that have a colour; a = 1, or all zero where
 /// nothing was hit or no neighbour has a colour.
-graph::ImageId add_shade_color(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+graph::ImageId add_shade_color(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                const VisibleBlocks& visible, graph::ImageId position_m);
 
 }  // namespace patina

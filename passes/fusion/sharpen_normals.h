@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/fusion/raycast.h"
 
 namespace patina {
@@ -12,6 +12,6 @@ namespace patina {
 /// others: towards its edges the gradient bends by angles that a curved face might have. Returns `model` with its
 /// normals replaced; 0 where none is known. `focal_px` is that of its camera. Throws Error when the images differ in
 /// extent.
-RaycastImages add_sharpen_normals(graph::Frame& frame, const RaycastImages& model, float focal_px, float voxel_m);
+RaycastImages add_sharpen_normals(graph::FrameGraph& frame, const RaycastImages& model, float focal_px, float voxel_m);
 
 }  // namespace patina

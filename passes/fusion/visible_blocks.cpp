@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "passes/model/block_at.h"
+#include "passes/state/block_at.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -74,7 +74,7 @@ float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m) {
     return std::min(far_m, static_cast<float>(most_m));
 }
 
-VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+VisibleBlocks add_visible_blocks(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                  const gpu::Camera& camera, float near_m, float far_m) {
     gpu::ViewParams params{};
     params.grid = map.grid();

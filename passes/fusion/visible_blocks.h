@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/voxel_map.h"
-#include "shared/visible_blocks.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/voxel_map.h"
+#include "shared/fusion/visible_blocks.h"
 
 namespace patina {
 
@@ -24,7 +24,7 @@ float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m);
 /// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, or view_reach_m() where
 /// that is nearer, and finds the depth range in which the rays of each image tile can meet blocks (ray interval
 /// splatting, Niessner et al. 2013).
-VisibleBlocks add_visible_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids,
+VisibleBlocks add_visible_blocks(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                                  const gpu::Camera& camera, float near_m, float far_m);
 
 }  // namespace patina

@@ -1,7 +1,7 @@
 #include "passes/input/convert_color.h"
 
 #include "passes/input/lens.h"
-#include "shared/convert_color.h"
+#include "shared/input/convert_color.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -14,7 +14,8 @@ constexpr const char* kPass = "input.convert_color";
 
 void check_color(const ColorInput& input) { lens_of(input.camera, kPass); }
 
-graph::ImageId add_convert_color(graph::Frame& frame, const ColorInput& input, std::optional<graph::ImageId> target) {
+graph::ImageId add_convert_color(graph::FrameGraph& frame, const ColorInput& input,
+                                 std::optional<graph::ImageId> target) {
     const bool linear = std::holds_alternative<std::span<const glm::vec3>>(input.pixels);
     const Extent2D extent = input.camera.extent;
     const gpu::Lens lens = lens_of(input.camera, kPass);

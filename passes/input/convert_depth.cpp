@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "passes/input/lens.h"
-#include "shared/convert_depth.h"
+#include "shared/input/convert_depth.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -37,7 +37,8 @@ void check_depth(const DepthInput& input) {
     lens_of(input.camera, kPass);
 }
 
-graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input, std::optional<graph::ImageId> target) {
+graph::ImageId add_convert_depth(graph::FrameGraph& frame, const DepthInput& input,
+                                 std::optional<graph::ImageId> target) {
     check_scale(input);
     const bool metres = std::holds_alternative<std::span<const float>>(input.pixels);
     const Extent2D extent = input.camera.extent;

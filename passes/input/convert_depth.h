@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "engine/graph/frame.h"
-#include "passes/input/picture.h"
+#include "engine/graph/frame_graph.h"
+#include "patina/frame.h"
 
 namespace patina {
 
@@ -12,7 +12,7 @@ namespace patina {
 /// Returns an r32f image, `target` where there is one; 0 where there is no reading, where it lies beyond max_metres, or
 /// where the distorted picture does not show the pixel. Throws Error when the number of pixels, the intrinsics or the
 /// scale make no sense.
-graph::ImageId add_convert_depth(graph::Frame& frame, const DepthInput& input,
+graph::ImageId add_convert_depth(graph::FrameGraph& frame, const DepthInput& input,
                                  std::optional<graph::ImageId> target = std::nullopt);
 
 /// Throws Error when the intrinsics or the scale make no sense.

@@ -2,12 +2,12 @@
 
 #include <numbers>
 
-#include "shared/filter_depth.h"
+#include "shared/input/filter_depth.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-graph::ImageId add_filter_depth(graph::Frame& frame, graph::ImageId depth_m, const DepthFilter& filter) {
+graph::ImageId add_filter_depth(graph::FrameGraph& frame, graph::ImageId depth_m, const DepthFilter& filter) {
     constexpr const char* kPass = "input.filter_depth";
     const bool usable =
         filter.sigma_px > 0 && filter.sigma_floor_m > 0 && filter.sigma_linear >= 0 && filter.sigma_quadratic >= 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 
 namespace patina {
 
@@ -17,6 +17,6 @@ struct DepthFilter {
 
 /// Bilateral filter over 5 x 5 pixels (Tomasi and Manduchi 1998). `depth_m`: r32f in metres, 0 where there is no
 /// reading; such pixels are ignored and stay 0. Returns a new r32f image. Throws Error unless the sigmas are positive.
-graph::ImageId add_filter_depth(graph::Frame& frame, graph::ImageId depth_m, const DepthFilter& filter = {});
+graph::ImageId add_filter_depth(graph::FrameGraph& frame, graph::ImageId depth_m, const DepthFilter& filter = {});
 
 }  // namespace patina

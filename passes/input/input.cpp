@@ -5,7 +5,7 @@
 
 namespace patina {
 
-InputImages add_input(graph::Frame& frame, const InputPictures& pictures, const gpu::Camera& depth_camera,
+InputImages add_input(graph::FrameGraph& frame, const InputPictures& pictures, const gpu::Camera& depth_camera,
                       const InputSettings& settings) {
     InputImages images;
     images.depth_m = pictures.depth_m;
@@ -15,7 +15,7 @@ InputImages add_input(graph::Frame& frame, const InputPictures& pictures, const 
     return images;
 }
 
-InputImages add_input(graph::Frame& frame, const DepthInput& depth, const ColorInput& color,
+InputImages add_input(graph::FrameGraph& frame, const DepthInput& depth, const ColorInput& color,
                       const gpu::Camera& depth_camera, const InputSettings& settings) {
     const InputPictures pictures{add_convert_depth(frame, depth), add_convert_color(frame, color)};
     return add_input(frame, pictures, depth_camera, settings);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/input/filter_depth.h"
-#include "passes/input/picture.h"
 #include "passes/input/unproject_depth.h"
-#include "shared/camera.h"
+#include "patina/frame.h"
+#include "shared/input/camera.h"
 
 namespace patina {
 
@@ -30,12 +30,12 @@ struct InputPictures {
 
 /// Prepares what was converted; passes whose images nobody uses are culled. `depth_camera` is the pinhole camera of
 /// `depth_m` at its pose.
-InputImages add_input(graph::Frame& frame, const InputPictures& pictures, const gpu::Camera& depth_camera,
+InputImages add_input(graph::FrameGraph& frame, const InputPictures& pictures, const gpu::Camera& depth_camera,
                       const InputSettings& settings = {});
 
 /// Uploads one frame and prepares it; passes whose images nobody uses are culled. `depth_camera` is the pinhole part of
 /// `depth.camera` at its pose.
-InputImages add_input(graph::Frame& frame, const DepthInput& depth, const ColorInput& color,
+InputImages add_input(graph::FrameGraph& frame, const DepthInput& depth, const ColorInput& color,
                       const gpu::Camera& depth_camera, const InputSettings& settings = {});
 
 }  // namespace patina

@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "engine/core/camera.h"
-#include "engine/graph/frame.h"
-#include "shared/lens.h"
+#include "engine/graph/frame_graph.h"
+#include "patina/camera.h"
+#include "shared/input/lens.h"
 
 namespace patina {
 
@@ -15,7 +15,8 @@ gpu::Lens lens_of(const Intrinsics& camera, const char* pass);
 /// Uploads a picture's pixels as whole 32-bit words. Throws Error, in the name of `pass`, when there are not
 /// `extent.area()` pixels.
 template <class Pixel>
-graph::BufferId upload_picture(graph::Frame& frame, const char* pass, Extent2D extent, std::span<const Pixel> pixels) {
+graph::BufferId upload_picture(graph::FrameGraph& frame, const char* pass, Extent2D extent,
+                               std::span<const Pixel> pixels) {
     if (pixels.size() != extent.area()) {
         throw Error("the pass '", pass, "' got ", pixels.size(), " pixels for a picture of ", extent);
     }

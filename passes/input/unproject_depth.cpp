@@ -1,11 +1,11 @@
 #include "passes/input/unproject_depth.h"
 
-#include "shared/unproject_depth.h"
+#include "shared/input/unproject_depth.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-UnprojectedDepth add_unproject_depth(graph::Frame& frame, graph::ImageId depth_m, const gpu::Camera& camera,
+UnprojectedDepth add_unproject_depth(graph::FrameGraph& frame, graph::ImageId depth_m, const gpu::Camera& camera,
                                      const DepthJump& jump) {
     constexpr const char* kPass = "input.unproject_depth";
     const Extent2D extent = frame.shape(depth_m).extent;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "shared/camera.h"
+#include "engine/graph/frame_graph.h"
+#include "shared/input/camera.h"
 
 namespace patina {
 
@@ -20,7 +20,7 @@ struct UnprojectedDepth {
 
 /// Turns `depth_m` (r32f in metres, 0 where there is no reading) of a pinhole camera into world positions and normals,
 /// these from central differences. Throws Error when the extents of image and camera differ.
-UnprojectedDepth add_unproject_depth(graph::Frame& frame, graph::ImageId depth_m, const gpu::Camera& camera,
+UnprojectedDepth add_unproject_depth(graph::FrameGraph& frame, graph::ImageId depth_m, const gpu::Camera& camera,
                                      const DepthJump& jump = {});
 
 }  // namespace patina

@@ -36,7 +36,7 @@ uint32_t reach_px(const FindLightsInputs& in) {
 }
 
 /// The depth camera's readings as the colour camera would have them; u32 per colour pixel, kNoDepth where none is.
-graph::BufferId add_warp_depth(graph::Frame& frame, const FindLightsInputs& in, graph::BufferId params,
+graph::BufferId add_warp_depth(graph::FrameGraph& frame, const FindLightsInputs& in, graph::BufferId params,
                                const gpu::WarpDepthParams& warp) {
     const uint64_t pixels = uint64_t{in.color_camera.extent.x} * in.color_camera.extent.y;
     const graph::BufferId empty =
@@ -55,7 +55,7 @@ struct EmitterList {
     graph::BufferId places;
 };
 
-EmitterList add_list_emitters(graph::Frame& frame, const FindLightsInputs& in, graph::BufferId params,
+EmitterList add_list_emitters(graph::FrameGraph& frame, const FindLightsInputs& in, graph::BufferId params,
                               graph::BufferId warped, const gpu::WarpDepthParams& warp, uint32_t groups) {
     auto count = frame.compute("lighting.count_emitters", spirv::count_emitters);
     count.read("color", in.color).read("Params", params);
@@ -77,7 +77,7 @@ EmitterList add_list_emitters(graph::Frame& frame, const FindLightsInputs& in, g
 }
 
 /// The frame's clusters: gpu::EmitterMode[kMaxLightCandidates], heaviest first.
-graph::BufferId add_cluster_emitters(graph::Frame& frame, graph::BufferId params, const EmitterList& list) {
+graph::BufferId add_cluster_emitters(graph::FrameGraph& frame, graph::BufferId params, const EmitterList& list) {
     auto shift = frame.compute("lighting.shift_means", spirv::shift_means);
     shift.read("Params", params).read("Places", list.places).read("Emitters", list.emitters);
     const graph::BufferId modes = shift.create("Modes", gpu::kMeanShiftSeeds * sizeof(gpu::EmitterMode));
@@ -90,7 +90,7 @@ graph::BufferId add_cluster_emitters(graph::Frame& frame, graph::BufferId params
     return candidates;
 }
 
-graph::BufferId add_measure_emitters(graph::Frame& frame, graph::BufferId params, const EmitterList& list,
+graph::BufferId add_measure_emitters(graph::FrameGraph& frame, graph::BufferId params, const EmitterList& list,
                                      graph::BufferId candidates) {
     auto pass = frame.compute("lighting.measure_emitters", spirv::measure_emitters);
     pass.read("Params", params).read("Places", list.places).read("Emitters", list.emitters);
@@ -102,7 +102,7 @@ graph::BufferId add_measure_emitters(graph::Frame& frame, graph::BufferId params
 
 }  // namespace
 
-void add_find_lights(graph::Frame& frame, LightTrackIds& tracks, const FindLightsInputs& in,
+void add_find_lights(graph::FrameGraph& frame, LightTrackIds& tracks, const FindLightsInputs& in,
                      const FindLightsSettings& settings) {
     if (!(in.radiance_scale > 0) || !std::isfinite(in.radiance_scale)) {
         throw Error("the pass 'lighting.list_emitters' needs an exposure ratio above 0, not ", in.radiance_scale);
@@ -122,7 +122,7 @@ void add_find_lights(graph::Frame& frame, LightTrackIds& tracks, const FindLight
     track.dispatch(1);
 }
 
-graph::BufferId add_settle_lights(graph::Frame& frame, const LightTrackIds& tracks) {
+graph::BufferId add_settle_lights(graph::FrameGraph& frame, const LightTrackIds& tracks) {
     auto pass = frame.compute("lighting.settle_lights", spirv::settle_lights);
     pass.read("Tracks", tracks.tracks).read("History", tracks.history);
     const graph::BufferId found = pass.create("Found", gpu::kMaxLights * sizeof(gpu::FoundLightWords));

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/light_tracks.h"
-#include "shared/find_lights.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/light_tracks.h"
+#include "shared/lighting/find_lights.h"
 
 namespace patina {
 
@@ -19,7 +19,7 @@ struct FindLightsSettings {
 struct FindLightsInputs {
     graph::ImageId depth_m;  ///< r32f, depth camera; 0 where there is no reading
     gpu::Camera depth_camera;
-    graph::ImageId color;  ///< rgba16f, colour camera, linear; alpha as shared/convert_color.h says
+    graph::ImageId color;  ///< rgba16f, colour camera, linear; alpha as shared/input/convert_color.h says
     gpu::Camera color_camera;
     float radiance_scale = 1;  ///< exposure of the reflectance sequence / exposure of this frame
 };
@@ -28,11 +28,11 @@ struct FindLightsInputs {
 /// luminance threshold, back-projected, clustered by mean-shift; per cluster the centre of the sphere that it appears
 /// as, and the intensity I = mean radiance x its disc's area, pi R^2. Clusters without depth give bearings. Those at
 /// the picture's border, which may be cut off, are left out.
-void add_find_lights(graph::Frame& frame, LightTrackIds& tracks, const FindLightsInputs& inputs,
+void add_find_lights(graph::FrameGraph& frame, LightTrackIds& tracks, const FindLightsInputs& inputs,
                      const FindLightsSettings& settings);
 
 /// Medians over all sightings; for lamps without depth the point nearest to their bearings. Returns
 /// gpu::FoundLightWords[kMaxLights]; sightings 0 where there is no light, or bearings too much alike to tell where.
-graph::BufferId add_settle_lights(graph::Frame& frame, const LightTrackIds& tracks);
+graph::BufferId add_settle_lights(graph::FrameGraph& frame, const LightTrackIds& tracks);
 
 }  // namespace patina

@@ -17,8 +17,8 @@ void bind_records(graph::PassBuilder& pass, const ObservationMap& map, const Obs
 
 }  // namespace
 
-graph::BufferId add_sample_surface(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                   uint32_t seed) {
+graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
+                                   const ObservationMapIds& records, uint32_t seed) {
     constexpr uint64_t kPlaces = 2 * gpu::kLightSamples;
     const graph::BufferId unclaimed = frame.fill(frame.create_buffer("lighting.claims", kPlaces * sizeof(uint32_t)), 0);
     auto claim = frame.compute("lighting.claim_samples", spirv::claim_samples);
@@ -36,7 +36,7 @@ graph::BufferId add_sample_surface(graph::Frame& frame, const ObservationMap& ma
     return samples;
 }
 
-graph::BufferId add_try_lights(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& voxels,
+graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
                                graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count) {
     if (places_m.empty() || places_m.size() > gpu::kTrialLights) {
         throw Error("the pass 'lighting.try_lights' tries 1 to ", gpu::kTrialLights, " lights at once, not ",

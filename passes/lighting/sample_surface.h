@@ -4,10 +4,10 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/voxel_map.h"
-#include "shared/fit_lights.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/voxel_map.h"
+#include "shared/lighting/fit_lights.h"
 
 namespace patina {
 
@@ -15,13 +15,13 @@ namespace patina {
 /// what is drawn does not depend on the order of records: gpu::LightSample[2 * gpu::kLightSamples], first of all voxels
 /// with enough observations, then of those of them with a highlight. Places without one have no observations. The
 /// colour is the mean of the darkest observations.
-graph::BufferId add_sample_surface(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                   uint32_t seed);
+graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
+                                   const ObservationMapIds& records, uint32_t seed);
 
 /// What lamps of intensity 1 at these places (world, m; at most gpu::kTrialLights) give the first `count` samples, a
 /// multiple of gpu::kRecordGroup: cos / (pi r^2), 0 where the model stands in the way. Space that was never seen is
 /// open. Returns float[trial][gpu::kLightSamples].
-graph::BufferId add_try_lights(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& voxels,
+graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
                                graph::BufferId samples, std::span<const glm::vec3> places_m,
                                uint32_t count = gpu::kLightSamples);
 

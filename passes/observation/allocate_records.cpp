@@ -7,7 +7,7 @@ namespace patina {
 namespace {
 
 /// Inserts the blocks that pixels see. Returns which voxel each of them sees.
-graph::BufferId add_touch(graph::Frame& frame, ObservationMapIds& ids, const ObservationInputs& inputs,
+graph::BufferId add_touch(graph::FrameGraph& frame, ObservationMapIds& ids, const ObservationInputs& inputs,
                           graph::BufferId params, Extent2D visited) {
     auto touch = frame.compute("observation.touch_surface", spirv::touch_surface);
     touch.read("position_m", inputs.position_m).read("normal", inputs.normal);
@@ -20,7 +20,8 @@ graph::BufferId add_touch(graph::Frame& frame, ObservationMapIds& ids, const Obs
     return voxels;
 }
 
-void add_assign_blocks(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids, graph::BufferId params) {
+void add_assign_blocks(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
+                       graph::BufferId params) {
     auto select = frame.compute("observation.select_blocks", spirv::select_blocks);
     select.read("Keys", ids.keys).read("NewSlots", ids.new_slots).push(map.grid());
     ids.block_counters = select.modify("Counters", ids.block_counters);
@@ -38,7 +39,7 @@ void add_assign_blocks(graph::Frame& frame, const ObservationMap& map, Observati
 }
 
 /// Lists the records that pixels see, in `visible`. Returns the list of voxels without a record.
-graph::BufferId add_mark(graph::Frame& frame, ObservationMapIds& ids, RecordList& visible, graph::BufferId params,
+graph::BufferId add_mark(graph::FrameGraph& frame, ObservationMapIds& ids, RecordList& visible, graph::BufferId params,
                          graph::BufferId pixel_voxels, Extent2D visited) {
     auto mark = frame.compute("observation.mark_records", spirv::mark_records);
     mark.read("Observation", params).read("PixelVoxels", pixel_voxels).read("Blocks", ids.blocks);
@@ -52,7 +53,7 @@ graph::BufferId add_mark(graph::Frame& frame, ObservationMapIds& ids, RecordList
     return new_voxels;
 }
 
-void add_assign_records(graph::Frame& frame, ObservationMapIds& ids, RecordList& visible, graph::BufferId params,
+void add_assign_records(graph::FrameGraph& frame, ObservationMapIds& ids, RecordList& visible, graph::BufferId params,
                         graph::BufferId new_voxels) {
     auto select = frame.compute("observation.select_records", spirv::select_records);
     select.read("BlockKeys", ids.block_keys).read("NewVoxels", new_voxels).read("Observation", params);
@@ -76,7 +77,7 @@ void add_assign_records(graph::Frame& frame, ObservationMapIds& ids, RecordList&
 
 }  // namespace
 
-RecordList add_allocate_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+RecordList add_allocate_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                                 const ObservationInputs& inputs, graph::BufferId params,
                                 const gpu::ObservationParams& values) {
     const Extent2D visited{values.visited.x, values.visited.y};

@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/record_list.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/observation/observation_params.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/record_list.h"
 
 namespace patina {
 
@@ -24,7 +24,7 @@ struct ObservationInputs {
 /// as the pools reach: touch (insert the keys of blocks), select and assign as for the voxel map; then the same for
 /// voxels. Every params.stride_px-th pixel looks, so that the work is bounded by pixels, whatever the voxels' size;
 /// its phase changes from frame to frame. `params` holds gpu::ObservationParams, `values` the same.
-RecordList add_allocate_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+RecordList add_allocate_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                                 const ObservationInputs& inputs, graph::BufferId params,
                                 const gpu::ObservationParams& values);
 

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-CollectedRecords add_collect_observations(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+CollectedRecords add_collect_observations(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                                           const ObservationInputs& inputs, const ObservationSettings& settings,
                                           const gpu::Camera& depth_camera, const gpu::Camera& color_camera,
                                           uint32_t frame_index) {

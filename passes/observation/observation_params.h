@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "engine/core/camera.h"
-#include "passes/model/observation_map.h"
+#include "passes/state/observation_map.h"
+#include "patina/camera.h"
 
 namespace patina {
 

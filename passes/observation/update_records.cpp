@@ -16,7 +16,7 @@ bool is_apart(const gpu::ObservationParams& params) {
 
 }  // namespace
 
-RecordList add_update_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+RecordList add_update_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                               const ObservationInputs& inputs, const RecordList& visible, graph::BufferId params,
                               const gpu::ObservationParams& values) {
     const uint64_t visited = uint64_t{values.visited.x} * values.visited.y;

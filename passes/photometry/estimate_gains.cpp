@@ -20,7 +20,7 @@ void check(const GainSettings& settings) {
     check_range("leak", settings.leak, 0, 1);
 }
 
-graph::BufferId add_compare_colors(graph::Frame& frame, const GainInputs& inputs, const GainSettings& settings) {
+graph::BufferId add_compare_colors(graph::FrameGraph& frame, const GainInputs& inputs, const GainSettings& settings) {
     const Extent2D cast = frame.common_extent({inputs.position_m, inputs.normal, inputs.model_color});
     const Extent2D color = frame.shape(inputs.color_linear).extent;
     const graph::BufferId empty =
@@ -39,7 +39,7 @@ graph::BufferId add_compare_colors(graph::Frame& frame, const GainInputs& inputs
 
 }  // namespace
 
-graph::BufferId add_estimate_gains(graph::Frame& frame, const GainInputs& inputs, graph::BufferId gains,
+graph::BufferId add_estimate_gains(graph::FrameGraph& frame, const GainInputs& inputs, graph::BufferId gains,
                                    const GainSettings& settings) {
     check(settings);
     const graph::BufferId histogram = add_compare_colors(frame, inputs, settings);
@@ -50,7 +50,7 @@ graph::BufferId add_estimate_gains(graph::Frame& frame, const GainInputs& inputs
     return settled;
 }
 
-graph::ImageId add_apply_gains(graph::Frame& frame, graph::ImageId color_linear, graph::BufferId gains) {
+graph::ImageId add_apply_gains(graph::FrameGraph& frame, graph::ImageId color_linear, graph::BufferId gains) {
     const Extent2D extent = frame.shape(color_linear).extent;
     auto pass = frame.compute("photometry.apply_gains", spirv::apply_gains);
     pass.read("Gains", gains).read("color_linear", color_linear);

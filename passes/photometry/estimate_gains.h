@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "shared/color_gains.h"
+#include "engine/graph/frame_graph.h"
+#include "shared/photometry/color_gains.h"
 
 namespace patina {
 
@@ -30,10 +30,10 @@ struct GainInputs {
 /// grazing nor near an edge of the model or of the picture, and well exposed. Replaces `gains`
 /// (gpu::ColorGains), which holds those of the frame before; where too few pixels can be compared they stay. Throws
 /// Error when images of the model differ in extent or a setting is out of its range.
-graph::BufferId add_estimate_gains(graph::Frame& frame, const GainInputs& inputs, graph::BufferId gains,
+graph::BufferId add_estimate_gains(graph::FrameGraph& frame, const GainInputs& inputs, graph::BufferId gains,
                                    const GainSettings& settings = {});
 
 /// Divides a colour image (rgba16f, add_convert_color) by a frame's gains. What is clipped or invalid stays marked.
-graph::ImageId add_apply_gains(graph::Frame& frame, graph::ImageId color_linear, graph::BufferId gains);
+graph::ImageId add_apply_gains(graph::FrameGraph& frame, graph::ImageId color_linear, graph::BufferId gains);
 
 }  // namespace patina

@@ -13,8 +13,8 @@ constexpr uint32_t kRecordsPerItem = 8;
 
 }  // namespace
 
-graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                     uint32_t labels) {
+graph::BufferId add_average_segments(graph::FrameGraph& frame, const ObservationMap& map,
+                                     const ObservationMapIds& records, uint32_t labels) {
     const graph::BufferId sums =
         frame.fill(frame.create_buffer("reflectance.segments", labels * sizeof(gpu::SegmentAlbedo)), 0);
     auto pass = frame.compute("reflectance.average_segments", spirv::average_segments);

@@ -4,17 +4,17 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "shared/reflectance.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "shared/reflectance/reflectance.h"
 
 namespace patina {
 
 /// The mean albedo of each segment over its records, each weighted by its certainty: what a surface point has that no
 /// record knows. Returns gpu::SegmentAlbedo[labels], zero where a segment has no records; kd above 1 counts as 1.
 /// Counts of records and observations include those that know nothing.
-graph::BufferId add_average_segments(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                     uint32_t labels);
+graph::BufferId add_average_segments(graph::FrameGraph& frame, const ObservationMap& map,
+                                     const ObservationMapIds& records, uint32_t labels);
 
 /// A segment's kd from its sums; empty where too few records know it.
 std::optional<glm::vec3> kd_of(const gpu::SegmentAlbedo& segment);

@@ -19,7 +19,8 @@ void bind(graph::PassBuilder& pass, ReflectanceFrame& reflectance, RecordList& m
     refine.arguments = pass.modify("RefineArguments", refine.arguments);
 }
 
-void add_due_window(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed, DueRecords& due) {
+void add_due_window(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& changed,
+                    DueRecords& due) {
     auto pass = frame.compute("reflectance.due_window", spirv::due_window);
     bind(pass, reflectance, due.march, due.refine);
     const ObservationMapIds& ids = reflectance.records;
@@ -36,7 +37,7 @@ struct WaitingRecords {
     RecordList never_marched, changed;
 };
 
-WaitingRecords add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed,
+WaitingRecords add_due_changed(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& changed,
                                RecordList& refine) {
     const uint32_t capacity = reflectance.map.capacity_records();
     WaitingRecords waiting{create_record_list(frame, "reflectance.never_marched", capacity),
@@ -50,7 +51,7 @@ WaitingRecords add_due_changed(graph::Frame& frame, ReflectanceFrame& reflectanc
     return waiting;
 }
 
-void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& waiting,
+void add_accept_due(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& waiting,
                     const gpu::AcceptParams& params, RecordList& march) {
     auto pass = frame.compute("reflectance.accept_due", spirv::accept_due);
     pass.read("Waiting", waiting.list).read("Records", reflectance.records.records).push(params);
@@ -61,7 +62,7 @@ void add_accept_due(graph::Frame& frame, ReflectanceFrame& reflectance, const Re
 
 }  // namespace
 
-DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed) {
+DueRecords add_find_due_records(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& changed) {
     const uint32_t capacity = reflectance.map.capacity_records();
     DueRecords due{create_record_list(frame, "reflectance.march", capacity),
                    create_record_list(frame, "reflectance.refine", capacity)};

@@ -16,6 +16,6 @@ struct DueRecords {
 /// `changed`: all for refinement, and for marching those that never were, or whose surface moved since. Where these are
 /// more than their budget, hashes that change from update to update say which are taken; the others wait for their next
 /// change or for the window. What is listed does not depend on record ids.
-DueRecords add_find_due_records(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& changed);
+DueRecords add_find_due_records(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& changed);
 
 }  // namespace patina

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-void add_find_visibility(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecords& due) {
+void add_find_visibility(graph::FrameGraph& frame, ReflectanceFrame& reflectance, DueRecords& due) {
     const bool texel = reflectance.access.voxels == MapAccess::kTexel;
     auto pass =
         frame.compute("reflectance.find_visibility", texel ? spirv::find_visibility_texel : spirv::find_visibility);

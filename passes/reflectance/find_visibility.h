@@ -8,6 +8,6 @@ namespace patina {
 /// towards each light: a bit per light in the map's visibility, and one in the status where the ray passes a surface
 /// within about a voxel, or leaves its own at less than some 7 degrees. Space that was never seen is open; a lamp does
 /// not stand in its own way. Without params.shadows all bits are set. Records whose visibility changed join due.refine.
-void add_find_visibility(graph::Frame& frame, ReflectanceFrame& reflectance, DueRecords& due);
+void add_find_visibility(graph::FrameGraph& frame, ReflectanceFrame& reflectance, DueRecords& due);
 
 }  // namespace patina

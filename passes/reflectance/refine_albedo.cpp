@@ -4,7 +4,7 @@
 
 namespace patina {
 
-void add_refine_albedo(graph::Frame& frame, ReflectanceFrame& reflectance, const RecordList& refine) {
+void add_refine_albedo(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& refine) {
     const bool texel = reflectance.access.observations == MapAccess::kTexel;
     auto pass = frame.compute("reflectance.refine_albedo", texel ? spirv::refine_albedo_texel : spirv::refine_albedo);
     ObservationMapIds& ids = reflectance.records;

@@ -32,7 +32,7 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     return params;
 }
 
-RefinedReflectance add_update(graph::Frame& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
+RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
                               ObservationMapIds& records, const RecordList& changed, const ReflectanceAccess& access,
                               const gpu::ReflectanceParams& params, const ReflectanceSettings& settings) {
     ReflectanceStateIds state = models.state.import(frame);
@@ -60,7 +60,7 @@ ReflectanceAccess preferred_reflectance_access(const vulkan::DeviceCaps& caps, c
     return {preferred_map_access(caps, voxel_map), preferred_map_access(caps, observation_map)};
 }
 
-RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings) {
@@ -73,7 +73,7 @@ RefinedReflectance add_refine_reflectance(graph::Frame& frame, const Reflectance
                       settings);
 }
 
-RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings) {
     ReflectanceSettings all = settings;

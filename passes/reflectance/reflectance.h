@@ -1,8 +1,8 @@
 #pragma once
 
-#include "passes/model/lights.h"
-#include "passes/model/segment_materials.h"
 #include "passes/reflectance/reflectance_frame.h"
+#include "passes/state/lights.h"
+#include "passes/state/segment_materials.h"
 
 namespace patina {
 
@@ -40,13 +40,13 @@ struct RefinedReflectance {
 /// Brings visibility and albedo of what is due in this frame up to date: of the records in `changed` (what
 /// add_collect_observations returned), and of some others in turn. Versions of the visibility and albedo in
 /// `records` are replaced. Throws Error when a budget is 0.
-RefinedReflectance add_refine_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                           const VoxelMapIds& voxels, ObservationMapIds& records,
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings);
 
 /// The same for all records at once, as at the end of a reconstruction.
-RefinedReflectance add_refine_all_reflectance(graph::Frame& frame, const ReflectanceModels& models,
+RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings);
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/map_access.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/record_list.h"
-#include "passes/model/reflectance_state.h"
-#include "passes/model/voxel_map.h"
-#include "shared/reflectance.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/map_access.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/record_list.h"
+#include "passes/state/reflectance_state.h"
+#include "passes/state/voxel_map.h"
+#include "shared/reflectance/reflectance.h"
 
 namespace patina {
 

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
+graph::BufferId add_assign_labels(graph::FrameGraph& frame, SegmentTableIds& table, const FrameSegments& segments,
                                   const SegmentOverlaps& overlaps, KnownMaterials& materials, graph::BufferId params) {
     constexpr uint64_t kEntries = gpu::kMaxFrameSegments + 1;
     auto pass = frame.compute("segmentation.assign_labels", spirv::assign_labels);

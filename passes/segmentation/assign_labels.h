@@ -1,9 +1,9 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/segment_table.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/segmentation/frame_segments.h"
 #include "passes/segmentation/segment_overlaps.h"
+#include "passes/state/segment_table.h"
 
 namespace patina {
 
@@ -23,7 +23,7 @@ struct KnownMaterials {
 /// again. After Tateno, Tombari, Navab 2015, with the pair counts of Grinvald et al. 2019. `params` holds
 /// gpu::SegmentationParams. Replaces
 /// KnownMaterials::kd. Returns u32 per segment: its label; 0 where it has none.
-graph::BufferId add_assign_labels(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
+graph::BufferId add_assign_labels(graph::FrameGraph& frame, SegmentTableIds& table, const FrameSegments& segments,
                                   const SegmentOverlaps& overlaps, KnownMaterials& materials, graph::BufferId params);
 
 }  // namespace patina

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "engine/core/divided_up.h"
-#include "shared/contacts.h"
+#include "shared/segmentation/contacts.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
+ClaimedEdges add_claim_edges(graph::FrameGraph& frame, graph::ImageId component, graph::BufferId pixels,
                              const FrameSurface& surface, graph::ImageId normal,
                              const gpu::FrameSurfaceParams& params) {
     const Extent2D extent = frame.common_extent({component, surface.depth_m, surface.chroma, normal});
@@ -26,7 +26,7 @@ ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, grap
     return out;
 }
 
-graph::BufferId add_join_folds(graph::Frame& frame, const Contacts& contacts, graph::BufferId parents,
+graph::BufferId add_join_folds(graph::FrameGraph& frame, const Contacts& contacts, graph::BufferId parents,
                                graph::BufferId pixels, const FoldSettings& settings) {
     auto pass = frame.compute("segmentation.join_folds", spirv::join_folds);
     pass.read("Contacts", contacts.table).read("ContactCount", contacts.count);

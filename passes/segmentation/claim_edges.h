@@ -18,7 +18,7 @@ struct ClaimedEdges {
 /// Gives pixels that have depth but no component, or a small one, to one nearby: the one on whose tangent plane they
 /// lie, and of several planes that of their colour. Collects the colours on both sides of pixels between two planes.
 /// `component` and `pixels` as in Components. Throws Error when extents differ.
-ClaimedEdges add_claim_edges(graph::Frame& frame, graph::ImageId component, graph::BufferId pixels,
+ClaimedEdges add_claim_edges(graph::FrameGraph& frame, graph::ImageId component, graph::BufferId pixels,
                              const FrameSurface& surface, graph::ImageId normal, const gpu::FrameSurfaceParams& params);
 
 /// When two components that touch are one thing.
@@ -32,7 +32,7 @@ struct FoldSettings {
 /// Joins components across creases within one colour, as a figure has. `parents` and `pixels` as in Components;
 /// `pixels` of a component that was joined to another forwards to that one: gpu::kForwardedKey | key. If the table of
 /// contacts has overflowed nothing is joined. Returns the new version of `pixels`.
-graph::BufferId add_join_folds(graph::Frame& frame, const Contacts& contacts, graph::BufferId parents,
+graph::BufferId add_join_folds(graph::FrameGraph& frame, const Contacts& contacts, graph::BufferId parents,
                                graph::BufferId pixels, const FoldSettings& settings);
 
 }  // namespace patina

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-void add_clear_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels) {
+void add_clear_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels) {
     auto pass = frame.compute("segmentation.clear_labels", spirv::clear_labels);
     pass.read("NewSlots", ids.new_slots).read("Blocks", ids.blocks).read("Counters", ids.counters).push(map.grid());
     pass.specialise("kVoxelChunks", map.chunks());

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/label_map.h"
-#include "passes/model/voxel_map.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/label_map.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
 /// Clears the labels of the blocks that this frame's allocation assigned (fusion/allocate_blocks.h), as that clears
 /// their distances and colours.
-void add_clear_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels);
+void add_clear_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels);
 
 }  // namespace patina

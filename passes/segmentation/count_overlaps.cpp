@@ -13,7 +13,7 @@ uint32_t overlap_slots(Extent2D extent) {
     return static_cast<uint32_t>(std::bit_ceil(std::max<size_t>(extent.area() / kPixelsPerSlot, 1024)));
 }
 
-SegmentOverlaps add_count_overlaps(graph::Frame& frame, SegmentTableIds& table, const FrameSegments& segments,
+SegmentOverlaps add_count_overlaps(graph::FrameGraph& frame, SegmentTableIds& table, const FrameSegments& segments,
                                    graph::ImageId map_label, graph::ImageId position_m, graph::ImageId color_linear,
                                    graph::BufferId params) {
     const Extent2D extent = frame.shape(position_m).extent;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
-#include "shared/choose_depth.h"
+#include "shared/input/choose_depth.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -52,7 +52,7 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
     return params;
 }
 
-FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+FrameSurface add_choose_depth(graph::FrameGraph& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
                               const gpu::Camera& camera, const ColorPicture& color, uint32_t stride_px) {
     const Extent2D extent = frame.common_extent({model_position_m, reading_m});
     const Extent2D looked_at = sampled_extent(extent, stride_px);
@@ -71,7 +71,8 @@ FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position
     return surface;
 }
 
-graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params) {
+graph::ImageId add_fit_normals(graph::FrameGraph& frame, graph::ImageId depth_m,
+                               const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.fit_normals";
     const Extent2D extent = checked_extent(kPass, frame.shape(depth_m).extent, params);
     auto pass = frame.compute(kPass, spirv::fit_normals);
@@ -81,7 +82,7 @@ graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, cons
     return normal;
 }
 
-graph::ImageId add_find_edges(graph::Frame& frame, const FrameSurface& surface, graph::ImageId normal,
+graph::ImageId add_find_edges(graph::FrameGraph& frame, const FrameSurface& surface, graph::ImageId normal,
                               const gpu::FrameSurfaceParams& params) {
     constexpr const char* kPass = "segmentation.find_edges";
     const Extent2D extent =

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/segmentation/frame_segments.h"
-#include "shared/camera.h"
-#include "shared/find_edges.h"
+#include "shared/input/camera.h"
+#include "shared/segmentation/find_edges.h"
 
 namespace patina {
 
@@ -46,7 +46,7 @@ gpu::FrameSurfaceParams make_surface_params(const gpu::Camera& camera, const Edg
 /// What a depth camera sees of a frame.
 struct FrameSurface {
     graph::ImageId depth_m;  ///< W x H r32f; 0: nothing
-    graph::ImageId chroma;   ///< W x H r32ui: chromaticity, packed as shaders/lib/chroma.glsl says; 0: not known
+    graph::ImageId chroma;   ///< W x H r32ui: chromaticity, packed as shaders/lib/color/chroma.glsl says; 0: not known
 };
 
 /// A picture, and the camera that took it.
@@ -59,13 +59,13 @@ struct ColorPicture {
 /// depth, 0 where nothing was hit (add_raycast). `reading_m`: W x H r32f, smoothed, 0 where there is none
 /// (add_filter_depth); both seen by `camera`. Every `stride_px`-th pixel in x and y is looked at: images of W x H over
 /// that, rounded up, of which the other passes see no more. Throws Error when extents differ.
-FrameSurface add_choose_depth(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+FrameSurface add_choose_depth(graph::FrameGraph& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
                               const gpu::Camera& camera, const ColorPicture& color, uint32_t stride_px = 1);
 
 /// Normals from eight depths around each pixel of FrameSurface::depth_m. Returns W x H r32ui:
-/// unit normals in camera coordinates, towards the camera, packed as shaders/lib/frame_surface.glsl says; 0 where none
-/// is known. Throws Error when extents differ.
-graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
+/// unit normals in camera coordinates, towards the camera, packed as shaders/lib/segments/frame_surface.glsl says; 0
+/// where none is known. Throws Error when extents differ.
+graph::ImageId add_fit_normals(graph::FrameGraph& frame, graph::ImageId depth_m, const gpu::FrameSurfaceParams& params);
 
 /// Finds edges between the smooth, convex parts of a surface, with normals from add_fit_normals (phi_c of Tateno,
 /// Tombari and Navab 2015; their depth discontinuity is the jump between connected pixels, add_label_components, and
@@ -73,7 +73,7 @@ graph::ImageId add_fit_normals(graph::Frame& frame, graph::ImageId depth_m, cons
 /// each other, where both sides are parallel but one lies behind the other, where their colours differ, or where its
 /// own normal is not known. Returns W x H r32f: depth in metres, negative at edges, 0 where there is no surface. Throws
 /// Error when extents differ.
-graph::ImageId add_find_edges(graph::Frame& frame, const FrameSurface& surface, graph::ImageId normal,
+graph::ImageId add_find_edges(graph::FrameGraph& frame, const FrameSurface& surface, graph::ImageId normal,
                               const gpu::FrameSurfaceParams& params);
 
 }  // namespace patina

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "shared/frame_segments.h"
+#include "engine/graph/frame_graph.h"
+#include "shared/segmentation/frame_segments.h"
 
 namespace patina {
 

@@ -1,11 +1,11 @@
 #include "passes/segmentation/grow_labels.h"
 
-#include "shared/grow_pool.h"
+#include "shared/observation/grow_pool.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-void add_grow_labels(graph::Frame& frame, const SegmentTable& table, SegmentTableIds& ids, uint32_t before) {
+void add_grow_labels(graph::FrameGraph& frame, const SegmentTable& table, SegmentTableIds& ids, uint32_t before) {
     auto grow = frame.compute("segmentation.grow_labels", spirv::grow_labels);
     grow.push(gpu::GrowParams{before, table.capacity() - before});
     ids.free_labels = grow.modify("FreeLabels", ids.free_labels);

@@ -1,12 +1,13 @@
 #include "passes/segmentation/label_components.h"
 
 #include "passes/segmentation/number_segments.h"
-#include "shared/label_components.h"
+#include "shared/segmentation/label_components.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-Components add_label_components(graph::Frame& frame, graph::ImageId inner_depth_m, float jump_m, float jump_slope) {
+Components add_label_components(graph::FrameGraph& frame, graph::ImageId inner_depth_m, float jump_m,
+                                float jump_slope) {
     const Extent2D extent = frame.shape(inner_depth_m).extent;
     const uint32_t pixels = extent.width * extent.height, words = words_of(extent);
     const gpu::LabelComponentsParams params{

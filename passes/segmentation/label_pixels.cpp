@@ -1,12 +1,12 @@
 #include "passes/segmentation/label_pixels.h"
 
 #include "passes/segmentation/sample_labels.h"
-#include "shared/segments.h"
+#include "shared/segmentation/segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-graph::ImageId add_label_pixels(graph::Frame& frame, const FrameSegments& segments, graph::ImageId map_label,
+graph::ImageId add_label_pixels(graph::FrameGraph& frame, const FrameSegments& segments, graph::ImageId map_label,
                                 graph::BufferId parents, graph::BufferId segment_labels, Extent2D extent) {
     check_sampled("segmentation.label_pixels", "labels of the map", extent, frame.shape(map_label).extent,
                   gpu::kSampleStride);

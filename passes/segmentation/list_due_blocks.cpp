@@ -1,12 +1,12 @@
 #include "passes/segmentation/list_due_blocks.h"
 
-#include "shared/segments.h"
+#include "shared/segmentation/segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-DueBlocks add_list_due_blocks(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
-                              graph::BufferId visible, uint32_t stamp) {
+DueBlocks add_list_due_blocks(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
+                              LabelMapIds& labels, graph::BufferId visible, uint32_t stamp) {
     const uint64_t entries = 1 + map.capacity();
     DueBlocks out;
     out.list = frame.fill(frame.create_buffer("segmentation.due", entries * sizeof(uint32_t)), 0, 4);

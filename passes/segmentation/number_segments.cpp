@@ -1,7 +1,7 @@
 #include "passes/segmentation/number_segments.h"
 
 #include "engine/core/error.h"
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -12,12 +12,12 @@ constexpr uint64_t kGroupBytes = gpu::kKeysPerGroup * sizeof(uint32_t);
 
 }  // namespace
 
-graph::BufferId add_empty_keys(graph::Frame& frame, const std::string& name, uint32_t keys) {
+graph::BufferId add_empty_keys(graph::FrameGraph& frame, const std::string& name, uint32_t keys) {
     const uint64_t groups = (uint64_t{keys} + gpu::kKeysPerGroup - 1) / gpu::kKeysPerGroup;
     return frame.fill(frame.create_buffer(name, groups * kGroupBytes), 0);
 }
 
-FrameSegments add_number_segments(graph::Frame& frame, graph::BufferId pixels, graph::ImageId key,
+FrameSegments add_number_segments(graph::FrameGraph& frame, graph::BufferId pixels, graph::ImageId key,
                                   graph::ImageId depth_m, uint32_t min_pixels, uint32_t capacity, uint32_t stride) {
     if (min_pixels == 0) throw Error("the least size of a segment is 0 px, it must be 1 at least");
     if (capacity == 0 || capacity > gpu::kMaxFrameSegments) {

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-void add_relabel_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& records,
+void add_relabel_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& records,
                          const SegmentTableIds& table, graph::BufferId params) {
     auto pass = frame.compute("segmentation.relabel_records", spirv::relabel_records);
     pass.read("BlockKeys", records.block_keys).read("Counters", records.block_counters);

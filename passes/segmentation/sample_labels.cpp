@@ -2,7 +2,7 @@
 
 #include "engine/core/divided_up.h"
 #include "engine/core/error.h"
-#include "shared/segments.h"
+#include "shared/segmentation/segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -15,7 +15,7 @@ void check_sampled(const char* pass, const char* what, Extent2D full, Extent2D s
     }
 }
 
-graph::ImageId add_sample_labels(graph::Frame& frame, const VoxelMap& map, const LabelMapIds& labels,
+graph::ImageId add_sample_labels(graph::FrameGraph& frame, const VoxelMap& map, const LabelMapIds& labels,
                                  graph::BufferId parents, const SurfaceView& surface, MapAccess access,
                                  uint32_t stride) {
     const Extent2D full = frame.common_extent({surface.position_m, surface.normal});

@@ -5,7 +5,7 @@
 
 namespace patina {
 
-void add_sample_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
                         const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
                         uint32_t seed) {
     const uint32_t labels = samples.labels(), capacity = map.capacity_records();
@@ -34,8 +34,9 @@ void add_sample_records(graph::Frame& frame, const ObservationMap& map, const Ob
     collect.dispatch_covering(capacity);
 }
 
-graph::BufferId add_draw_records(graph::Frame& frame, const ObservationMapIds& records, const SegmentSamples& samples,
-                                 const SegmentSampleIds& ids, uint32_t draws, uint32_t seed) {
+graph::BufferId add_draw_records(graph::FrameGraph& frame, const ObservationMapIds& records,
+                                 const SegmentSamples& samples, const SegmentSampleIds& ids, uint32_t draws,
+                                 uint32_t seed) {
     if (draws == 0 || draws > gpu::kSegmentSamples / 2) {
         throw Error("the pass 'segmentation.draw_records' is to draw ", draws,
                     " records of a segment, it can draw 1 to ", gpu::kSegmentSamples / 2);

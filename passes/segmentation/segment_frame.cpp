@@ -2,7 +2,7 @@
 
 #include "passes/segmentation/label_components.h"
 #include "passes/segmentation/number_segments.h"
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -13,7 +13,7 @@ constexpr uint32_t kGivenIds = 65536;
 
 }  // namespace
 
-FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
+FrameSegments add_segment_frame(graph::FrameGraph& frame, graph::ImageId model_position_m, graph::ImageId reading_m,
                                 const gpu::Camera& camera, const ColorPicture& color, const SegmentSettings& settings) {
     const uint32_t stride = settings.stride_px;
     const gpu::FrameSurfaceParams params = make_surface_params(camera, settings.edges, settings.min_pixels, stride);
@@ -28,7 +28,8 @@ FrameSegments add_segment_frame(graph::Frame& frame, graph::ImageId model_positi
                                settings.capacity, stride);
 }
 
-FrameSegments add_given_segments(graph::Frame& frame, graph::ImageId given, graph::ImageId depth_m, uint32_t capacity) {
+FrameSegments add_given_segments(graph::FrameGraph& frame, graph::ImageId given, graph::ImageId depth_m,
+                                 uint32_t capacity) {
     const Extent2D extent = frame.common_extent({given, depth_m});
     auto count = frame.compute("segmentation.count_given", spirv::count_given);
     count.read("given", given).read("depth_m", depth_m);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 
 namespace patina {
 

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-void add_sweep_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+void add_sweep_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                       SegmentTableIds& table, graph::BufferId params) {
     auto pass = frame.compute("segmentation.sweep_labels", spirv::sweep_labels);
     pass.read("BlockKeys", ids.block_keys).read("Counters", ids.counters).read("Segmentation", params);

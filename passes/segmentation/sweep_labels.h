@@ -1,9 +1,9 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/label_map.h"
-#include "passes/model/segment_table.h"
-#include "passes/model/voxel_map.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/label_map.h"
+#include "passes/state/segment_table.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
@@ -11,7 +11,7 @@ namespace patina {
 /// gpu::kSweepEvery: replaces
 /// labels by their roots, those given up by 0, and counts the voxels of each (gpu::SegmentLabel::tally). `params` holds
 /// gpu::SegmentationParams.
-void add_sweep_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+void add_sweep_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                       SegmentTableIds& table, graph::BufferId params);
 
 }  // namespace patina

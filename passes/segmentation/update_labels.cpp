@@ -5,7 +5,7 @@
 
 namespace patina {
 
-void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+void add_update_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                        SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
                        const FrameSegments& segments, graph::BufferId segment_labels, MapAccess access) {
     const Extent2D extent = frame.common_extent({surface.position_m, surface.normal});

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/label_map.h"
-#include "passes/model/map_access.h"
-#include "passes/model/segment_table.h"
-#include "passes/model/voxel_map.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/segmentation/due_blocks.h"
 #include "passes/segmentation/frame_segments.h"
 #include "passes/segmentation/surface_view.h"
+#include "passes/state/label_map.h"
+#include "passes/state/map_access.h"
+#include "passes/state/segment_table.h"
+#include "passes/state/voxel_map.h"
 
 namespace patina {
 
@@ -19,7 +19,7 @@ namespace patina {
 /// contradicted; of one that has settled, a quarter of the voxels has its turn. Counts voxels and flips in
 /// gpu::SegmentCounters. Throws Error when images do not fit each other, and when `access` is MapAccess::kTexel and the
 /// map too large for it.
-void add_update_labels(graph::Frame& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
+void add_update_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids, LabelMapIds& labels,
                        SegmentTableIds& table, const SurfaceView& surface, const DueBlocks& due,
                        const FrameSegments& segments, graph::BufferId segment_labels, MapAccess access);
 

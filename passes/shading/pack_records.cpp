@@ -11,7 +11,7 @@ constexpr uint32_t kRecordsPerItem = 8;
 
 }  // namespace
 
-graph::BufferId add_pack_records(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+graph::BufferId add_pack_records(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
                                  const ReflectanceStateIds& state) {
     const uint32_t capacity = map.capacity_records();
     auto pass = frame.compute("shading.pack_records", spirv::pack_records);

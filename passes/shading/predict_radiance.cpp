@@ -1,7 +1,7 @@
 #include "passes/shading/predict_radiance.h"
 
 #include "passes/shading/pack_records.h"
-#include "shared/predict_radiance.h"
+#include "shared/shading/predict_radiance.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -11,10 +11,10 @@ namespace {
 /// The records, with those that a view can show by voxel.
 struct PackedRecords {
     graph::BufferId entries;  ///< u32 per observation voxel of each block of the voxel map: record id, or kNoRecord
-    graph::BufferId content;  ///< uvec4 per record: lib/packed_records.glsl
+    graph::BufferId content;  ///< uvec4 per record: lib/records/packed_records.glsl
 };
 
-graph::BufferId add_index_records(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+graph::BufferId add_index_records(graph::FrameGraph& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
                                   const ObservationMap& map, const ObservationMapIds& records,
                                   const PredictRadianceInputs& inputs) {
     auto pass = frame.compute("shading.index_records", spirv::index_records);
@@ -30,7 +30,7 @@ graph::BufferId add_index_records(graph::Frame& frame, const VoxelMap& voxel_map
 
 }  // namespace
 
-PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
                                      const ObservationMap& map, const ObservationMapIds& records,
                                      const ReflectanceStateIds& state, const PredictRadianceInputs& inputs) {
     const Extent2D extent = frame.common_extent({inputs.position_m, inputs.normal});

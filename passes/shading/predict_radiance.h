@@ -1,12 +1,12 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/map_access.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/reflectance_state.h"
-#include "passes/model/segment_materials.h"
-#include "passes/model/voxel_map.h"
-#include "shared/lights.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/map_access.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/reflectance_state.h"
+#include "passes/state/segment_materials.h"
+#include "passes/state/voxel_map.h"
+#include "shared/lighting/lights.h"
 
 namespace patina {
 
@@ -46,7 +46,7 @@ struct PredictedImages {
 /// record knows. How much of a light reaches the
 /// point is interpolated likewise; all of it, where none was marched yet. The segment is that of the nearest record
 /// with a label. Throws Error when the images differ in extent.
-PredictedImages add_predict_radiance(graph::Frame& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
+PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
                                      const ObservationMap& map, const ObservationMapIds& records,
                                      const ReflectanceStateIds& state, const PredictRadianceInputs& inputs);
 

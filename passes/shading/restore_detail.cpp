@@ -1,11 +1,11 @@
 #include "passes/shading/restore_detail.h"
 
-#include "shared/restore_detail.h"
+#include "shared/shading/restore_detail.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-PredictedImages add_restore_detail(graph::Frame& frame, const PredictedImages& predicted,
+PredictedImages add_restore_detail(graph::FrameGraph& frame, const PredictedImages& predicted,
                                    const RestoreDetailInputs& inputs) {
     const Extent2D extent =
         frame.common_extent({inputs.position_m, inputs.normal, inputs.color, predicted.kd, predicted.rgb});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 #include "passes/shading/predict_radiance.h"
 
 namespace patina {
@@ -22,7 +22,7 @@ struct RestoreDetailInputs {
 /// too little light, or where no colour was fused, kd stays; so do label, ks_alpha and light. Contrast no stronger than
 /// what shading and highlights may leave in the fused colours counts little. Returns the predicted images with kd and
 /// rgb replaced. Throws Error when extents differ.
-PredictedImages add_restore_detail(graph::Frame& frame, const PredictedImages& predicted,
+PredictedImages add_restore_detail(graph::FrameGraph& frame, const PredictedImages& predicted,
                                    const RestoreDetailInputs& inputs);
 
 }  // namespace patina

@@ -4,8 +4,8 @@
 
 namespace patina {
 
-graph::BufferId add_sample_reflectance(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                       const SampleReflectanceInputs& inputs) {
+graph::BufferId add_sample_reflectance(graph::FrameGraph& frame, const ObservationMap& map,
+                                       const ObservationMapIds& records, const SampleReflectanceInputs& inputs) {
     auto pass = frame.compute("shading.sample_reflectance", spirv::sample_reflectance);
     pass.read("Keys", records.keys).read("Blocks", records.blocks).read("RecordTable", records.record_table);
     pass.read("Packed", inputs.packed).read("Records", records.records).read("Segments", inputs.segments);

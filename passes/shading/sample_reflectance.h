@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "shared/sample_reflectance.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "shared/shading/sample_reflectance.h"
 
 namespace patina {
 
@@ -21,7 +21,7 @@ struct SampleReflectanceInputs {
 /// The diffuse albedo and the segment of each point by the rules of add_predict_radiance, for points that no camera
 /// need see, such as a mesh's vertices. Returns gpu::SampledReflectance[points]. A point without a normal is known to
 /// no record.
-graph::BufferId add_sample_reflectance(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
-                                       const SampleReflectanceInputs& inputs);
+graph::BufferId add_sample_reflectance(graph::FrameGraph& frame, const ObservationMap& map,
+                                       const ObservationMapIds& records, const SampleReflectanceInputs& inputs);
 
 }  // namespace patina

@@ -4,7 +4,7 @@
 
 namespace patina {
 
-ChosenSegments add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
+ChosenSegments add_choose_segments(graph::FrameGraph& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
                                    SpecularMaterialIds& ids) {
     const gpu::ChooseSegmentsParams params{inputs.stamp, inputs.label_count, inputs.materials, capacity};
     auto count = frame.compute("specular.count_changes", spirv::count_changes);
@@ -25,7 +25,8 @@ ChosenSegments add_choose_segments(graph::Frame& frame, const ChooseSegmentsInpu
     return {{all, capacity}, {doubtful, capacity}};
 }
 
-void add_adopt_estimates(graph::Frame& frame, const SegmentBatch& batch, uint32_t materials, SpecularMaterialIds& ids) {
+void add_adopt_estimates(graph::FrameGraph& frame, const SegmentBatch& batch, uint32_t materials,
+                         SpecularMaterialIds& ids) {
     auto pass = frame.compute("specular.adopt_estimates", spirv::adopt_estimates);
     pass.read("Batch", batch.list).read("Estimates", ids.estimates.materials);
     pass.push(gpu::ChooseSegmentsParams{0, 0, materials, batch.capacity});

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/record_list.h"
-#include "passes/model/segment_batch.h"
-#include "passes/model/specular_estimates.h"
-#include "passes/model/ward_fits.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/record_list.h"
+#include "passes/state/segment_batch.h"
+#include "passes/state/specular_estimates.h"
+#include "passes/state/ward_fits.h"
 
 namespace patina {
 
@@ -34,10 +34,11 @@ struct ChosenSegments {
 /// The segments that a frame estimates, at most `capacity`: by turns the one of which most observations changed since
 /// it was estimated last, and the one that has waited longest, so that none starves. Only segments that keep samples
 /// and changed at all are taken. What is known of labels that were handed out anew since is forgotten.
-ChosenSegments add_choose_segments(graph::Frame& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
+ChosenSegments add_choose_segments(graph::FrameGraph& frame, const ChooseSegmentsInputs& inputs, uint32_t capacity,
                                    SpecularMaterialIds& ids);
 
 /// The network's estimates of a batch's segments become their materials as they are.
-void add_adopt_estimates(graph::Frame& frame, const SegmentBatch& batch, uint32_t materials, SpecularMaterialIds& ids);
+void add_adopt_estimates(graph::FrameGraph& frame, const SegmentBatch& batch, uint32_t materials,
+                         SpecularMaterialIds& ids);
 
 }  // namespace patina

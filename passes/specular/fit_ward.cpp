@@ -10,8 +10,8 @@ static_assert(gpu::kFitAlphas % gpu::kFitAlphasPerGroup == 0 && gpu::kFitAlphas 
 static_assert(gpu::kFitAlphasPerGroup % 4 == 0, "four are added up at once");
 static_assert(gpu::kFitGroup == gpu::kBatchGroup && gpu::kSegmentSamples % gpu::kFitGroup == 0);
 
-void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,
-                  WardFitIds& fits, graph::BufferId& segment_materials) {
+void add_fit_ward(graph::FrameGraph& frame, const FitWardInputs& inputs, const SegmentBatch& batch,
+                  const WardFits& table, WardFitIds& fits, graph::BufferId& segment_materials) {
     const ObservationMapIds& records = inputs.records;
     const gpu::FitParams params{inputs.map.grid(),
                                 inputs.map.edge_shift(),

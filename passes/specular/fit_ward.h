@@ -1,11 +1,11 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/segment_batch.h"
-#include "passes/model/segment_samples.h"
-#include "passes/model/specular_estimates.h"
-#include "passes/model/ward_fits.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/segment_batch.h"
+#include "passes/state/segment_samples.h"
+#include "passes/state/specular_estimates.h"
+#include "passes/state/ward_fits.h"
 
 namespace patina {
 
@@ -33,7 +33,7 @@ struct FitWardInputs {
 /// blur^2 in place of alpha^2 (Toksvig 2005). Sums are kept by label, `memory` of them from one fit to the next. Where
 /// observations do not tell, priors hold: ks 0.04, and the network's alpha, else 0.2. `fits` is brought up to date, and
 /// `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the material does.
-void add_fit_ward(graph::Frame& frame, const FitWardInputs& inputs, const SegmentBatch& batch, const WardFits& table,
-                  WardFitIds& fits, graph::BufferId& segment_materials);
+void add_fit_ward(graph::FrameGraph& frame, const FitWardInputs& inputs, const SegmentBatch& batch,
+                  const WardFits& table, WardFitIds& fits, graph::BufferId& segment_materials);
 
 }  // namespace patina

@@ -5,7 +5,7 @@
 
 namespace patina {
 
-void add_fuse_estimates(graph::Frame& frame, const SegmentBatch& batch, graph::BufferId estimates,
+void add_fuse_estimates(graph::FrameGraph& frame, const SegmentBatch& batch, graph::BufferId estimates,
                         graph::BufferId drawn, const SpecularEstimates& table, SpecularEstimateIds& ids, float weight) {
     if (!(weight > 0)) {
         throw Error("the pass 'specular.fuse_estimates' got the weight ", weight, ", it must be above 0");

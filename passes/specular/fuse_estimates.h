@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/segment_batch.h"
-#include "passes/model/specular_estimates.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/segment_batch.h"
+#include "passes/state/specular_estimates.h"
 
 namespace patina {
 
@@ -12,7 +12,7 @@ namespace patina {
 /// add_run_network returns it for a network of 7 outputs; `drawn`: as add_hemi_images returns it. Segments of which no
 /// voxel was drawn, estimates that are not finite, and labels beyond the table change nothing. Throws Error when
 /// `weight` is not above 0.
-void add_fuse_estimates(graph::Frame& frame, const SegmentBatch& batch, graph::BufferId estimates,
+void add_fuse_estimates(graph::FrameGraph& frame, const SegmentBatch& batch, graph::BufferId estimates,
                         graph::BufferId drawn, const SpecularEstimates& table, SpecularEstimateIds& ids,
                         float weight = 1);
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "shared/hemi_images.h"
+#include "shared/specular/hemi_images.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -12,7 +12,7 @@ static_assert(gpu::kHemiGroup * gpu::kHemiPixelsPerInvocation >= gpu::kHemiPixel
 static_assert(gpu::kParabolicMap == static_cast<uint32_t>(HemisphereMap::kParabolic));
 static_assert(gpu::kOrthogonalMap == static_cast<uint32_t>(HemisphereMap::kOrthogonal));
 
-HemiImages add_hemi_images(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+HemiImages add_hemi_images(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
                            const SegmentSamples& samples, const SegmentSampleIds& sample_ids, const SegmentBatch& batch,
                            HemisphereMap hemisphere_map, uint32_t seed) {
     const gpu::HemiParams params{seed, batch.capacity, samples.labels(), static_cast<uint32_t>(hemisphere_map),

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/network.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/segment_batch.h"
-#include "passes/model/segment_samples.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/network.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/segment_batch.h"
+#include "passes/state/segment_samples.h"
 
 namespace patina {
 
@@ -20,7 +20,7 @@ struct HemiImages {
 /// its normal and mapped to a disk that just fills the image; each pixel has the colour of the nearest observation. The
 /// same seed draws the same voxels. Images of a segment without such a record are 0; undefined beyond the batch's
 /// segments.
-HemiImages add_hemi_images(graph::Frame& frame, const ObservationMap& map, const ObservationMapIds& records,
+HemiImages add_hemi_images(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
                            const SegmentSamples& samples, const SegmentSampleIds& sample_ids, const SegmentBatch& batch,
                            HemisphereMap hemisphere_map, uint32_t seed);
 

@@ -4,7 +4,7 @@
 
 #include "engine/core/divided_up.h"
 #include "engine/core/error.h"
-#include "shared/network.h"
+#include "shared/specular/network.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -159,7 +159,7 @@ NetworkVariant network_variant(const vulkan::DeviceCaps& caps, const Network& ne
     return variant;
 }
 
-graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
+graph::BufferId add_run_network(graph::FrameGraph& frame, Network& network, graph::BufferId images,
                                 const SegmentBatch& batch, const NetworkVariant& variant) {
     const std::vector<Step> steps = plan(network, batch.capacity, variant.least_invocations);
     check_images(network, batch.capacity, frame.bytes(images));

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/graph/frame.h"
-#include "passes/model/network.h"
-#include "passes/model/segment_batch.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/network.h"
+#include "passes/state/segment_batch.h"
 
 namespace patina {
 
@@ -35,7 +35,7 @@ NetworkVariant network_variant(const vulkan::DeviceCaps& caps, const Network& ne
 /// activations, vec4 [segment][sample][y][x][quad] as far as they are there, in every format; undefined beyond the
 /// segments of the batch. The device has to have the variant's format. Throws Error when `images` or the batch's
 /// capacity do not fit, or memory for the weights runs out.
-graph::BufferId add_run_network(graph::Frame& frame, Network& network, graph::BufferId images,
+graph::BufferId add_run_network(graph::FrameGraph& frame, Network& network, graph::BufferId images,
                                 const SegmentBatch& batch, const NetworkVariant& variant);
 
 }  // namespace patina

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/core/error.h"
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 
 namespace patina::surface {
 

@@ -66,7 +66,7 @@ size_t batch_length(std::span<const SurfaceBlock> blocks, uint32_t limit) {
 
 /// Reads `count` elements of 12 bytes, or one that append_to() leaves out: a batch can lack vertices or triangles, and
 /// no copy is empty.
-graph::Readback read_elements(graph::Frame& frame, graph::BufferId id, uint64_t first, uint64_t count) {
+graph::Readback read_elements(graph::FrameGraph& frame, graph::BufferId id, uint64_t first, uint64_t count) {
     static_assert(sizeof(glm::vec3) == sizeof(Triangle));
     return frame.read_back(id, first * sizeof(Triangle), std::max<uint64_t>(count, 1) * sizeof(Triangle));
 }
@@ -106,7 +106,7 @@ class Extraction {
     uint32_t count_block_ids();
     void create_arrays();
     std::vector<SurfaceBlock> count_elements();
-    PendingPart write_elements(graph::Frame& frame, std::span<const SurfaceBlock> blocks,
+    PendingPart write_elements(graph::FrameGraph& frame, std::span<const SurfaceBlock> blocks,
                                std::span<const gpu::BlockElements> first);
     void append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first);
 
@@ -140,7 +140,7 @@ Extraction::Extraction(graph::Runner& runner, const VoxelMap& map, const Surface
       batch_elements_(batch_limit(runner.device().caps(), options)) {}
 
 uint32_t Extraction::count_block_ids() {
-    graph::Frame frame = runner_.begin();
+    graph::FrameGraph frame = runner_.begin();
     const graph::Readback counters = frame.read_back(map_.import(frame).counters);
     runner_.submit(std::move(frame));
     runner_.wait();
@@ -159,7 +159,7 @@ void Extraction::create_arrays() {
 }
 
 std::vector<SurfaceBlock> Extraction::count_elements() {
-    graph::Frame frame = runner_.begin();
+    graph::FrameGraph frame = runner_.begin();
     const VoxelMapIds ids = map_.import(frame);
     const uint64_t blocks = no_block_ + uint64_t{1};
 
@@ -197,7 +197,7 @@ std::vector<SurfaceBlock> Extraction::count_elements() {
     return sort_surface_blocks(read_keys.as<uint32_t>(), read_counts.as<gpu::BlockElements>());
 }
 
-PendingPart Extraction::write_elements(graph::Frame& frame, std::span<const SurfaceBlock> blocks,
+PendingPart Extraction::write_elements(graph::FrameGraph& frame, std::span<const SurfaceBlock> blocks,
                                        std::span<const gpu::BlockElements> first) {
     const gpu::BlockElements batch_first = blocks.front().first;
     const auto [vertex_count, triangle_count] = total_of(blocks);
@@ -239,7 +239,7 @@ PendingPart Extraction::write_elements(graph::Frame& frame, std::span<const Surf
 }
 
 void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first) {
-    graph::Frame frame = runner_.begin();
+    graph::FrameGraph frame = runner_.begin();
     const PendingPart part = write_elements(frame, blocks, first);
     runner_.submit(std::move(frame));
     runner_.wait();

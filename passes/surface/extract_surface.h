@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "engine/graph/runner.h"
-#include "passes/model/map_access.h"
-#include "passes/model/voxel_map.h"
-#include "passes/surface/mesh.h"
-#include "shared/extract_surface.h"
+#include "passes/state/map_access.h"
+#include "passes/state/voxel_map.h"
+#include "patina/scene.h"
+#include "shared/surface/extract_surface.h"
 
 namespace patina {
 

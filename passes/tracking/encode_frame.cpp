@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "engine/core/error.h"
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -14,7 +14,7 @@ constexpr Extent2D kSmall{gpu::kSmallWidth, gpu::kSmallHeight};
 constexpr float kSigma_px = 2.5f;
 constexpr int kRadius_px = 7;  // 2.8 sigma
 
-graph::ImageId add_smooth(graph::Frame& frame, graph::ImageId boxes) {
+graph::ImageId add_smooth(graph::FrameGraph& frame, graph::ImageId boxes) {
     auto pass = frame.compute("tracking.smooth_frame", spirv::smooth_frame);
     pass.read("boxes", boxes);
     const graph::ImageId smoothed = pass.create("smoothed", {kSmall, vulkan::Format::kRgba32f});
@@ -25,7 +25,7 @@ graph::ImageId add_smooth(graph::Frame& frame, graph::ImageId boxes) {
 
 }  // namespace
 
-graph::ImageId add_shrink_frame(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color) {
+graph::ImageId add_shrink_frame(graph::FrameGraph& frame, graph::ImageId depth_m, graph::ImageId color) {
     const Extent2D depth_px = frame.shape(depth_m).extent, color_px = frame.shape(color).extent;
     auto pass = frame.compute("tracking.shrink_frame", spirv::shrink_frame);
     pass.read("depth_m", depth_m).read("color", color);
@@ -35,7 +35,7 @@ graph::ImageId add_shrink_frame(graph::Frame& frame, graph::ImageId depth_m, gra
     return add_smooth(frame, boxes);
 }
 
-graph::BufferId add_encode_frame(graph::Frame& frame, graph::ImageId small, graph::BufferId ferns) {
+graph::BufferId add_encode_frame(graph::FrameGraph& frame, graph::ImageId small, graph::BufferId ferns) {
     if (const Extent2D extent = frame.shape(small).extent; extent != kSmall) {
         throw Error("the pass 'tracking.encode_ferns' got a picture of ", extent, " pixels, it must be ", kSmall);
     }

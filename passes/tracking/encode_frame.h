@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 
 namespace patina {
 
@@ -9,10 +9,10 @@ namespace patina {
 /// valid, then these are smoothed by a Gaussian of sigma 2.5 px (Glocker et al. 2015) over what is valid, where that is
 /// half of the weight. `depth_m`: r32f, 0 where there is no reading. `color`: rgba16f (add_convert_color), clipped
 /// pixels count. Their extents may differ, and may be below 40 x 30.
-graph::ImageId add_shrink_frame(graph::Frame& frame, graph::ImageId depth_m, graph::ImageId color);
+graph::ImageId add_shrink_frame(graph::FrameGraph& frame, graph::ImageId depth_m, graph::ImageId color);
 
-/// The fern code of a frame: u32[gpu::kFernWords], four ferns a word (shared/keyframes.h). `small` comes from
+/// The fern code of a frame: u32[gpu::kFernWords], four ferns a word (shared/tracking/keyframes.h). `small` comes from
 /// add_shrink_frame; `ferns`: gpu::Fern[gpu::kFerns]. Throws Error when `small` is not 40 x 30 pixels.
-graph::BufferId add_encode_frame(graph::Frame& frame, graph::ImageId small, graph::BufferId ferns);
+graph::BufferId add_encode_frame(graph::FrameGraph& frame, graph::ImageId small, graph::BufferId ferns);
 
 }  // namespace patina

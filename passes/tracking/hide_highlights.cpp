@@ -1,11 +1,11 @@
 #include "passes/tracking/hide_highlights.h"
 
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
-graph::ImageId add_hide_highlights(graph::Frame& frame, const HighlightInputs& inputs, float most_share) {
+graph::ImageId add_hide_highlights(graph::FrameGraph& frame, const HighlightInputs& inputs, float most_share) {
     const Extent2D extent = frame.common_extent({inputs.color_linear, inputs.kd, inputs.light, inputs.rgb});
     auto pass = frame.compute("tracking.hide_highlights", spirv::hide_highlights);
     pass.read("color_linear", inputs.color_linear).read("kd", inputs.kd);

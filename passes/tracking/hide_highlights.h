@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
 
 namespace patina {
 
@@ -15,6 +15,6 @@ struct HighlightInputs {
 /// The model's colours without those pixels whose re-rendering is specular by more than `most_share` of its luminance:
 /// highlights stay behind when the camera moves, and would pull it along. Where no material is known, colours stay.
 /// Returns W x H rgba16f, all 0 where there is no colour. Throws Error when images differ in extent.
-graph::ImageId add_hide_highlights(graph::Frame& frame, const HighlightInputs& inputs, float most_share = 0.15f);
+graph::ImageId add_hide_highlights(graph::FrameGraph& frame, const HighlightInputs& inputs, float most_share = 0.15f);
 
 }  // namespace patina

@@ -7,7 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "engine/core/error.h"
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 
 namespace patina {
 

@@ -2,16 +2,14 @@
 
 #include <string>
 
-#include "engine/core/camera.h"
+#include "patina/camera.h"
+#include "patina/reconstruction.h"
 
 namespace patina {
 
 namespace gpu {
 struct TrackState;
 }
-
-/// How sure a frame's pose is. Only frames that track are fused.
-enum class TrackingState : uint8_t { kTracking, kWeak, kLost };
 
 const char* name_of(TrackingState state);
 

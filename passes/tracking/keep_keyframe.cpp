@@ -6,8 +6,8 @@
 
 namespace patina {
 
-void add_keep_keyframe(graph::Frame& frame, const KeyframeStore& store, KeyframeStoreIds& ids, graph::BufferId code,
-                       const KeyframeMatches& matches, graph::BufferId candidate) {
+void add_keep_keyframe(graph::FrameGraph& frame, const KeyframeStore& store, KeyframeStoreIds& ids,
+                       graph::BufferId code, const KeyframeMatches& matches, graph::BufferId candidate) {
     auto pass = frame.compute("tracking.keep_keyframe", spirv::keep_keyframe);
     pass.read("Code", code).read("Candidate", candidate).read("Matches", matches.matches);
     const KeyframeStoreSettings& settings = store.settings();

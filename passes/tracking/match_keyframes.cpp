@@ -12,7 +12,7 @@ constexpr uint32_t kLeastFerns = gpu::kFerns / 4;
 
 }  // namespace
 
-KeyframeMatches add_match_keyframes(graph::Frame& frame, const KeyframeStore& store, const KeyframeStoreIds& ids,
+KeyframeMatches add_match_keyframes(graph::FrameGraph& frame, const KeyframeStore& store, const KeyframeStoreIds& ids,
                                     graph::BufferId code, uint32_t count, KeyframeTests tests) {
     if (count == 0 || count > gpu::kMostMatches) {
         throw Error("the pass 'tracking.rank_keyframes' is asked for ", count, " keyframes, it must be 1 to ",

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "passes/model/keyframe_store.h"
+#include "passes/state/keyframe_store.h"
 
 namespace patina {
 
@@ -20,7 +20,7 @@ struct KeyframeMatches {
 /// count where both frames know the fern's colour, so that a frame without colours is compared by depth alone. Returns
 /// the `count` least dissimilar ones; slots are gpu::kNoKeyframe where the store has fewer. Throws Error unless count
 /// is 1 to gpu::kMostMatches.
-KeyframeMatches add_match_keyframes(graph::Frame& frame, const KeyframeStore& store, const KeyframeStoreIds& ids,
+KeyframeMatches add_match_keyframes(graph::FrameGraph& frame, const KeyframeStore& store, const KeyframeStoreIds& ids,
                                     graph::BufferId code, uint32_t count, KeyframeTests tests = KeyframeTests::kAll);
 
 }  // namespace patina

@@ -3,16 +3,11 @@
 #include <optional>
 #include <vector>
 
-#include "engine/core/camera.h"
+#include "patina/frame.h"
 
 namespace patina {
 
-/// When a frame was taken, and, where something else than tracking says so, from where: poses of the same camera in any
-/// world, of which the motion from frame to frame is used.
-struct FrameTime {
-    double timestamp_s = 0;
-    std::optional<RigidTransform> prior{};
-};
+;
 
 /// Expects a camera to move on as it did before, a little slower, and after a loss as it did before that.
 class MotionModel {

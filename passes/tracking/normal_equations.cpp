@@ -2,7 +2,7 @@
 
 #include "engine/core/divided_up.h"
 #include "engine/core/error.h"
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -30,7 +30,7 @@ uint32_t rows_of(uint32_t height) {
 
 }  // namespace
 
-NormalEquations add_normal_equations(graph::Frame& frame, const TrackLevel& own, const TrackLevel& model,
+NormalEquations add_normal_equations(graph::FrameGraph& frame, const TrackLevel& own, const TrackLevel& model,
                                      graph::BufferId state, const TrackErrors& errors, uint32_t coarser) {
     check(errors);
     const auto widened = static_cast<float>(1u << coarser);
@@ -62,7 +62,7 @@ NormalEquations add_normal_equations(graph::Frame& frame, const TrackLevel& own,
     return equations;
 }
 
-graph::BufferId add_solve_motion(graph::Frame& frame, const NormalEquations& equations, graph::BufferId state,
+graph::BufferId add_solve_motion(graph::FrameGraph& frame, const NormalEquations& equations, graph::BufferId state,
                                  float held_share, float least_pairs) {
     auto pass = frame.compute("tracking.solve_motion", spirv::solve_motion);
     pass.read("Sums", equations.sums);

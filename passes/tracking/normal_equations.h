@@ -25,13 +25,13 @@ struct NormalEquations {
 
 /// Compares one level of a frame with the same one of the model under the pose in `state` (gpu::TrackState). `coarser`
 /// says how many levels are finer than this one. Throws Error when a setting is not positive.
-NormalEquations add_normal_equations(graph::Frame& frame, const TrackLevel& own, const TrackLevel& model,
+NormalEquations add_normal_equations(graph::FrameGraph& frame, const TrackLevel& own, const TrackLevel& model,
                                      graph::BufferId state, const TrackErrors& errors, uint32_t coarser);
 
 /// Moves the pose in `state` by the solution of the equations. Directions whose eigenvalue is less than `held_share`
 /// of the mean weight are held. With pairs of less weight than `least_pairs` the pose stays and `solutions` becomes 0.
 /// Returns the next version of the state.
-graph::BufferId add_solve_motion(graph::Frame& frame, const NormalEquations& equations, graph::BufferId state,
+graph::BufferId add_solve_motion(graph::FrameGraph& frame, const NormalEquations& equations, graph::BufferId state,
                                  float held_share, float least_pairs);
 
 }  // namespace patina

@@ -3,14 +3,14 @@
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
 #include "passes/tracking/no_color.h"
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 #include "spirv/shaders.h"
 
 namespace patina {
 
 namespace {
 
-void check_extent(const graph::Frame& frame, const char* pass, graph::ImageId image, const Intrinsics& camera) {
+void check_extent(const graph::FrameGraph& frame, const char* pass, graph::ImageId image, const Intrinsics& camera) {
     const Extent2D extent = frame.shape(image).extent;
     if (extent != camera.extent) {
         throw Error("the pass '", pass, "' got an image of ", extent, " pixels, its camera has ", camera.extent);
@@ -26,7 +26,7 @@ Intrinsics checked_half(const char* pass, const Intrinsics& camera) {
 
 }  // namespace
 
-TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Intrinsics& camera,
+TrackLevel add_pack_frame(graph::FrameGraph& frame, graph::ImageId depth_m, const Intrinsics& camera,
                           const std::optional<TrackColor>& color, float max_depth_m, bool half, const TrackJump& jump) {
     constexpr const char* kPass = "tracking.pack_frame";
     check_extent(frame, kPass, depth_m, camera);
@@ -54,7 +54,7 @@ TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Int
     return {packed, result};
 }
 
-TrackLevel add_halve_frame(graph::Frame& frame, const TrackLevel& fine, const TrackJump& jump) {
+TrackLevel add_halve_frame(graph::FrameGraph& frame, const TrackLevel& fine, const TrackJump& jump) {
     constexpr const char* kPass = "tracking.halve_frame";
     const Intrinsics camera = checked_half(kPass, fine.camera);
     auto pass = frame.compute(kPass, spirv::halve_frame);

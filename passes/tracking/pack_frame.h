@@ -18,12 +18,12 @@ struct TrackColor {
 /// colours there are no shades. Returns W x H r32ui; with `half` W / 2 x H / 2, means of 2 x 2 readings as
 /// add_halve_frame takes them, with the shade at the mean point. Throws Error when an image is not its camera's size,
 /// or the result would be empty.
-TrackLevel add_pack_frame(graph::Frame& frame, graph::ImageId depth_m, const Intrinsics& camera,
+TrackLevel add_pack_frame(graph::FrameGraph& frame, graph::ImageId depth_m, const Intrinsics& camera,
                           const std::optional<TrackColor>& color, float max_depth_m, bool half = false,
                           const TrackJump& jump = {});
 
 /// The next coarser level: means of 2 x 2 readings, none where two are missing or lie on different surfaces. Throws
 /// Error when the result would be empty.
-TrackLevel add_halve_frame(graph::Frame& frame, const TrackLevel& fine, const TrackJump& jump = {});
+TrackLevel add_halve_frame(graph::FrameGraph& frame, const TrackLevel& fine, const TrackJump& jump = {});
 
 }  // namespace patina

@@ -2,7 +2,7 @@
 
 #include "engine/core/error.h"
 #include "passes/tracking/no_color.h"
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -19,7 +19,7 @@ void check_half(const char* pass, Extent2D whole, Extent2D half) {
 
 }  // namespace
 
-graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, graph::ImageId target,
+graph::ImageId add_pack_model(graph::FrameGraph& frame, const TrackModelInputs& inputs, graph::ImageId target,
                               const TrackJump& jump) {
     const Extent2D whole = frame.common_extent({inputs.surface.position_m, inputs.surface.normal});
     const Extent2D extent = frame.shape(target).extent;
@@ -41,7 +41,8 @@ graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& input
     return packed;
 }
 
-graph::ImageId add_halve_model(graph::Frame& frame, graph::ImageId fine, graph::ImageId target, const TrackJump& jump) {
+graph::ImageId add_halve_model(graph::FrameGraph& frame, graph::ImageId fine, graph::ImageId target,
+                               const TrackJump& jump) {
     constexpr const char* kPass = "tracking.halve_model";
     const Extent2D extent = frame.shape(target).extent;
     check_half(kPass, frame.shape(fine).extent, extent);

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "passes/model/raycast_images.h"
+#include "passes/state/raycast_images.h"
 #include "passes/tracking/track_level.h"
-#include "shared/camera.h"
+#include "shared/input/camera.h"
 
 namespace patina {
 
@@ -19,13 +19,13 @@ struct TrackModelInputs {
 /// shade changes per pixel. Surfaces seen at more than 80 degrees are left out; without colours there are no shades.
 /// Into a target of W / 2 x H / 2 go the means that add_halve_model takes. Returns the written version. Throws Error
 /// when images are of other extents.
-graph::ImageId add_pack_model(graph::Frame& frame, const TrackModelInputs& inputs, graph::ImageId target,
+graph::ImageId add_pack_model(graph::FrameGraph& frame, const TrackModelInputs& inputs, graph::ImageId target,
                               const TrackJump& jump = {});
 
 /// The next coarser level into `target`, half as wide and high: means of 2 x 2 pixels, nothing where one of them has
 /// nothing or they lie on different surfaces. Returns the written version. Throws Error when `target` is of another
 /// size.
-graph::ImageId add_halve_model(graph::Frame& frame, graph::ImageId fine, graph::ImageId target,
+graph::ImageId add_halve_model(graph::FrameGraph& frame, graph::ImageId fine, graph::ImageId target,
                                const TrackJump& jump = {});
 
 }  // namespace patina

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "engine/core/camera.h"
-#include "engine/graph/frame.h"
+#include "engine/graph/frame_graph.h"
+#include "patina/camera.h"
 
 namespace patina {
 
-/// One level of a pyramid of the frame (r32ui) or of the model (rgba32ui), packed as shaders/lib/track_pixels.glsl
-/// says, and the pinhole camera that would have taken it.
+/// One level of a pyramid of the frame (r32ui) or of the model (rgba32ui), packed as
+/// shaders/lib/tracking/track_pixels.glsl says, and the pinhole camera that would have taken it.
 struct TrackLevel {
     graph::ImageId pixels;
     Intrinsics camera;

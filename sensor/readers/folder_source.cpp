@@ -2,7 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sensor/picture_file.h"
+#include "engine/core/error.h"
+#include "sensor/files/picture_file.h"
 
 namespace patina::sensor {
 

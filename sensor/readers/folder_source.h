@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "patina/source.h"
 #include "sensor/pose.h"
-#include "sensor/source.h"
 
 namespace patina::sensor {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "engine/core/input_file.h"
-#include "sensor/json_file.h"
-#include "sensor/picture_file.h"
+#include "sensor/files/json_file.h"
+#include "sensor/files/picture_file.h"
+#include "sensor/files/text_file.h"
 #include "sensor/pose.h"
 #include "sensor/readers/folder_source.h"
-#include "sensor/text_file.h"
 
 namespace patina::sensor {
 namespace {
@@ -92,16 +92,17 @@ void read_indexed_lines(const fs::path& file, std::string_view columns, uint32_t
 }
 
 std::vector<double> read_timestamps(const fs::path& file, const SequenceInfo& info) {
-    std::vector<double> timestamps_s(info.frames, std::nan(""));
+    const uint32_t frames = *info.frames;
+    std::vector<double> timestamps_s(frames, std::nan(""));
     if (!path_exists(file)) {
-        for (uint32_t i = 0; i < info.frames; ++i) timestamps_s[i] = i / info.fps;
+        for (uint32_t i = 0; i < frames; ++i) timestamps_s[i] = i / info.fps;
         return timestamps_s;
     }
-    read_indexed_lines(file, "index timestamp", info.frames,
+    read_indexed_lines(file, "index timestamp", frames,
                        [&](uint32_t index, const TextLine& line) { timestamps_s[index] = line.finite(1); });
     const auto missing = std::find_if(timestamps_s.begin(), timestamps_s.end(), [](double t) { return std::isnan(t); });
     if (missing != timestamps_s.end()) {
-        throw Error(file.string(), " has no line for frame ", missing - timestamps_s.begin(), " of ", info.frames);
+        throw Error(file.string(), " has no line for frame ", missing - timestamps_s.begin(), " of ", frames);
     }
     return timestamps_s;
 }
@@ -163,11 +164,11 @@ class NativeSource : public FolderSource {
     explicit NativeSource(const fs::path& folder) : folder_(folder) {
         const SequenceFile sequence = read_sequence_file(folder / "sequence.json", folder_name(folder));
         info_ = sequence.info;
-        expect_pictures_of_size(folder / "color", info_.color.extent, info_.frames, "color");
-        expect_pictures_of_size(folder / "depth", info_.depth.extent, info_.frames, "depth");
-        expect_frames(folder, info_.frames);
+        expect_pictures_of_size(folder / "color", info_.color.extent, *info_.frames, "color");
+        expect_pictures_of_size(folder / "depth", info_.depth.extent, *info_.frames, "depth");
+        expect_frames(folder, *info_.frames);
         timestamps_s_ = read_timestamps(folder / "timestamps.txt", info_);
-        exposures_ = read_exposures(folder / "exposures.txt", info_.frames, sequence.exposure);
+        exposures_ = read_exposures(folder / "exposures.txt", *info_.frames, sequence.exposure);
         info_.exposure_known = info_.exposure_known || path_exists(folder / "exposures.txt");
         if (const fs::path trajectory = folder / "trajectory.txt"; path_exists(trajectory)) {
             poses_ = FramePoses(trajectory, timestamps_s_, std::min(kAssociationLimit_s, 0.5 / info_.fps));

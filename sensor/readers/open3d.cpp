@@ -4,8 +4,8 @@
 #include <set>
 
 #include "engine/core/input_file.h"
-#include "sensor/json_file.h"
-#include "sensor/picture_file.h"
+#include "sensor/files/json_file.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/readers/folder_source.h"
 
 namespace patina::sensor {

@@ -6,10 +6,10 @@
 
 #include "engine/core/input_file.h"
 #include "sensor/associate.h"
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
+#include "sensor/files/text_file.h"
 #include "sensor/pose.h"
 #include "sensor/readers/folder_source.h"
-#include "sensor/text_file.h"
 
 namespace patina::sensor {
 namespace {

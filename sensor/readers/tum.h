@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor {
 

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per new key: pops a block from the free list, clears its voxels, and enters it in the table; or leaves
 // the key without a block when it was not among those accepted.
-#include "lib/accepted_key.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
+#include "lib/map/accepted_key.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
 
 layout(local_size_x = kAssignGroup) in;
 layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };

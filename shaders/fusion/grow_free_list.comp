@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Puts new blocks under those that were free before, which are popped first; and empties the count of the table's keys,
 // which is filled anew.
-#include "shared/grow_pool.h"
-#include "shared/voxel_map.h"
+#include "shared/fusion/voxel_map.h"
+#include "shared/observation/grow_pool.h"
 
 layout(local_size_x = kGrowGroup) in;
 layout(std430, binding = 0) writeonly buffer FreeList { uint free_list[]; };

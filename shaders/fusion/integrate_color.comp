@@ -5,12 +5,12 @@
 // cap: over that many of their block's turns. One workgroup per block that integration listed. Its quads near the
 // surface are listed first, about a third of all, and the invocations share these: software devices run through every
 // branch, whether or not a voxel takes it.
-#include "lib/camera.glsl"
-#include "lib/pixel_row.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
-#include "shared/integrate.h"
+#include "lib/camera/camera.glsl"
+#include "lib/camera/pixel_row.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
+#include "shared/fusion/integrate.h"
 
 layout(local_size_x = kIntegrateGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };

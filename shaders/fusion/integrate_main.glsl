@@ -2,13 +2,13 @@
 // (one 16-byte load and store). Curless and Levoy's running average of the distance from the plane through the reading:
 // the projective distance d - z would depend on the viewing direction, and blur what several views see. Where
 // PATINA_MARK_SURFACE is 1, marks the voxels that take colour and lists the blocks whose turn it is.
-#include "lib/camera.glsl"
-#include "lib/pixel_row.glsl"
-#include "lib/slope.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
-#include "shared/integrate.h"
+#include "lib/camera/camera.glsl"
+#include "lib/camera/pixel_row.glsl"
+#include "lib/map/slope.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
+#include "shared/fusion/integrate.h"
 
 layout(local_size_x = kIntegrateGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };

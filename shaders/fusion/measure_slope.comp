@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Fits the tangent plane of each reading from its neighbours in the smoothed depth image.
-#include "lib/slope.glsl"
+#include "lib/map/slope.glsl"
 
 layout(local_size_x = kSlopeGroupX, local_size_y = kSlopeGroupY) in;
 layout(binding = 0, r32f) uniform readonly image2D smooth_depth_m;

@@ -3,11 +3,11 @@
 //   CELL(i)         uint, the block id in a cell of the view grid
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 // The march reads nearest voxels; interpolation happens once, at the hit.
-#include "lib/camera.glsl"
-#include "lib/view_grid.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/raycast.h"
+#include "lib/camera/camera.glsl"
+#include "lib/camera/view_grid.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/raycast.h"
 
 layout(local_size_x = kRaycastGroupX, local_size_y = kRaycastGroupY) in;
 layout(std140, binding = 0) uniform View { ViewParams view; };

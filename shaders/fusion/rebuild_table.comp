@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Enters every block in use in the emptied table. Keys that had been refused are left out and may come again.
-#include "shared/allocate_blocks.h"
+#include "shared/fusion/allocate_blocks.h"
 
 layout(local_size_x = kAssignGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };
@@ -9,7 +9,7 @@ layout(std430, binding = 1) coherent buffer Keys { uint keys[]; };
 layout(std430, binding = 2) writeonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 3) buffer Counters { MapCounters counters; };
 layout(push_constant) uniform Push { VoxelGrid grid; };
-#include "lib/insert_key.glsl"
+#include "lib/map/insert_key.glsl"
 
 void main() {
     const uint block = gl_GlobalInvocationID.x;

@@ -1,10 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per visible block: gives the block back unless one of its voxels has been seen near the surface.
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
-#include "shared/remove_empty_blocks.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
+#include "shared/fusion/remove_empty_blocks.h"
 
 layout(local_size_x = kRemoveGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };

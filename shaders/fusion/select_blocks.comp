@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Decides which of this frame's new keys get a block.
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
 
 layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 1) readonly buffer NewSlots { uint new_slots[]; };

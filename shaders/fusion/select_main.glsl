@@ -2,7 +2,7 @@
 // While the pool suffices, all do. Else the keys whose hash falls into the first bins do, as many whole bins as fit:
 // the choice depends on the keys alone, not on who came first. The includer declares `counters` and
 //   HASH(i)         uint, the hash of new key i
-#include "lib/accepted_key.glsl"
+#include "lib/map/accepted_key.glsl"
 
 layout(local_size_x = kSelectGroup) in;
 

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // The trilinear mean of the voxel colours around each surface point, over the voxels that have one.
-#include "shared/shade_color.h"
-#include "shared/visible_blocks.h"
+#include "shared/fusion/shade_color.h"
+#include "shared/fusion/visible_blocks.h"
 layout(local_size_x = kShadeColorGroup, local_size_y = kShadeColorGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
 layout(binding = 1, rgba16f) uniform writeonly image2D color_linear;
@@ -11,9 +11,9 @@ layout(std140, binding = 2) uniform View { ViewParams view; };
 layout(std430, binding = 3) readonly buffer ViewGrid { uint view_grid[]; };
 layout(std430, binding = 4) readonly buffer Color { uint voxels[]; }
 color[kMaxVoxelChunks];
-#include "lib/view_grid.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/camera/view_grid.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
 
 uint load_color(ivec3 coordinates) {
     const uint cell = view_grid_cell(view.grid_low.xyz, view.grid_size.xyz, coordinates >> 3);

@@ -4,7 +4,7 @@
 // The normal of each surface point: the mean over the points around it that lie on one plane with it. Beside an edge,
 // where the volume's gradient passes from one face to the other over about a voxel, it is that of the face on whose
 // plane most of the points around lie; of a flat face, whose points farther off have one normal, before all others.
-#include "shared/sharpen_normals.h"
+#include "shared/fusion/sharpen_normals.h"
 
 layout(local_size_x = kSharpenGroup, local_size_y = kSharpenGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Walks each reading's truncation band through the grid of blocks and inserts the keys that the table lacks.
-#include "lib/camera.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
+#include "lib/camera/camera.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
 
 layout(local_size_x = kTouchGroupX, local_size_y = kTouchGroupY) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
@@ -12,7 +12,7 @@ layout(std430, binding = 2) coherent buffer Keys { uint keys[]; };
 layout(std430, binding = 3) writeonly buffer NewSlots { uint new_slots[]; };
 layout(std430, binding = 4) buffer Counters { MapCounters counters; };
 
-#include "lib/insert_key.glsl"
+#include "lib/map/insert_key.glsl"
 
 void touch(uint key, bool may_insert) {
     const Insertion at = insert_key(fusion.grid, key, may_insert);

@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // Lists the blocks whose bounding box meets the view frustum, enters them in a dense grid around it, and widens the
 // depth range of every tile that a box covers.
-#include "lib/camera.glsl"
-#include "lib/view_grid.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/camera/camera.glsl"
+#include "lib/camera/view_grid.glsl"
+#include "lib/map/voxel_map.glsl"
 
 layout(local_size_x = kVisibleGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };

@@ -1,9 +1,9 @@
 // Turns a colour picture as the camera gave it into linear radiance as a pinhole camera would see it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/lens.glsl"
-#include "lib/srgb.glsl"
-#include "shared/convert_color.h"
+#include "lib/camera/lens.glsl"
+#include "lib/color/srgb.glsl"
+#include "shared/input/convert_color.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(constant_id = 0) const bool kLinear = false;                    // the source holds linear floats, not sRGB bytes

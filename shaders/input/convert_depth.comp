@@ -1,8 +1,8 @@
 // Turns a depth picture as the sensor gave it into metres as a pinhole camera would see them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/lens.glsl"
-#include "shared/convert_depth.h"
+#include "lib/camera/lens.glsl"
+#include "shared/input/convert_depth.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(constant_id = 0) const bool kMetres = false;     // the source holds float metres, not 16-bit units

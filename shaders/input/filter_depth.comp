@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shared/filter_depth.h"
+#include "shared/input/filter_depth.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

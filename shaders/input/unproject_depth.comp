@@ -1,8 +1,8 @@
 // Turns depth into world positions, and their central differences into normals.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "shared/unproject_depth.h"
+#include "lib/camera/camera.glsl"
+#include "shared/input/unproject_depth.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

@@ -1,13 +1,13 @@
 // Counts the shining pixels of each group, so that they can be listed in the picture's order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/find_lights.h"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kEmitterGroup) in;
 layout(rgba16f, binding = 0) uniform readonly image2D color;
 layout(std140, binding = 1) uniform Params { FindLightsParams params; };
 layout(std430, binding = 2) writeonly buffer Counts { uint counts[]; };
-#include "lib/emitters.glsl"
+#include "lib/lighting/emitters.glsl"
 
 shared uint count;
 

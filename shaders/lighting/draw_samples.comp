@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Records that got a place in the samples of the surface, or of its highlights, are written there.
-#include "shared/fit_lights.h"
+#include "shared/lighting/fit_lights.h"
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };

@@ -1,8 +1,8 @@
 // Lists the shining pixels in the picture's order, with bearing, distance, radiance and solid angle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "shared/find_lights.h"
+#include "lib/camera/camera.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kEmitterGroup) in;
 layout(rgba16f, binding = 0) uniform readonly image2D color;
@@ -11,7 +11,7 @@ layout(std430, binding = 2) readonly buffer Warped { uint warped[]; };
 layout(std430, binding = 3) readonly buffer Places { uint places[]; };
 layout(std430, binding = 4) writeonly buffer Emitters { Emitter emitters[]; };
 layout(push_constant) uniform Push { WarpDepthParams warp; };
-#include "lib/emitters.glsl"
+#include "lib/lighting/emitters.glsl"
 
 shared uint ranks[kEmitterGroup];
 

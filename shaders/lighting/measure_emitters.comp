@@ -1,10 +1,10 @@
 // Measures a candidate: where its centre is, how large it appears, how bright it is.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "lib/cone.glsl"
-#include "lib/luminance.glsl"
-#include "shared/find_lights.h"
+#include "lib/camera/camera.glsl"
+#include "lib/color/luminance.glsl"
+#include "lib/math/cone.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kMeanShiftGroup) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };

@@ -2,9 +2,9 @@
 // or behind a heavier mode is that one's rim, whose depth readings mix with what is behind, or a lamp partly hidden.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "lib/cone.glsl"
-#include "shared/find_lights.h"
+#include "lib/camera/camera.glsl"
+#include "lib/math/cone.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = 1) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };

@@ -1,7 +1,7 @@
 // Where each group's emitters begin in the list: the sums of the counts before it, and the sum of all at the end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/find_lights.h"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kEmitterGroup) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };

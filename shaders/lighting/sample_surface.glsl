@@ -1,10 +1,10 @@
 // What a record of the observation map shows as a sample of the surface. The includer declares Records, the chunks of
 // Directions and Colors, and the push constants `params`.
-#include "lib/mean.glsl"
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
-#include "lib/reflectance.glsl"
-#include "shared/fit_lights.h"
+#include "lib/math/mean.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
+#include "lib/records/reflectance.glsl"
+#include "shared/lighting/fit_lights.h"
 
 // The share of the observations, darkest first, whose mean is taken for free of highlights; and the one above which
 // highlights are told.

@@ -1,8 +1,8 @@
 // The answer for each light: medians over its sightings; without depth, the point nearest to all bearings.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/cone.glsl"
-#include "shared/find_lights.h"
+#include "lib/math/cone.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kMaxSightings) in;
 layout(std430, binding = 0) readonly buffer Tracks { LightTrack tracks[]; };

@@ -2,15 +2,15 @@
 // it, in space for emitters with depth, on the sphere of bearings for those without.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "shared/find_lights.h"
+#include "lib/camera/camera.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = kMeanShiftGroup) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };
 layout(std430, binding = 1) readonly buffer Places { uint places[]; };
 layout(std430, binding = 2) readonly buffer Emitters { Emitter emitters[]; };
 layout(std430, binding = 3) writeonly buffer Modes { EmitterMode modes[]; };
-#include "lib/luminance.glsl"
+#include "lib/color/luminance.glsl"
 
 const uint kMaxIterations = 12u;
 const float kStill = 1e-5;  // a shift by less than this share of the kernel is the last

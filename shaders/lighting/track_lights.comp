@@ -1,7 +1,7 @@
 // Joins a frame's sightings to the lights seen before.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/find_lights.h"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = 1) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // What each trial lamp of intensity 1 gives each sample of the surface: its cosine over pi and the squared distance, 0
 // where the model stands in the way.
-#include "lib/pi.glsl"
-#include "shared/fit_lights.h"
+#include "lib/math/pi.glsl"
+#include "shared/lighting/fit_lights.h"
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Samples { LightSample samples[]; };
 layout(std430, binding = 1) readonly buffer Trials { vec4 trials_m[]; };
@@ -16,7 +16,7 @@ layout(push_constant) uniform Push { TrialParams params; };
 #define KEYS(bucket) buckets[bucket]
 #define BLOCK(slot) blocks[slot]
 #define VOXEL(C, i) tsdf[C].voxels[i]
-#include "lib/march_map.glsl"
+#include "lib/map/march_map.glsl"
 
 const float kLiftVox = 4.0;          // above the surface, where the way begins
 const float kMostSkippedVox = 16.0;  // of the way, to get there

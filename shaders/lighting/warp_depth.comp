@@ -1,8 +1,8 @@
 // Brings depth into the colour camera's picture: the nearest reading whose pixel covers each colour pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/camera.glsl"
-#include "shared/find_lights.h"
+#include "lib/camera/camera.glsl"
+#include "shared/lighting/find_lights.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(r32f, binding = 0) uniform readonly image2D depth_m;

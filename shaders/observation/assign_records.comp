@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // Takes the next record for every voxel seen for the first time, empties it and lists it; or marks the voxel as refused
 // when it was not among those accepted.
-#include "lib/accepted_key.glsl"
-#include "lib/observations.glsl"
-#include "lib/record_hash.glsl"
-#include "lib/record_list.glsl"
+#include "lib/map/accepted_key.glsl"
+#include "lib/records/observations.glsl"
+#include "lib/records/record_hash.glsl"
+#include "lib/records/record_list.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Observation { ObservationParams frame; };

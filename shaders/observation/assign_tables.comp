@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per new key: takes the next block and empties its voxels' entries of the record table; or leaves the
 // key without a block when it was not among those accepted. Blocks are never given back, so ids follow from a count.
-#include "lib/accepted_key.glsl"
-#include "lib/observations.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/accepted_key.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "lib/records/observations.glsl"
 
 layout(local_size_x = kTableGroup) in;
 layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };

@@ -4,12 +4,12 @@
 // One invocation per record in view: looks up the voxel's surface in the cast model, then in the depth and the colour
 // image, and adds what the colour camera sees of it to the voxel's observations (paper, Section 3.4). An invocation
 // writes its own record only, so that nothing depends on their order.
-#include "lib/camera.glsl"
-#include "lib/observations.glsl"
-#include "lib/record_list.glsl"
-#include "lib/slope.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/integrate.h"
+#include "lib/camera/camera.glsl"
+#include "lib/map/slope.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "lib/records/observations.glsl"
+#include "lib/records/record_list.glsl"
+#include "shared/fusion/integrate.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Observation { ObservationParams frame; };

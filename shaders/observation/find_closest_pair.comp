@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Finds the closest pair of a full record's directions anew, for records whose last one lost a member. Of pairs as
 // close, the one whose later member comes first, then the earlier one.
-#include "lib/observations.glsl"
+#include "lib/records/observations.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Stale { uint stale[]; };
@@ -11,7 +11,7 @@ layout(std430, binding = 1) buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
 layout(push_constant) uniform Push { VoxelGrid grid; };
 
-#include "lib/record_directions.glsl"
+#include "lib/records/record_directions.glsl"
 
 void main() {
     const uint entry = gl_GlobalInvocationID.x;

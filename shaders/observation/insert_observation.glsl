@@ -4,9 +4,9 @@
 //   layout(std430, binding = n) buffer Colors { uvec4 quads[]; } colors[kMaxVoxelChunks];
 // A record keeps its closest pair of directions. So a new one is compared with 30 directions, not 31 with one another,
 // and that is all where it is dropped, as most are once a voxel was seen from all around.
-#include "lib/observations.glsl"
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/records/observations.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 struct Insertion {
     uint count;         // of observations, afterwards

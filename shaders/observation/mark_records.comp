@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists the records of the voxels that pixels see, each once, and the voxels that are seen for the first time.
-#include "lib/record_list.glsl"
-#include "shared/observations.h"
+#include "lib/records/record_list.glsl"
+#include "shared/observation/observations.h"
 
 layout(local_size_x = kObservationGroupX, local_size_y = kObservationGroupY) in;
 layout(std140, binding = 0) uniform Observation { ObservationParams frame; };

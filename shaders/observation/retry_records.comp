@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Voxels that were refused a record may ask again. One invocation per block.
-#include "shared/allocate_blocks.h"
-#include "shared/grow_pool.h"
-#include "shared/observations.h"
+#include "shared/fusion/allocate_blocks.h"
+#include "shared/observation/grow_pool.h"
+#include "shared/observation/observations.h"
 
 layout(local_size_x = kAssignGroup) in;
 layout(std430, binding = 0) readonly buffer Counters { MapCounters counters; };

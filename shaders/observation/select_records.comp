@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Decides which of the voxels seen for the first time get a record.
-#include "lib/record_hash.glsl"
-#include "shared/allocate_blocks.h"
-#include "shared/observations.h"
+#include "lib/records/record_hash.glsl"
+#include "shared/fusion/allocate_blocks.h"
+#include "shared/observation/observations.h"
 
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std430, binding = 1) readonly buffer NewVoxels { uint new_voxels[]; };

@@ -3,10 +3,10 @@
 // Finds, for every pixel looked at, the observation voxel that holds the model's surface there, and inserts the keys of
 // blocks that the table lacks. Pixels that could not observe it are left out: those where the reading is not the
 // model's surface, or where it is far or grazing.
-#include "lib/camera.glsl"
-#include "lib/observations.glsl"
-#include "lib/slope.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/camera/camera.glsl"
+#include "lib/map/slope.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "lib/records/observations.glsl"
 
 layout(local_size_x = kObservationGroupX, local_size_y = kObservationGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
@@ -19,7 +19,7 @@ layout(std430, binding = 6) writeonly buffer NewSlots { uint new_slots[]; };
 layout(std430, binding = 7) buffer Counters { MapCounters counters; };
 layout(std430, binding = 8) writeonly buffer PixelVoxels { uint pixel_voxels[]; };  // slot << 6 | voxel in its block
 
-#include "lib/insert_key.glsl"
+#include "lib/map/insert_key.glsl"
 
 bool observable(ivec2 pixel, vec4 point, vec3 toward) {
     const uint inclination = imageLoad(slope, pixel).x;

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Divides a frame's colours by its gains.
-#include "shared/color_gains.h"
-#include "shared/convert_color.h"
+#include "shared/input/convert_color.h"
+#include "shared/photometry/color_gains.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 layout(std430, binding = 0) readonly buffer Gains { ColorGains gains; };

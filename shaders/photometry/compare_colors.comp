@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Weighs, per channel, by how many stops the frame's colours differ from the model's at the same surface points. Whole
 // numbers add up to the same in any order.
-#include "shared/color_gains.h"
+#include "shared/photometry/color_gains.h"
 
 layout(local_size_x = kCompareColorsGroupX, local_size_y = kCompareColorsGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;

@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // The gain of one channel per group from its histogram: the median, then a few steps of Tukey's biweight mean around
 // it, which no minority of highlights or changed surfaces moves. Sums have a fixed shape.
-#include "shared/color_gains.h"
+#include "shared/photometry/color_gains.h"
 
 layout(local_size_x = kSettleGainsGroup) in;
 layout(std430, binding = 0) readonly buffer Histogram { uint weights[]; };

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // Takes about params.most of the records that wait for marching. A hash of the voxel and the update chooses, so that
 // none waits for ever and record ids do not matter.
-#include "lib/observations.glsl"
-#include "lib/record_hash.glsl"
-#include "lib/record_list.glsl"
-#include "shared/reflectance.h"
+#include "lib/records/observations.glsl"
+#include "lib/records/record_hash.glsl"
+#include "lib/records/record_list.glsl"
+#include "shared/reflectance/reflectance.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Waiting { uint waiting[]; };

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Sums up the albedo of each segment over its records, and counts these and their observations.
-#include "lib/reflectance.glsl"
+#include "lib/records/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(constant_id = 0) const uint kRecordsPerItem = 1u;  // a group of the dispatch has as many groups of records

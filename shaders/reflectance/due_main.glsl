@@ -1,7 +1,7 @@
 // Body of the passes that look for records whose visibility or albedo is out of date, and list them, each once. The
 // includer defines list_for_marching.
-#include "lib/record_list.glsl"
-#include "lib/reflectance.glsl"
+#include "lib/records/record_list.glsl"
+#include "lib/records/reflectance.glsl"
 
 layout(std140, binding = 0) uniform Lights {
     LightHeader header;

@@ -4,8 +4,8 @@
 // which is in the order of hashes, holds the same voxels in every run, as record ids would not. What throws a shadow on
 // a record may have changed, so that a share of the window is marched again; it shrinks with the number of records that
 // changed in this frame, since little changed then.
-#include "lib/observations.glsl"
-#include "lib/record_hash.glsl"
+#include "lib/records/observations.glsl"
+#include "lib/records/record_hash.glsl"
 #include "reflectance/due_main.glsl"
 
 layout(local_size_x = kWindowGroup) in;

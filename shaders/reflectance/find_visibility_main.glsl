@@ -1,8 +1,8 @@
 // Body of the shaders that find which lights reach a voxel. The includer declares the map's table and distances and how
-// to load them, as lib/march_map.glsl says.
-#include "lib/march_map.glsl"
-#include "lib/record_list.glsl"
-#include "lib/reflectance.glsl"
+// to load them, as lib/map/march_map.glsl says.
+#include "lib/map/march_map.glsl"
+#include "lib/records/record_list.glsl"
+#include "lib/records/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Lights {

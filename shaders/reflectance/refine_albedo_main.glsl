@@ -7,10 +7,10 @@
 // One invocation per record; lights in the outer loop, so that what a light and a surface have in common is computed
 // once, and observations unrolled in the inner one.
 #include "lib/brdf/ward.glsl"
-#include "lib/mean.glsl"
-#include "lib/pi.glsl"
-#include "lib/reflectance.glsl"
-#include "lib/voxel_chunks.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/math/mean.glsl"
+#include "lib/math/pi.glsl"
+#include "lib/records/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -24,8 +24,8 @@ layout(std430, binding = 4) readonly buffer Refine { uint refine[]; };
 layout(std430, binding = 5) buffer Status { RecordStatus status[]; };
 layout(std430, binding = 6) buffer Albedo { uvec2 albedo[]; };
 layout(push_constant) uniform Push { ReflectanceParams params; };
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 const float kNoise = 0.002;            // of an observed colour, linear: 8-bit sRGB's steps in dark tones
 const float kRelativeNoise = 0.02;     // and that of bright ones, with the camera's own

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Refinement with the observations in texel buffers, which software devices gather faster than storage buffers.
-#include "shared/observations.h"
+#include "shared/observation/observations.h"
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer Directions[kMaxVoxelChunks];
 layout(binding = 12, rgba32ui) uniform readonly uimageBuffer Colors[kMaxVoxelChunks];
 #define DIRECTION_QUAD(C, i) imageLoad(Directions[C], int(i))

@@ -3,12 +3,12 @@
 // Gives every segment of the frame a label: that of the map which it shares most with, or a new one. Joins labels that
 // segments have often enough said to be one, and once in a sweep prunes labels and takes back those that nothing holds
 // any more. One workgroup; whatever depends on an order is done in that of segments or labels.
-#include "lib/luminance.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/frame_segments.h"
-#include "shared/segment_samples.h"
-#include "shared/segments.h"
-#include "shared/ward_fit.h"
+#include "lib/color/luminance.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/segmentation/frame_segments.h"
+#include "shared/segmentation/segment_samples.h"
+#include "shared/segmentation/segments.h"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kAssignLabelsGroup) in;
 layout(std430, binding = 0) readonly buffer Segments { FrameSegment segments[]; };

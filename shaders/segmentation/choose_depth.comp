@@ -1,9 +1,9 @@
 // The model's depth where there is one, else the reading, and the chromaticity that the colour camera saw there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/chroma.glsl"
-#include "shared/choose_depth.h"
-#include "shared/convert_color.h"
+#include "lib/color/chroma.glsl"
+#include "shared/input/choose_depth.h"
+#include "shared/input/convert_color.h"
 
 layout(constant_id = 0) const int kStride = 1;  // of the pixels in x and y
 layout(local_size_x = 128) in;                  // of one row: software devices take a group of several rows longer

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Chooses each segment's lowest level so that what is of it or above fits. Begins the sums of its albedo.
-#include "shared/segment_samples.h"
+#include "shared/segmentation/segment_samples.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Levels { uint levels[]; };

@@ -5,10 +5,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "lib/chroma.glsl"
-#include "lib/frame_surface.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/contacts.h"
+#include "lib/color/chroma.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "lib/segments/frame_surface.glsl"
+#include "shared/segmentation/contacts.h"
 
 layout(local_size_x = kClaimGroup) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per new key, as in fusion/assign_blocks.comp: clears the labels of the block that it got.
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/allocate_blocks.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/allocate_blocks.h"
 
 layout(local_size_x = kAssignGroup) in;
 layout(std430, binding = 0) readonly buffer NewSlots { uint new_slots[]; };

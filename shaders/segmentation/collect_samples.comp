@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists the records that each segment keeps, in no order, and sums up their albedo.
-#include "lib/reflectance.glsl"
-#include "lib/segment_samples.glsl"
+#include "lib/records/reflectance.glsl"
+#include "lib/segments/segment_samples.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };

@@ -1,7 +1,7 @@
 // Writes into every pixel which component it belongs to, and counts each component's pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/runs.glsl"
+#include "lib/segments/runs.glsl"
 
 layout(local_size_x = kRunGroup) in;
 layout(std430, binding = 0) readonly buffer Words { RunWord words[]; };
@@ -9,7 +9,7 @@ layout(std430, binding = 1) coherent buffer Parents { uint parents[]; };
 layout(std430, binding = 2) buffer Pixels { uint pixels[]; };  // by key; 0 before
 layout(binding = 3, r32ui) uniform writeonly uimage2D component;
 layout(push_constant) uniform Push { LabelComponentsParams params; };
-#include "lib/disjoint_sets.glsl"
+#include "lib/math/disjoint_sets.glsl"
 
 void main() {
     const uint index = gl_GlobalInvocationID.x;

@@ -1,7 +1,7 @@
 // Counts the pixels with depth of each given id.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 
 layout(local_size_x = kMeasureGroup) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D given;  // 0: unknown

@@ -3,9 +3,9 @@
 #extension GL_EXT_control_flow_attributes : require
 // Counts the pixels that each segment of the frame shares with each label of the map, and collects the chromaticity of
 // labels. An invocation goes along a strip of a row and counts runs.
-#include "lib/camera.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/segments.h"
+#include "lib/camera/camera.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/segmentation/segments.h"
 
 layout(local_size_x = kStripGroupX, local_size_y = kStripGroupY) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D segment;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Counts the eligible records of each segment by level.
-#include "lib/segment_samples.glsl"
+#include "lib/segments/segment_samples.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };

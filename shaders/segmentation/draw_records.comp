@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment: draws records of those that it keeps, without putting back. The draw is a random order by
 // hash, so that the order in which they are kept does not matter.
-#include "lib/segment_samples.glsl"
+#include "lib/segments/segment_samples.glsl"
 
 layout(local_size_x = kDrawGroup) in;
 layout(std430, binding = 0) readonly buffer Records { VoxelRecord records[]; };

@@ -1,8 +1,8 @@
 // Marks pixels at concave creases, at steps, and between colours.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/chroma.glsl"
-#include "lib/frame_surface.glsl"
+#include "lib/color/chroma.glsl"
+#include "lib/segments/frame_surface.glsl"
 
 layout(local_size_x = 128) in;  // of one row: software devices take a group of several rows longer
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

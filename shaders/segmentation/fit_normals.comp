@@ -1,7 +1,7 @@
 // Fits a plane to the surroundings of each pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/frame_surface.glsl"
+#include "lib/segments/frame_surface.glsl"
 
 layout(local_size_x = 128) in;  // of one row: software devices take a group of several rows longer
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Makes a longer ring of the ring of free labels, and adds the new labels behind those that were free before. One
 // workgroup: what lay at the ring's beginning, behind its end, has to be moved before new labels take its place.
-#include "shared/grow_pool.h"
-#include "shared/segments.h"
+#include "shared/observation/grow_pool.h"
+#include "shared/segmentation/segments.h"
 
 layout(local_size_x = kGrowGroup) in;
 layout(std430, binding = 0) coherent buffer FreeLabels { uint free_labels[]; };

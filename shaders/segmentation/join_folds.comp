@@ -1,8 +1,8 @@
 // Joins components that have one strong colour along their contact: they are folds of one thing. One workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/contacts.h"
-#include "shared/number_segments.h"
+#include "shared/segmentation/contacts.h"
+#include "shared/segmentation/number_segments.h"
 
 layout(local_size_x = kJoinFoldsGroup) in;
 layout(std430, binding = 0) readonly buffer Contacts { Contact contacts[]; };
@@ -10,7 +10,7 @@ layout(std430, binding = 1) readonly buffer ContactCount { uint contact_count; }
 layout(std430, binding = 2) coherent buffer Parents { uint parents[]; };  // by key - 1
 layout(std430, binding = 3) coherent buffer Pixels { uint pixels[]; };    // by key
 layout(push_constant) uniform Push { JoinFoldsParams params; };
-#include "lib/disjoint_sets.glsl"
+#include "lib/math/disjoint_sets.glsl"
 
 // Highlights take colours towards grey: the hue says more than the saturation.
 bool is_fold(Contact contact) {

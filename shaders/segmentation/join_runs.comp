@@ -1,13 +1,13 @@
 // Unites runs that are connected to the word on the left or to the row above.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/runs.glsl"
+#include "lib/segments/runs.glsl"
 
 layout(local_size_x = kRunGroup) in;
 layout(std430, binding = 0) readonly buffer Words { RunWord words[]; };
 layout(std430, binding = 1) coherent buffer Parents { uint parents[]; };
 layout(push_constant) uniform Push { LabelComponentsParams params; };
-#include "lib/disjoint_sets.glsl"
+#include "lib/math/disjoint_sets.glsl"
 
 void main() {
     const uint index = gl_GlobalInvocationID.x;

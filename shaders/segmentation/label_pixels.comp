@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // The label of each pixel: what the map says where it was asked nearby, on the same segment, or where
 // the frame says nothing; else what its segment got.
-#include "shared/segments.h"
+#include "shared/segmentation/segments.h"
 
 layout(local_size_x = kLabelGroup) in;
 layout(constant_id = 0) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of

@@ -1,7 +1,7 @@
 // Finds the runs of 32 pixels of a row; each is a set of its own.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "lib/runs.glsl"
+#include "lib/segments/runs.glsl"
 
 layout(local_size_x = kRunGroup) in;
 layout(binding = 0, r32f) uniform readonly image2D inner_depth_m;  // above 0 where a pixel belongs to a component

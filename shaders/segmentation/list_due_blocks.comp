@@ -3,8 +3,8 @@
 // Lists those of the visible blocks that have their turn, or never had it. A surface that comes into view bit by bit,
 // as the narrow side of a thing, does so in blocks that have had their first turn: they have others soon, as those have
 // whose labels change.
-#include "lib/voxel_map.glsl"
-#include "shared/segments.h"
+#include "lib/map/voxel_map.glsl"
+#include "shared/segmentation/segments.h"
 
 layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer Visible { uint visible[]; };  // count, then block ids

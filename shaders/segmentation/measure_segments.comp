@@ -1,7 +1,7 @@
 // Writes into every pixel the number of its segment, and counts the pixels of each, 32 of a row at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 
 layout(local_size_x = kMeasureGroup) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D keys;  // 0: none

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 
 layout(local_size_x = kNumberGroup) in;
 layout(std430, binding = 0) readonly buffer Pixels { uvec4 pixels[]; };  // by key, four at a time

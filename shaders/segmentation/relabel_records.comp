@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 // Of the observations' blocks, those whose keys have their turn in this frame: replaces their records' labels by their
 // roots, as sweep_labels.comp does with voxels. A group looks at kSweepGroup block ids.
-#include "lib/observations.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/segments.h"
+#include "lib/map/voxel_map.glsl"
+#include "lib/records/observations.glsl"
+#include "shared/segmentation/segments.h"
 
 layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };

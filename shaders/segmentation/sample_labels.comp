@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Sampling of labels with the map in storage buffers, as every device can bind them.
-#include "shared/voxel_map.h"
+#include "shared/fusion/voxel_map.h"
 layout(std430, binding = 4) readonly buffer ViewGrid { uint view_grid[]; };
 layout(std430, binding = 6) readonly buffer Words { uint items[]; }
 words[kMaxVoxelChunks];

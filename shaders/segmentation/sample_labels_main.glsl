@@ -4,9 +4,9 @@
 // and the map's labels and how to load them:
 //   CELL(i)         uint, the block id in a cell of the view grid
 //   WORD(C, i)      uint, the label word of voxel i of the literal chunk C
-#include "lib/view_grid.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_labels.glsl"
+#include "lib/camera/view_grid.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_labels.glsl"
 
 layout(constant_id = 1) const int kStride = 1;  // of the pixels in x and y
 layout(local_size_x = kAskGroup) in;

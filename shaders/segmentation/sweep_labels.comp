@@ -3,9 +3,9 @@
 #extension GL_EXT_control_flow_attributes : require
 // Of the map's blocks, those whose keys have their turn in this frame: replaces labels by their roots, and counts the
 // voxels of each. A group looks at kSweepGroup block ids.
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_labels.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_labels.glsl"
+#include "lib/map/voxel_map.glsl"
 
 layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };

@@ -1,7 +1,7 @@
 // Counts the components in each group's range of keys.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/number_segments.h"
+#include "shared/segmentation/number_segments.h"
 
 layout(local_size_x = kNumberGroup) in;
 layout(std430, binding = 0) readonly buffer Pixels { uvec4 pixels[]; };  // by key, four at a time

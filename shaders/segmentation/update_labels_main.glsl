@@ -3,11 +3,11 @@
 // have none, and where a lane idles, software devices wait. The includer declares the map's distances (binding 8) and
 // how to load them:
 //   QUAD(C, i)      uvec4, four voxels along x of the literal chunk C
-#include "lib/camera.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_labels.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/visible_blocks.h"
+#include "lib/camera/camera.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_labels.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/fusion/visible_blocks.h"
 
 layout(constant_id = 1) const int kSegmentStride = 1;  // of the pixels in x and y, as to which segment they are of
 layout(local_size_x = kUpdateLabelsGroup) in;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Updating of labels with the map in texel buffers, which software devices gather faster than storage buffers.
-#include "shared/voxel_map.h"
+#include "shared/fusion/voxel_map.h"
 layout(binding = 8, rgba32ui) uniform readonly uimageBuffer Tsdf[kMaxVoxelChunks];
 #define QUAD(C, i) imageLoad(Tsdf[C], int(i))
 #include "segmentation/update_labels_main.glsl"

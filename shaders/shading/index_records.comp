@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Finds the records in the blocks that a view's grid holds, once per block instead of for each pixel. One invocation
 // per block of the voxel map.
-#include "lib/view_grid.glsl"
-#include "shared/predict_radiance.h"
+#include "lib/camera/view_grid.glsl"
+#include "shared/shading/predict_radiance.h"
 
 layout(local_size_x = kVisibleGroup) in;
 layout(std140, binding = 0) uniform View { ViewParams view; };
@@ -19,7 +19,7 @@ layout(std430, binding = 7) writeonly buffer Entries {
 layout(push_constant) uniform Push { IndexRecordsParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
-#include "lib/block_lookup.glsl"
+#include "lib/map/block_lookup.glsl"
 
 void main() {
     const uint block = gl_GlobalInvocationID.x;

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Packs what restore_detail looks up of each pixel around into one load.
-#include "lib/packed_detail.glsl"
-#include "shared/restore_detail.h"
+#include "lib/records/packed_detail.glsl"
+#include "shared/shading/restore_detail.h"
 
 layout(local_size_x = kRestoreDetailGroup, local_size_y = kRestoreDetailGroup) in;
 layout(binding = 0, rgba16f) uniform readonly image2D color;

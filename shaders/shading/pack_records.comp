@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Packs what shading needs of each record.
-#include "lib/packed_records.glsl"
-#include "shared/predict_radiance.h"
+#include "lib/records/packed_records.glsl"
+#include "shared/shading/predict_radiance.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(constant_id = 0) const uint kRecordsPerItem = 1u;  // a group of the dispatch has as many groups of records

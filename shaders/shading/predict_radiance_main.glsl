@@ -4,12 +4,12 @@
 //   CELL(i)      uint, the block id in a cell of the view grid
 //   ENTRY(i)     uint, an entry of the table of records by voxel of each block
 //   PACKED(i)    uvec4, a packed record
-#include "lib/blend_records.glsl"
 #include "lib/brdf/ward.glsl"
-#include "lib/camera.glsl"
-#include "lib/pi.glsl"
-#include "lib/view_grid.glsl"
-#include "shared/predict_radiance.h"
+#include "lib/camera/camera.glsl"
+#include "lib/camera/view_grid.glsl"
+#include "lib/math/pi.glsl"
+#include "lib/records/blend_records.glsl"
+#include "shared/shading/predict_radiance.h"
 
 layout(local_size_x = kPredictGroupX, local_size_y = kPredictGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;

@@ -4,9 +4,9 @@
 // Restores what of the diffuse albedo is finer than a voxel of the observations: the fused colour over the light,
 // scaled so that its mean over the voxels around the point is that of kd. Where no light was marched yet, what is seen
 // is the fused colour.
-#include "lib/mean.glsl"
-#include "lib/packed_detail.glsl"
-#include "shared/restore_detail.h"
+#include "lib/math/mean.glsl"
+#include "lib/records/packed_detail.glsl"
+#include "shared/shading/restore_detail.h"
 
 layout(local_size_x = kRestoreDetailGroup, local_size_y = kRestoreDetailGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;

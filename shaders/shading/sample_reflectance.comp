@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Samples the diffuse albedo and the segment at points of the surface, as re-rendering does at pixels. One invocation
 // per point; records are found through the observation map's table.
-#include "shared/sample_reflectance.h"
+#include "shared/shading/sample_reflectance.h"
 
 layout(local_size_x = kSampleGroup) in;
 layout(std430, binding = 0) readonly buffer Keys { uvec4 keys[]; };
@@ -18,8 +18,8 @@ layout(push_constant) uniform Push { SampleReflectanceParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #define RECORD(entry) record_table[entry]
-#include "lib/blend_records.glsl"
-#include "lib/find_record.glsl"
+#include "lib/records/blend_records.glsl"
+#include "lib/records/find_record.glsl"
 
 // The trilinear mean over the eight records around the point.
 Reflectance interpolate(SurfacePoint point) {

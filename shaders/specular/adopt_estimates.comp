@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation per segment of a batch: what the network says is its material.
-#include "lib/set_material.glsl"
-#include "shared/specular_estimates.h"
-#include "shared/ward_fit.h"
+#include "lib/lighting/set_material.glsl"
+#include "shared/specular/specular_estimates.h"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kBatchGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

@@ -3,10 +3,10 @@
 // The segments that a frame estimates: by turns the one that changed most, and the one that has waited longest, of
 // those that changed at all and have samples; and which of these the fit is not sure of. Forgets what is known of
 // labels that were handed out anew. One workgroup.
-#include "shared/segment_samples.h"
-#include "shared/segments.h"
-#include "shared/specular_estimates.h"
-#include "shared/ward_fit.h"
+#include "shared/segmentation/segment_samples.h"
+#include "shared/segmentation/segments.h"
+#include "shared/specular/specular_estimates.h"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kChooseSegmentsGroup) in;
 layout(std430, binding = 0) readonly buffer Labels { SegmentLabel labels[]; };

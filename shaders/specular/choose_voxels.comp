@@ -3,8 +3,8 @@
 // One workgroup per segment of a batch: which of the records that it keeps are fitted, in an order that is the same in
 // every run, so that sums over them are, too, and how blurred their highlights are. Records left out leave gaps.
 // Hands on what the fits before found for each alpha.
-#include "lib/reflectance.glsl"
-#include "shared/ward_fit.h"
+#include "lib/records/reflectance.glsl"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kDrawGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels
@@ -26,7 +26,7 @@ layout(push_constant) uniform Push { FitParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #define RECORD(entry) record_table[entry]
-#include "lib/find_record.glsl"
+#include "lib/records/find_record.glsl"
 
 shared uvec2 places[kSegmentSamples];
 

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation per record that a frame changed: its segment is worth another estimate.
-#include "lib/observations.glsl"
-#include "shared/ward_fit.h"
+#include "lib/records/observations.glsl"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer Changed { uint changed[]; };  // count, then records

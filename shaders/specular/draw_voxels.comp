@@ -3,9 +3,9 @@
 // One workgroup per segment: draws kHemiSamples of the records that it keeps, those without enough observations left
 // out. The draw is a random order by hash, so that the order in which they are kept does not matter. A segment of fewer
 // has some of them several times.
-#include "lib/random.glsl"
-#include "lib/segment_samples.glsl"
-#include "shared/hemi_images.h"
+#include "lib/math/random.glsl"
+#include "lib/segments/segment_samples.glsl"
+#include "shared/specular/hemi_images.h"
 
 layout(local_size_x = kDrawGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

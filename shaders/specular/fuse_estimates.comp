@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One invocation per segment of a batch: the new estimate joins the mean of those before (paper, Section 3.6).
-#include "lib/perceptual.glsl"
+#include "lib/color/perceptual.glsl"
 
 layout(local_size_x = kBatchGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

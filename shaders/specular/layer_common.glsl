@@ -2,7 +2,7 @@
 // which define Quad, the type of four channels.
 #ifndef PATINA_SPECULAR_LAYER_COMMON_GLSL
 #define PATINA_SPECULAR_LAYER_COMMON_GLSL
-#include "shared/network.h"
+#include "shared/specular/network.h"
 
 layout(local_size_x = kBatchGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // One workgroup per drawn voxel: the colour of the nearest observation in each pixel of its HemiImage.
-#include "lib/hemisphere.glsl"
-#include "lib/observations.glsl"
-#include "lib/voxel_chunks.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/math/hemisphere.glsl"
+#include "lib/records/observations.glsl"
 
 layout(local_size_x = kHemiGroup) in;
 layout(std430, binding = 0) readonly buffer Records { VoxelRecord records[]; };
@@ -15,8 +15,8 @@ layout(std430, binding = 7) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
 layout(std430, binding = 12) writeonly buffer Images { vec4 images[]; };
 layout(push_constant) uniform Push { HemiParams params; };
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 shared vec2 places[kMaxObservations];  // pixels, from the middle of the first one
 shared uint words[kMaxObservations];   // colours

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Turns the number of segments in a batch into the group counts of dispatches over them.
-#include "shared/segment_batch.h"
+#include "shared/specular/segment_batch.h"
 
 layout(local_size_x = kBatchGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

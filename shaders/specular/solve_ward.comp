@@ -4,11 +4,11 @@
 // ks follows for each alpha. What observations do not tell comes from a prior, whose alpha is the network's where there
 // is one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model
 // averaging): an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
+#include "lib/brdf/fit_alphas.glsl"
 #include "lib/brdf/ward.glsl"
-#include "lib/fit_alphas.glsl"
-#include "lib/set_material.glsl"
-#include "shared/specular_estimates.h"
-#include "shared/ward_fit.h"
+#include "lib/lighting/set_material.glsl"
+#include "shared/specular/specular_estimates.h"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kFitGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels

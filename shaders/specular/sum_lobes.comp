@@ -8,11 +8,11 @@
 // says nothing where it is not (a censored regression); before the first fit it says nothing. Left out altogether, only
 // those of a sharp highlight's observations would remain that missed its peak; taken as recorded, they would hold down
 // what its flanks tell.
+#include "lib/brdf/fit_alphas.glsl"
 #include "lib/brdf/ward.glsl"
-#include "lib/fit_alphas.glsl"
-#include "lib/reflectance.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "shared/ward_fit.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/records/reflectance.glsl"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kFitGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -30,9 +30,9 @@ colors[kMaxVoxelChunks];
 layout(std430, binding = 15) readonly buffer Before { vec4 ks_before[]; };  // by segment, then by alpha
 layout(std430, binding = 16) writeonly buffer Sums { FitSums sums[]; };     // likewise
 layout(push_constant) uniform Push { FitParams params; };
-#include "lib/fit_lights.glsl"
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/lighting/fit_lights.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 const uint kAlphas = kFitAlphasPerGroup;
 const uint kAlphasAtOnce = 4u;  // added up: the rows of all would not fit 16 KiB

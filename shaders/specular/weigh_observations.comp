@@ -4,12 +4,12 @@
 // One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance.
 // What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure). A
 // clipped channel is at least as bright as it was recorded: here it counts where that estimate is darker.
+#include "lib/brdf/fit_alphas.glsl"
 #include "lib/brdf/ward.glsl"
-#include "lib/fit_alphas.glsl"
-#include "lib/mean.glsl"
-#include "lib/reflectance.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "shared/ward_fit.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/math/mean.glsl"
+#include "lib/records/reflectance.glsl"
+#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kFitGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -27,9 +27,9 @@ layout(std430, binding = 11) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
 layout(std430, binding = 16) writeonly buffer Weights { float weights[]; };  // by segment, observation and voxel
 layout(push_constant) uniform Push { FitParams params; };
-#include "lib/fit_lights.glsl"
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/lighting/fit_lights.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 const float kNoise = 0.004;         // of an observed colour, linear: 8-bit sRGB's steps in dark tones
 const float kRelativeNoise = 0.05;  // and that of bright ones: lights and colours are estimates

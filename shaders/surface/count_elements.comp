@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Marks the lattice edges that carry a vertex: those that the surface crosses and that a complete cell uses. Counts the
 // vertices and triangles of every block, and of its words before each word.
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };
 layout(std430, binding = 1) readonly buffer Inside { uint inside[]; };
@@ -15,8 +15,8 @@ layout(std430, binding = 6) writeonly buffer Counts { BlockElements counts[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 #define NEIGHBOUR(i) neighbours[i]
 #define INSIDE(i) inside[i]
-#include "lib/surface_words.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/surface_words.glsl"
+#include "lib/map/voxel_map.glsl"
 
 shared uvec4 counts_of_words[kSurfaceGroup];  // edges along x, y, z; triangles
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists the 26 blocks around every block, itself, and its key.
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Keys { uvec4 keys[]; };
 layout(std430, binding = 1) readonly buffer Blocks { uint blocks[]; };
@@ -10,7 +10,7 @@ layout(std430, binding = 3) writeonly buffer Neighbours { uint neighbours[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
-#include "lib/block_lookup.glsl"
+#include "lib/map/block_lookup.glsl"
 
 void main() {
     const uint item = group_item(gl_WorkGroupID) * kSurfaceGroup + gl_LocalInvocationIndex;

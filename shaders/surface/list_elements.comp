@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Lists the vertices and the triangles of a batch of blocks, so that the passes after it have one invocation for each.
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };
 layout(std430, binding = 1) readonly buffer Inside { uint inside[]; };
@@ -19,8 +19,8 @@ layout(std430, binding = 9) writeonly buffer Triangles { SurfaceElement triangle
 layout(push_constant) uniform Push { SurfaceParams params; };
 #define NEIGHBOUR(i) neighbours[i]
 #define INSIDE(i) inside[i]
-#include "lib/surface_words.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/surface_words.glsl"
+#include "lib/map/voxel_map.glsl"
 
 void list_vertices(uint block, uint word, uint axis) {
     const EdgeWord edge = edges[block * kBlockEdgeWords + axis * kBlockWords + word];

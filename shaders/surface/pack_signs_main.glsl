@@ -1,9 +1,9 @@
 // Body of the shaders that pack, for every voxel, whether it is inside (distance <= 0, as in ray casting) and whether
 // it was seen. One invocation per word. The includer says how to load the distances:
 //   QUAD(C, i)    uvec4, voxels 4 i to 4 i + 3 of the literal chunk C
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/extract_surface.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/surface/extract_surface.h"
 
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };

@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Writes a batch's triangles. A vertex's number follows from its edge: vertices of the blocks before, of its block's
 // words before, of the bits before.
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 0) readonly buffer Neighbours { uint neighbours[]; };
 layout(std430, binding = 1) readonly buffer Cases { uint cases[]; };
@@ -13,8 +13,8 @@ layout(std430, binding = 4) readonly buffer Triangles { SurfaceElement triangles
 layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };
 layout(push_constant) uniform Push { SurfaceParams params; };
 #define NEIGHBOUR(i) neighbours[i]
-#include "lib/surface_words.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/surface_words.glsl"
+#include "lib/map/voxel_map.glsl"
 
 uint vertex_of_edge(uint block, ivec3 cell, uint edge) {
     const ivec3 at = cell + ivec3(edge & 1u, edge >> 1 & 1u, edge >> 2 & 1u);

@@ -2,9 +2,9 @@
 // buffer. The includer says how to load the map:
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
 //   NEIGHBOUR(i)    uint, entry i of the list of neighbours
-#include "lib/surface_words.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
+#include "lib/map/surface_words.glsl"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
 
 layout(local_size_x = kSurfaceGroup) in;
 layout(std430, binding = 1) readonly buffer Vertices { SurfaceElement vertices[]; };

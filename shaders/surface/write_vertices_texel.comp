@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 // Vertices with the distances and neighbours in texel buffers, which software devices gather faster than storage
 // buffers.
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 layout(binding = 0, r32ui) uniform readonly uimageBuffer Neighbours;
 layout(binding = 4, r32ui) uniform readonly uimageBuffer Tsdf[kMaxVoxelChunks];
 #define NEIGHBOUR(i) imageLoad(Neighbours, int(i)).x

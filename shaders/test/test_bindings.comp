@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/test_saxpy.h"
+#include "shared/test/test_saxpy.h"
 
 // One binding of each kind that Patina's passes have, and next to no work: what is left is the cost of a pass itself.
 layout(local_size_x = 64) in;

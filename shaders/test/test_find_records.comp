@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Looks up the records of a list of voxels.
-#include "shared/test_observations.h"
+#include "shared/test/test_observations.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Voxels { ivec4 voxels[]; };
@@ -14,7 +14,7 @@ layout(push_constant) uniform Push { TestObservationParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #define RECORD(entry) record_table[entry]
-#include "lib/find_record.glsl"
+#include "lib/records/find_record.glsl"
 
 void main() {
     const uint i = gl_GlobalInvocationID.x;

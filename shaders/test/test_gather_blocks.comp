@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Copies the first blocks of the pool out of its chunks, one workgroup each.
-#include "lib/voxel_chunks.glsl"
-#include "lib/voxel_map.glsl"
-#include "shared/test_voxel_map.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "shared/test/test_voxel_map.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Tsdf { uint voxels[]; }

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Copies the first records' observations out of their chunks.
-#include "lib/voxel_chunks.glsl"
-#include "shared/test_observations.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "shared/test/test_observations.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Directions { uvec4 quads[]; }
@@ -12,8 +12,8 @@ colors[kMaxVoxelChunks];
 layout(std430, binding = 10) writeonly buffer GatheredDirections { uvec4 gathered_directions[]; };
 layout(std430, binding = 11) writeonly buffer GatheredColors { uvec4 gathered_colors[]; };
 layout(push_constant) uniform Push { TestObservationParams params; };
-#include "lib/record_colors.glsl"
-#include "lib/record_directions.glsl"
+#include "lib/records/record_colors.glsl"
+#include "lib/records/record_directions.glsl"
 
 void main() {
     const uint record = gl_GlobalInvocationID.x;

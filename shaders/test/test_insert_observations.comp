@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Adds one observation to every record, from a stream of its own. Its colour is its number in the stream.
-#include "lib/record_list.glsl"
-#include "lib/voxel_chunks.glsl"
-#include "shared/test_observations.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/records/record_list.glsl"
+#include "shared/test/test_observations.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Streams { uint streams[]; };  // direction words, step by step

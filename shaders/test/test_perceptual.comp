@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Perceptual parameters of materials, and the materials that they mean.
-#include "lib/perceptual.glsl"
+#include "lib/color/perceptual.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Materials { WardMaterial materials[]; };

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/brdf/ward.glsl"
-#include "lib/random.glsl"
-#include "lib/sampling.glsl"
-#include "shared/test_sampling.h"
+#include "lib/math/random.glsl"
+#include "lib/math/sampling.glsl"
+#include "shared/test/test_sampling.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Queries { SamplingQuery queries[]; };

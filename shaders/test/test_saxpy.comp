@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/test_saxpy.h"
+#include "shared/test/test_saxpy.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kRepeat = 1u;

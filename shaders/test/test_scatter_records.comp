@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Copies the first records' observations into their chunks.
-#include "lib/voxel_chunks.glsl"
-#include "shared/test_observations.h"
+#include "lib/map/voxel_chunks.glsl"
+#include "shared/test/test_observations.h"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) buffer Directions { uvec4 quads[]; }

@@ -3,7 +3,7 @@
 // so that their order does not matter.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kFernGroup) in;
 layout(std430, binding = 0) readonly buffer Code { uint words[]; };

@@ -1,7 +1,7 @@
 // A frame's code: four ferns' codes a word.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kFernGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D picture;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // The next coarser level of the model: the mean of 2 x 2 pixels of one surface.
-#include "lib/track_pixels.glsl"
+#include "lib/tracking/track_pixels.glsl"
 
 layout(local_size_x = kTrackGroupX, local_size_y = kTrackGroupY) in;
 layout(binding = 0, rgba32ui) uniform readonly uimage2D fine;

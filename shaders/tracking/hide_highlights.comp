@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Leaves out the model's colours where its re-rendering is a highlight to a good part: it moves with the camera.
-#include "lib/luminance.glsl"
-#include "shared/tracking.h"
+#include "lib/color/luminance.glsl"
+#include "shared/tracking/tracking.h"
 
 layout(local_size_x = kTrackGroupX, local_size_y = kTrackGroupY) in;
 layout(binding = 0, rgba16f) uniform readonly image2D color_linear;

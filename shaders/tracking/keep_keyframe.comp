@@ -1,7 +1,7 @@
 // Stores a frame as a keyframe if it was tracked well, and looks like none of them or is near none. One group.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kFernWords) in;
 layout(std430, binding = 0) readonly buffer Code { uint words[]; };

@@ -5,7 +5,7 @@
 // with the model's pixel there (projective association, Blais and Levine 1995); its distance from the tangent plane
 // (Chen and Medioni 1992) and the difference of shades are linear in a small motion. Each group adds up its pixels
 // always in the same order.
-#include "lib/track_pixels.glsl"
+#include "lib/tracking/track_pixels.glsl"
 
 layout(local_size_x = kTrackGroupX, local_size_y = kNormalEquationsGroupY) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D frame_pixels;

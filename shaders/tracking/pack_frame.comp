@@ -3,9 +3,9 @@
 #extension GL_EXT_control_flow_attributes : require
 // Packs the frame's readings, or means of 2 x 2 of one surface, with the shade of what they show. Readings beside a
 // jump in depth, which may fly between two surfaces, are left out.
-#include "lib/camera.glsl"
-#include "lib/track_pixels.glsl"
-#include "shared/convert_color.h"
+#include "lib/camera/camera.glsl"
+#include "lib/tracking/track_pixels.glsl"
+#include "shared/input/convert_color.h"
 
 layout(local_size_x = kTrackGroupX, local_size_y = kTrackGroupY) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

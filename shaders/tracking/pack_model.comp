@@ -3,8 +3,8 @@
 #extension GL_EXT_control_flow_attributes : require
 // Packs what a camera sees of the model, or means of 2 x 2 pixels of one surface: depth, normal, shade and how the
 // shade changes.
-#include "lib/camera.glsl"
-#include "lib/track_pixels.glsl"
+#include "lib/camera/camera.glsl"
+#include "lib/tracking/track_pixels.glsl"
 
 layout(local_size_x = kTrackGroupX, local_size_y = kTrackGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;

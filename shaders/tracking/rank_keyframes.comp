@@ -1,7 +1,7 @@
 // The keyframes least dissimilar to a frame, in order; of equals the older one first. One group.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kRankGroup) in;
 layout(std430, binding = 0) readonly buffer Dissimilarities { float dissimilarities[]; };

@@ -1,8 +1,8 @@
 // Means of depth and of colour over boxes of the frame, a small picture's pixel each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/convert_color.h"
-#include "shared/keyframes.h"
+#include "shared/input/convert_color.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kShrinkFrameGroup, local_size_y = kShrinkFrameGroup) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;

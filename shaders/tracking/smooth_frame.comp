@@ -1,7 +1,7 @@
 // Smooths the small picture: Gaussian means over what is valid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shared/keyframes.h"
+#include "shared/tracking/keyframes.h"
 
 layout(local_size_x = kShrinkFrameGroup, local_size_y = kShrinkFrameGroup) in;
 layout(binding = 0, rgba32f) uniform readonly image2D boxes;

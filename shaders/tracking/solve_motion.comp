@@ -4,7 +4,7 @@
 // Adds up the groups' normal equations, and moves the pose by their solution. One workgroup; every sum has a fixed
 // shape. Jacobi's rotations give eigenvalues and eigenvectors of the 6 x 6 matrix; along those that the surface does
 // not resist, the pose stays as it was predicted (Zhang, Kaess and Singh 2016).
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 
 layout(local_size_x = kSolveMotionGroup) in;
 layout(std430, binding = 0) readonly buffer Sums { float sums[]; };  // kTrackSums per group

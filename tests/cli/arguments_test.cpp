@@ -122,7 +122,7 @@ TEST_F(Arguments, BadSettingsAreNamed) {
 
 TEST_F(Arguments, SettingsThatNoRunCanUse) {
     const auto complaint = [&](const char* setting) { return failure_of_run(sequence(), {"--set", setting}); };
-    EXPECT_THAT(complaint("map.voxel_m=0"), HasSubstr("voxel size is 0 m"));
+    EXPECT_THAT(complaint("map.voxel_m=0"), HasSubstr("map.voxel_m is 0, it must be a number from 0.0001 to 1 m"));
     EXPECT_THAT(complaint("fusion.allocation_stride_px=0"), HasSubstr("fusion.allocation_stride_px is 0"));
     EXPECT_THAT(complaint("fusion.max_weight=0"), HasSubstr("fusion.max_weight is 0"));
     EXPECT_THAT(complaint("fusion.max_color_weight=65536"), HasSubstr("fusion.max_color_weight is 65536"));

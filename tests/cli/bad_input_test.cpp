@@ -1,6 +1,6 @@
 #include <functional>
 
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 #include "tests/cli/run_folder.h"
 
 // What the outside does wrong, as a user meets it: one line that names the cause, and nothing lost.

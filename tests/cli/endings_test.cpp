@@ -1,6 +1,6 @@
 #include <functional>
 
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/pose.h"
 #include "sensor/truth.h"
 #include "tests/cli/run_folder.h"
@@ -189,8 +189,8 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
         for (sensor::StampedPose& pose : poses) pose.world_from_camera[3] += glm::dvec4(offset_m, 0);
         sensor::write_trajectory(file, poses);
     }
-    std::vector<sensor::PointLight> lights = sensor::read_lights(far / "truth/lights.json");
-    for (sensor::PointLight& light : lights) light.position_m += offset_m;
+    std::vector<Light> lights = sensor::read_lights(far / "truth/lights.json");
+    for (Light& light : lights) light.position_m += offset_m;
     sensor::write_lights(far / "truth/lights.json", lights);
 
     for (const fs::path& recording : {near, far}) {

@@ -77,7 +77,7 @@ TEST_F(Eval, WritesWhereItIsTold) {
 }
 
 TEST_F(Eval, LightRadiusDecidesAboutMatches) {
-    sensor::write_lights(run() / "lights.json", std::vector<sensor::PointLight>{{{0, -2.5, 1.75}, {3, 3, 3}}});
+    sensor::write_lights(run() / "lights.json", std::vector<Light>{{{0, -2.5, 1.75}, {3, 3, 3}}});
     EXPECT_THAT(eval().out, HasSubstr("0 of 2 matched within 0.50 m"));
     EXPECT_THAT(eval({"--light-radius", "1"}).out, HasSubstr("1 of 2 matched within 1.00 m"));
     EXPECT_THAT(expect_failure(eval({"--light-radius", "0"}), 2), HasSubstr("--light-radius"));

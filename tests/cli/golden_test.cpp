@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <set>
 
-#include "sensor/exr_file.h"
-#include "sensor/picture_file.h"
+#include "sensor/files/exr_file.h"
+#include "sensor/files/picture_file.h"
+#include "tests/cli/golden_numbers.h"
 #include "tests/cli/run_folder.h"
 
 // The built-in scene from the command line to its files, on every driver.
@@ -18,6 +19,22 @@ using sensor::testing::read_text;
 constexpr const char* kFrames = "12";
 constexpr Extent2D kExtent{512, 424};
 
+/// A run whose numbers are stored in tests/golden/NAME.json.
+struct Stored {
+    const char *scene, *frames, *shown_frame;
+    std::vector<std::string> settings;
+
+    fs::path file() const { return fs::path(PATINA_SOURCE_DIR) / "tests/golden" / (std::string(scene) + ".json"); }
+};
+
+const std::vector<Stored>& stored_runs() {
+    static const std::vector<Stored> runs{
+        {"cubes", "24", "000020", {"--set", "fusion.max_depth_m=8"}},  // the network has seen a segment; depth to 5.8 m
+        {"office", "12", "000008", {}},
+    };
+    return runs;
+}
+
 class Golden : public RunFolderTest {
   protected:
     static void run(const std::string& input, const fs::path& out) {
@@ -25,6 +42,33 @@ class Golden : public RunFolderTest {
             {"run", input, "--out", out, "--quiet", "--frames", kFrames, "--dump-every", "4", "--lighting", "none"});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_EQ(outcome.out + outcome.err, "");
+    }
+
+    /// Compares with what is stored, or stores instead where tools/accept_golden asks for it.
+    void expect_stored(const Stored& run) {
+        const fs::path recorded = beside("recorded");
+        const Outcome synth = patina(
+            {"synth", run.scene, "--frames", run.frames, "--extent", "128x106", "--quiet", "--out", recorded.string()});
+        ASSERT_EQ(synth.exit_code, 0) << synth.err;
+        std::vector<std::string> arguments{"run",
+                                           recorded.string(),
+                                           "--out",
+                                           out().string(),
+                                           "--quiet",
+                                           "--dump-every",
+                                           std::to_string(std::stoi(run.shown_frame))};
+        arguments.insert(arguments.end(), run.settings.begin(), run.settings.end());
+        const Outcome outcome = patina(arguments);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        const nlohmann::json measured = golden_numbers(out(), run.shown_frame);
+        if (std::getenv("PATINA_ACCEPT_GOLDEN")) {
+            sensor::testing::write_text(run.file(), measured.dump(1) + "\n");
+            return;
+        }
+        ASSERT_TRUE(fs::exists(run.file())) << "tools/accept_golden writes it";
+        const auto stored = nlohmann::json::parse(read_text(run.file()));
+        for (const std::string& difference : golden_differences(stored, measured))
+            ADD_FAILURE() << difference << " (tools/accept_golden stores what the scenes give now)";
     }
 };
 
@@ -110,6 +154,36 @@ TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
         const auto truth = sensor::read_depth(recorded / "depth" / (std::string(frame) + ".png"), kExtent);
         expect_close(view_m, std::get<Image<uint16_t>>(truth));
     }
+}
+
+TEST_F(Golden, CubesBeyondFourMetresGiveTheStoredNumbers) { expect_stored(stored_runs().at(0)); }
+TEST_F(Golden, OfficeGivesTheStoredNumbers) { expect_stored(stored_runs().at(1)); }
+
+// No driver needed.
+TEST(GoldenNumbers, AreEachHeldToTheirTolerance) {
+    for (const Stored& run : stored_runs()) {
+        const auto stored = nlohmann::json::parse(read_text(run.file()));
+        EXPECT_TRUE(golden_differences(stored, stored).empty());
+        EXPECT_GT(stored["materials"].size(), 4u);
+        EXPECT_EQ(stored["lights"].size(), 3u);
+        EXPECT_EQ(stored["view"]["cells"].size(), 12u);
+        const nlohmann::json numbers = stored.flatten();
+        for (const auto& [path, value] : numbers.items()) {
+            const auto differences = [&, path = path](double change) {
+                nlohmann::json changed = numbers;
+                changed[path] = changed[path].get<double>() + change;
+                return golden_differences(stored, changed.unflatten());
+            };
+            const double tolerance = golden_tolerance(path, value.get<double>());
+            EXPECT_TRUE(differences(0.9 * tolerance).empty()) << path;
+            EXPECT_EQ(differences(1.1 * tolerance).size(), 1u) << path;
+            nlohmann::json fewer = numbers;
+            fewer.erase(path);
+            EXPECT_EQ(golden_differences(stored, fewer.unflatten()).size(), 1u) << path;
+            EXPECT_EQ(golden_differences(fewer.unflatten(), stored).size(), 1u) << path;
+        }
+    }
+    EXPECT_GT(nlohmann::json::parse(read_text(stored_runs()[0].file()))["view"]["farthest_m"], 5);
 }
 
 TEST_F(Golden, SceneIsValidGltf) {

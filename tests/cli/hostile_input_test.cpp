@@ -2,7 +2,7 @@
 
 #include <sys/stat.h>
 
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 #include "tests/cli/run_folder.h"
 
 // Files that are no files, or say of themselves what is not so: one line that names them, and no start that hangs.
@@ -109,7 +109,7 @@ TEST_F(HostileInput, ANameThatIsTooLongIsAnError) {
 // A JPEG whose second frame header has another size made the program abort.
 TEST_F(HostileInput, APictureWithTwoHeadersCostsItsFrame) {
     fs::remove(sequence() / "color/000001.png");
-    sensor::testing::write_jpeg(sequence() / "color/000001.jpg", Image<sensor::SrgbPixel>({32, 24}));
+    sensor::testing::write_jpeg(sequence() / "color/000001.jpg", Image<SrgbPixel>({32, 24}));
     std::string jpeg = read_text(sequence() / "color/000001.jpg");
     const size_t header = jpeg.find("\xff\xc0");
     ASSERT_NE(header, std::string::npos);

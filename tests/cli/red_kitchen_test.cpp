@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruction/session/rgbd_frame.h"
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
 #include "tests/data_folder.h"
-#include "tools/rgbd_frame.h"
 
 // A real recording: what the model looks like from the depth camera, against what that camera measured.
 
@@ -54,18 +54,18 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
     const auto folder = data_folder("rgbd-redkitchen");
     if (!folder) GTEST_SKIP() << kNoData;
     sensor::PrefetchSource source(sensor::open_sequence(*folder));
-    const sensor::SequenceInfo& info = source.info();
+    const SequenceInfo& info = source.info();
     ASSERT_EQ(info.metres_per_unit, 0.001);
 
     vulkan::Device device(device_options());
-    Reconstruction reconstruction(device, {});
+    Pipeline reconstruction(device, {});
     Comparison comparison;
-    const uint32_t count = std::min(info.frames, frames_to_use());
+    const uint32_t count = std::min(*info.frames, frames_to_use());
     for (uint32_t i = 0; i < count; ++i) {
-        const auto frame = std::get<sensor::Frame>(source.next().value());
-        reconstruction.add(tools::to_rgbd(info, frame));
+        const auto frame = std::get<Frame>(source.next().value());
+        reconstruction.add(patina::to_rgbd(info, frame));
         if (i % kViewEvery != kViewEvery - 1) continue;
-        const PendingView view = reconstruction.view(info.depth, *frame.world_from_camera);
+        const ViewReadback view = reconstruction.view(info.depth, *frame.world_from_camera);
         reconstruction.wait();
         comparison.add(view.get(), std::get<Image<uint16_t>>(frame.depth),
                        reconstruction.settings().fusion.max_depth_m);
@@ -78,7 +78,7 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
     EXPECT_LE(comparison.quantile(0.5), 0.008f);
     EXPECT_LE(comparison.quantile(0.9), 0.02f);
     EXPECT_GT(seen, 0.9) << "share of the readings whose pixel shows the model";
-    EXPECT_EQ(reconstruction.counters().refused_blocks, 0u);
+    EXPECT_EQ(reconstruction.statistics().map.refused_blocks, 0u);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
-#include "tools/render.h"
+#include "tools/render/render.h"
 
 #include <array>
 #include <numbers>
 #include <set>
 
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/truth.h"
 #include "tests/cli/run_folder.h"
-#include "tools/orbit.h"
+#include "tools/render/orbit.h"
 
 // Views of a reconstruction as a user asks for them, and the poses of an orbit.
 
@@ -44,19 +44,19 @@ class Render : public RunFolderTest {
         return message;
     }
 
-    static Image<sensor::SrgbPixel> read(const fs::path& file) {
-        return std::get<Image<sensor::SrgbPixel>>(sensor::read_color(file, {64, 48}));
+    static Image<SrgbPixel> read(const fs::path& file) {
+        return std::get<Image<SrgbPixel>>(sensor::read_color(file, {64, 48}));
     }
 
-    static double brightness(const Image<sensor::SrgbPixel>& picture) {
+    static double brightness(const Image<SrgbPixel>& picture) {
         double sum = 0;
-        for (const sensor::SrgbPixel& pixel : picture.pixels()) sum += pixel.r + pixel.g + pixel.b;
+        for (const SrgbPixel& pixel : picture.pixels()) sum += pixel.r + pixel.g + pixel.b;
         return sum / (3.0 * static_cast<double>(picture.pixels().size()));
     }
 
     fs::path lights(double strength) const {
         const fs::path file = beside("lights" + std::to_string(strength) + ".json");
-        sensor::write_lights(file, std::vector<sensor::PointLight>{{{0, -1.5, 0}, glm::dvec3(strength)}});
+        sensor::write_lights(file, std::vector<Light>{{{0, -1.5, 0}, glm::dvec3(strength)}});
         return file;
     }
 };
@@ -91,7 +91,7 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
     render_cubes(beside("kd"), {"--lights", own, "--relight", own, "--show", "kd"});
     render_cubes(beside("kd_dim"), {"--lights", own, "--relight", dim, "--show", "kd"});
     const fs::path bright = beside("bright.json");
-    sensor::write_lights(bright, std::vector<sensor::PointLight>{{{0, -1.5, 0}, glm::dvec3(2)}}, glm::dvec3(0.5));
+    sensor::write_lights(bright, std::vector<Light>{{{0, -1.5, 0}, glm::dvec3(2)}}, glm::dvec3(0.5));
     render_cubes(beside("bright"), {"--lights", own, "--relight", bright});
     const auto picture = [&](const char* name) { return read(beside(name) / "000000.png"); };
     EXPECT_LT(brightness(picture("dim")), 0.8 * brightness(picture("own")));
@@ -103,17 +103,17 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
 TEST_F(Render, ShowsWhatARunWouldHaveHad) {
     // The scene has a lighting sequence of its own, in which run finds the lights.
     render_cubes(beside("kd"), {"--show", "kd"});
-    const auto grey_share = [](const Image<sensor::SrgbPixel>& picture) {
+    const auto grey_share = [](const Image<SrgbPixel>& picture) {
         size_t grey = 0;
-        for (const sensor::SrgbPixel& pixel : picture.pixels()) grey += pixel.r == pixel.g && pixel.g == pixel.b;
+        for (const SrgbPixel& pixel : picture.pixels()) grey += pixel.r == pixel.g && pixel.g == pixel.b;
         return static_cast<double>(grey) / static_cast<double>(picture.pixels().size());
     };
     EXPECT_LT(grey_share(read(beside("kd") / "000001.png")), 0.9) << "albedo, not emptiness";
     // Segments need no lights.
     render_cubes(beside("labels"), {"--lighting", "none", "--show", "labels"});
     std::set<std::array<uint8_t, 3>> colours;
-    const Image<sensor::SrgbPixel> labels = read(beside("labels") / "000001.png");
-    for (const sensor::SrgbPixel& pixel : labels.pixels()) colours.insert({pixel.r, pixel.g, pixel.b});
+    const Image<SrgbPixel> labels = read(beside("labels") / "000001.png");
+    for (const SrgbPixel& pixel : labels.pixels()) colours.insert({pixel.r, pixel.g, pixel.b});
     EXPECT_GT(colours.size(), 5u);
 }
 

@@ -2,9 +2,9 @@
 #include <cstring>
 
 #include "passes/specular/perceptual.h"
-#include "sensor/synthetic/example_scene.h"
+#include "scenes/description/example_scene.h"
 #include "tests/cli/run_folder.h"
-#include "tools/example_file.h"
+#include "tools/synth/example_file.h"
 
 namespace patina::testing {
 namespace {
@@ -51,9 +51,9 @@ TEST_F(SynthHemi, LabelsAreTheMaterialsOfTheScenes) {
     for (size_t i = 0; i < 70; ++i, ++scene) {
         const auto label = read_at<ExampleLabel>(bytes, sizeof(header) + i * header.example_bytes);
         // Scenes of which nothing was seen are left out.
-        const auto alpha = [&] { return sensor::draw_example_material(3, scene, 0).ks_alpha.w; };
+        const auto alpha = [&] { return scenes::draw_example_material(3, scene, 0).ks_alpha.w; };
         while (alpha() != label.alpha && scene < 100) ++scene;
-        const gpu::WardMaterial material = sensor::draw_example_material(3, scene, 0);
+        const gpu::WardMaterial material = scenes::draw_example_material(3, scene, 0);
         EXPECT_EQ(glm::vec3(label.kd[0], label.kd[1], label.kd[2]), glm::vec3(material.kd_weight)) << i;
         EXPECT_EQ(glm::vec3(label.ks[0], label.ks[1], label.ks[2]), glm::vec3(material.ks_alpha)) << i;
         const Perceptual w =

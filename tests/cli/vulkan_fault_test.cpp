@@ -15,7 +15,7 @@ constexpr int kOutOfHostMemory = -1, kOutOfDeviceMemory = -2, kDeviceLost = -4;
 
 class VulkanFault : public RunFolderTest {
   protected:
-    VulkanFault() { sensor::write_lights(lights_, std::vector<sensor::PointLight>{{{0, -1.5, 0}, glm::dvec3(8)}}); }
+    VulkanFault() { sensor::write_lights(lights_, std::vector<Light>{{{0, -1.5, 0}, glm::dvec3(8)}}); }
 
     Outcome run_with(const std::string& call, int at, int result) const {
         return patina({"run", sequence(), "--out", out(), "--quiet", "--lights", lights_, "--dump-every", "1"},

@@ -4,10 +4,10 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "sensor/picture_file.h"
-#include "sensor/text_file.h"
+#include "export/write_exr.h"
+#include "sensor/files/picture_file.h"
+#include "sensor/files/text_file.h"
 #include "tests/eval/pictures.h"
-#include "tools/export/write_exr.h"
 
 namespace patina::test {
 namespace {
@@ -80,7 +80,7 @@ std::vector<sensor::StampedPose> EvalRig::trajectory() {
     return poses;
 }
 
-std::vector<sensor::PointLight> EvalRig::lights() { return {{{0, -2.5, 1}, {3, 3, 3}}, {{2, -2.5, -1}, {2, 1.5, 1}}}; }
+std::vector<Light> EvalRig::lights() { return {{{0, -2.5, 1}, {3, 3, 3}}, {{2, -2.5, -1}, {2, 1.5, 1}}}; }
 
 EvalRig::EvalRig() {
     const fs::path truth = sequence() / "truth";

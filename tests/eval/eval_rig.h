@@ -9,7 +9,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 #include "sensor/pose.h"
 #include "sensor/truth.h"
 #include "tests/export/temporary_folder.h"
@@ -45,7 +45,7 @@ class EvalRig {
     /// The true frame as the run repeats it.
     static EvalFrame frame(uint32_t index);
     static std::vector<sensor::StampedPose> trajectory();
-    static std::vector<sensor::PointLight> lights();
+    static std::vector<Light> lights();
 
     /// Writes the run's frames anew, each changed by `change`, without some groups of channels.
     void change_frames(const std::function<void(EvalFrame&)>& change, const std::set<std::string>& without = {}) const;

@@ -212,7 +212,7 @@ TEST(Evaluate, ARunInAWorldOfItsOwnIsBroughtIntoTruths) {
         glm::translate(glm::rotate(RigidTransform(1), 1.0, glm::dvec3(0.6, 0, 0.8)), glm::dvec3(1, 2, 3));
     std::vector<sensor::StampedPose> poses = EvalRig::trajectory();
     for (sensor::StampedPose& pose : poses) pose.world_from_camera = run_from_truth * pose.world_from_camera;
-    std::vector<sensor::PointLight> lights = EvalRig::lights();
+    std::vector<Light> lights = EvalRig::lights();
     for (auto& light : lights) light.position_m = glm::dvec3(run_from_truth * glm::dvec4(light.position_m, 1));
     sensor::write_trajectory(rig.run() / "trajectory.txt", poses);
     sensor::write_lights(rig.run() / "lights.json", lights);

@@ -5,10 +5,10 @@
 #include <OpenEXR/ImfRgbaFile.h>
 #include <gmock/gmock.h>
 
+#include "export/write_exr.h"
 #include "tests/eval/pictures.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
-#include "tools/export/write_exr.h"
 
 namespace patina::eval {
 namespace {

@@ -8,16 +8,15 @@
 namespace patina::eval {
 namespace {
 
-using sensor::PointLight;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr double kRadius_m = 0.5;
 
-const std::vector<PointLight> kTruth = {{{0, -2, 0}, {1, 2, 3}}, {{3, -2, 0}, {4, 4, 4}}, {{0, -2, 3}, {2, 1, 0.5}}};
+const std::vector<Light> kTruth = {{{0, -2, 0}, {1, 2, 3}}, {{3, -2, 0}, {4, 4, 4}}, {{0, -2, 3}, {2, 1, 0.5}}};
 
 TEST(Lights, TheTrueOnesInAnotherOrderAllMatch) {
-    const std::vector<PointLight> run = {kTruth[2], kTruth[0], kTruth[1]};
+    const std::vector<Light> run = {kTruth[2], kTruth[0], kTruth[1]};
     const LightErrors errors = compare_lights(kTruth, run, kRadius_m);
     ASSERT_EQ(errors.matches.size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
@@ -32,7 +31,7 @@ TEST(Lights, TheTrueOnesInAnotherOrderAllMatch) {
 }
 
 TEST(Lights, MovedOnesMatchWithinTheRadius) {
-    std::vector<PointLight> run = kTruth;
+    std::vector<Light> run = kTruth;
     run[0].position_m.x += 0.3;
     run[1].position_m.z -= 0.6;
     const LightErrors errors = compare_lights(kTruth, run, kRadius_m);
@@ -43,7 +42,7 @@ TEST(Lights, MovedOnesMatchWithinTheRadius) {
 }
 
 TEST(Lights, MissingAndInventedOnesAreListed) {
-    const std::vector<PointLight> run = {{{9, 9, 9}, {1, 1, 1}}, kTruth[1], {{-9, 9, 9}, {1, 1, 1}}};
+    const std::vector<Light> run = {{{9, 9, 9}, {1, 1, 1}}, kTruth[1], {{-9, 9, 9}, {1, 1, 1}}};
     const LightErrors errors = compare_lights(kTruth, run, kRadius_m);
     EXPECT_EQ(errors.matches.size(), 1u);
     EXPECT_THAT(errors.missed, ElementsAre(0, 2));
@@ -53,8 +52,8 @@ TEST(Lights, MissingAndInventedOnesAreListed) {
 }
 
 TEST(Lights, TheNearestPairWins) {
-    const std::vector<PointLight> truth = {{{0, 0, 0}, {1, 1, 1}}, {{0.4, 0, 0}, {1, 1, 1}}};
-    const std::vector<PointLight> run = {{{0.3, 0, 0}, {1, 1, 1}}};
+    const std::vector<Light> truth = {{{0, 0, 0}, {1, 1, 1}}, {{0.4, 0, 0}, {1, 1, 1}}};
+    const std::vector<Light> run = {{{0.3, 0, 0}, {1, 1, 1}}};
     const LightErrors errors = compare_lights(truth, run, kRadius_m);
     ASSERT_EQ(errors.matches.size(), 1u);
     EXPECT_EQ(errors.matches[0].truth, 1u);
@@ -62,8 +61,8 @@ TEST(Lights, TheNearestPairWins) {
 }
 
 TEST(Lights, ACommonFactorIsFoundAndRemoved) {
-    std::vector<PointLight> run = kTruth;
-    for (PointLight& light : run) light.intensity *= 1.6;
+    std::vector<Light> run = kTruth;
+    for (Light& light : run) light.intensity *= 1.6;
     const LightErrors errors = compare_lights(kTruth, run, kRadius_m);
     EXPECT_NEAR(errors.common_factor, 1.6, 1e-12);
     for (const LightMatch& match : errors.matches) {
@@ -75,7 +74,7 @@ TEST(Lights, ACommonFactorIsFoundAndRemoved) {
 }
 
 TEST(Lights, TheFactorIsTheGeometricMean) {
-    std::vector<PointLight> run = kTruth;
+    std::vector<Light> run = kTruth;
     run[0].intensity *= 8;
     const LightErrors errors = compare_lights(kTruth, run, kRadius_m);
     EXPECT_NEAR(errors.common_factor, 2, 1e-12);
@@ -84,7 +83,7 @@ TEST(Lights, TheFactorIsTheGeometricMean) {
 }
 
 TEST(Lights, ChannelsWithoutLightDoNotDisturb) {
-    const std::vector<PointLight> truth = {{{0, 0, 0}, {1, 0, 0}}}, run = {{{0, 0, 0}, {2, 0, 0.1}}};
+    const std::vector<Light> truth = {{{0, 0, 0}, {1, 0, 0}}}, run = {{{0, 0, 0}, {2, 0, 0.1}}};
     const LightErrors errors = compare_lights(truth, run, kRadius_m);
     EXPECT_NEAR(errors.common_factor, 2, 1e-12);
     EXPECT_EQ(errors.matches[0].intensity_error, glm::dvec3(1, 0, std::numeric_limits<double>::infinity()));

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 
 namespace patina::test {
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 #include "tests/eval/sliding_view.h"
 #include "tests/export/throws.h"
 #include "tools/eval/evaluate.h"

@@ -2,8 +2,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "sensor/picture_file.h"
-#include "sensor/text_file.h"
+#include "sensor/files/picture_file.h"
+#include "sensor/files/text_file.h"
 #include "sensor/write_sequence.h"
 #include "tests/eval/pictures.h"
 
@@ -41,7 +41,7 @@ EvalFrame SlidingRig::frame() {
 }
 
 SlidingRig::SlidingRig() {
-    sensor::SequenceInfo info;
+    SequenceInfo info;
     info.name = "wall";
     info.color = info.depth = SlidingView::camera();
     info.color_from_depth = glm::translate(RigidTransform(1), {-SlidingView::kPixel_m, 0, 0});
@@ -51,7 +51,7 @@ SlidingRig::SlidingRig() {
         poses.push_back({i / info.fps, SlidingView::world_from_camera(i)});
         writer.write({i,
                       poses.back().timestamp_s,
-                      Image<sensor::SrgbPixel>(SlidingView::kExtent),
+                      Image<SrgbPixel>(SlidingView::kExtent),
                       Image<float>(SlidingView::kExtent, SlidingView::kWall_m),
                       std::nullopt,
                       0,

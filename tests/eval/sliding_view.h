@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "sensor/frame.h"
+#include "patina/frame.h"
 #include "tests/eval/eval_rig.h"
 #include "tools/eval/seen_surface.h"
 

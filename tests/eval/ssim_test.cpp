@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/eval/pictures.h"
-#include "tests/reference/ssim.h"
+#include "tests/reference/eval/ssim.h"
 
 namespace patina::eval {
 namespace {

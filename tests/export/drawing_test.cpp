@@ -1,4 +1,4 @@
-#include "tools/export/drawing.h"
+#include "tools/report/drawing.h"
 
 #include <limits>
 
@@ -7,8 +7,6 @@
 
 namespace patina {
 namespace {
-
-using sensor::SrgbPixel;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 

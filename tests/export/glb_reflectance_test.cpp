@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <tiny_gltf.h>
 
+#include "export/gltf_material.h"
+#include "export/write_glb.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
 #include "tests/export/throws.h"
-#include "tools/export/gltf_material.h"
-#include "tools/export/write_glb.h"
 
 namespace patina {
 namespace {
@@ -190,7 +190,7 @@ TEST(GlbReflectance, WithoutLabelsAllIsTheSurface) {
 
 TEST(GlbReflectance, LightsAreNodesBelowTheRoot) {
     const Mesh mesh = wavy_sheet(2, 2);
-    const std::vector<sensor::PointLight> lights{{{1, -2, 3}, {2, 4, 1}, 0.05}, {{0, 0, 0}, {0, 0, 0}}};
+    const std::vector<Light> lights{{{1, -2, 3}, {2, 4, 1}, 0.05}, {{0, 0, 0}, {0, 0, 0}}};
     const Scene scene = written_and_read({.mesh = mesh, .lights = lights});
     ASSERT_EQ(scene.model.lights.size(), 2u);
     EXPECT_EQ(scene.model.lights[0].type, "point");

@@ -1,4 +1,4 @@
-#include "tools/export/gltf_material.h"
+#include "export/gltf_material.h"
 
 #include <gtest/gtest.h>
 

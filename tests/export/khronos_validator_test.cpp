@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include "export/write_glb.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
-#include "tools/export/write_glb.h"
 
 namespace patina {
 namespace {
@@ -91,7 +91,7 @@ TEST_F(KhronosValidator, AcceptsSegmentsMaterialsAndLights) {
     reflectance.segments[1].gloss = WardGloss{glm::vec3(0.2f, 0.1f, 0.05f), 0.1f};
     reflectance.segments[2] = {glm::vec3(0.01f), WardGloss{glm::vec3(0.8f), 0.2f}, 1, 1, 1};  // a metal
     const std::vector<std::string> names{"", "glossy", "metal", "diffuse \"one\""};
-    const std::vector<sensor::PointLight> lights{{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}};
+    const std::vector<Light> lights{{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}};
     expect_valid({mesh, &reflectance, names, lights});
 }
 

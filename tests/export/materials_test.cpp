@@ -1,4 +1,4 @@
-#include "tools/export/materials.h"
+#include "export/materials.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "tools/export/mesh_parts.h"
+#include "export/mesh_parts.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "tools/export/output_folder.h"
+#include "tools/report/output_folder.h"
 
 #include <algorithm>
 #include <fstream>
@@ -17,7 +17,7 @@
 #include "sensor/output/new_folder.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
-#include "tools/export/swap_folder.h"
+#include "tools/report/swap_folder.h"
 
 namespace patina {
 namespace {

@@ -1,10 +1,10 @@
-#include "tools/export/picture_score.h"
+#include "tools/report/picture_score.h"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 
-#include "tools/export/drawing.h"
+#include "tools/report/drawing.h"
 
 namespace patina {
 namespace {
@@ -48,7 +48,7 @@ TEST(PictureScore, MediansAreOfEachNumberAlone) {
 
 TEST(PictureScore, LinearColourIsTheInverseOfTheEncoding) {
     for (int code = 0; code < 256; ++code) {
-        const sensor::SrgbPixel pixel(code, 255 - code, 7);
+        const SrgbPixel pixel(code, 255 - code, 7);
         EXPECT_EQ(color_pixel(linear_color(pixel)), pixel);
     }
 }

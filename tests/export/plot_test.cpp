@@ -1,4 +1,4 @@
-#include "tools/export/plot.h"
+#include "tools/report/plot.h"
 
 #include <limits>
 

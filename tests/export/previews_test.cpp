@@ -1,4 +1,4 @@
-#include "tools/export/previews.h"
+#include "tools/report/previews.h"
 
 #include <limits>
 
@@ -30,7 +30,7 @@ FrameDump half_seen(Extent2D extent) {
     return frame;
 }
 
-Image<sensor::SrgbPixel> input_of(Extent2D extent) { return Image<sensor::SrgbPixel>(extent, {200, 100, 50}); }
+Image<SrgbPixel> input_of(Extent2D extent) { return Image<SrgbPixel>(extent, {200, 100, 50}); }
 
 cv::Mat decode(const std::string& png) {
     const std::vector<uchar> bytes(png.begin(), png.end());

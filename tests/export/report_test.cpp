@@ -1,9 +1,9 @@
-#include "tools/export/report.h"
+#include "tools/report/report.h"
 
 #include <gmock/gmock.h>
 
 #include "tests/export/test_record.h"
-#include "tools/export/html.h"
+#include "tools/report/html.h"
 
 namespace patina {
 namespace {

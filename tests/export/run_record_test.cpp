@@ -1,4 +1,4 @@
-#include "tools/export/run_record.h"
+#include "tools/report/run_record.h"
 
 #include <limits>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "passes/surface/mesh.h"
+#include "patina/scene.h"
 
 namespace patina::test {
 

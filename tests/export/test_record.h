@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/export/run_record.h"
+#include "tools/report/run_record.h"
 
 namespace patina::test {
 

@@ -1,4 +1,4 @@
-#include "tools/export/tracking_record.h"
+#include "tools/report/tracking_record.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

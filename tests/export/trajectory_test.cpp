@@ -1,4 +1,4 @@
-#include "tools/export/trajectory.h"
+#include "export/trajectory.h"
 
 #include <limits>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "tools/export/video.h"
+#include "tools/report/video.h"
 
 #include <gmock/gmock.h>
 #include <opencv2/videoio.hpp>

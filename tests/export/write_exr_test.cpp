@@ -1,4 +1,4 @@
-#include "tools/export/write_exr.h"
+#include "export/write_exr.h"
 
 #include <map>
 

@@ -1,4 +1,4 @@
-#include "tools/export/write_glb.h"
+#include "export/write_glb.h"
 
 #include <cstring>
 #include <limits>

@@ -23,7 +23,7 @@ void GpuTest::TearDown() {
     for (size_t i = messages_before_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
 }
 
-void GpuTest::run(graph::Frame frame) {
+void GpuTest::run(graph::FrameGraph frame) {
     runner_.submit(std::move(frame));
     runner_.wait();
     const graph::CompiledFrame& compiled = runner_.last_frame();

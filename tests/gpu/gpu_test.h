@@ -23,7 +23,7 @@ class GpuTest : public ::testing::Test {
     graph::Runner& runner() { return runner_; }
 
     /// Submits and waits.
-    void run(graph::Frame frame);
+    void run(graph::FrameGraph frame);
 
   private:
     graph::Runner runner_{device()};

@@ -6,16 +6,16 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
-#include "sensor/exr_file.h"
+#include "scenes/files/mesh_file.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/environment.h"
+#include "sensor/files/exr_file.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/inspect.h"
 #include "sensor/open.h"
-#include "sensor/picture_file.h"
-#include "sensor/synthetic/environment.h"
-#include "sensor/synthetic/mesh_file.h"
-#include "sensor/synthetic/scene_file.h"
 #include "sensor/truth.h"
 #include "sensor/write_sequence.h"
-#include "tests/sensor/scene_json.h"
+#include "tests/scenes/scene_json.h"
 #include "tests/sensor/sequences.h"
 
 // Every reader, on files that chance has damaged: it reads them or throws an Error that names a file, and nothing else.
@@ -166,7 +166,7 @@ TEST_F(HostileFiles, Open3d) {
 }
 
 TEST_F(HostileFiles, LightsMaterialsAndScenes) {
-    const PointLight light{{0, -2, 0}, {1, 1, 1}, 0.1};
+    const Light light{{0, -2, 0}, {1, 1, 1}, 0.1};
     write_lights(folder_ / "lights.json", {&light, 1}, glm::dvec3(0.1));
     attack("lights.json", 300, [&] {
         read_lights(folder_ / "lights.json");
@@ -175,17 +175,17 @@ TEST_F(HostileFiles, LightsMaterialsAndScenes) {
     const Material material{1, "floor", glm::dvec3(0.5), glm::dvec3(0.1), 0.2};
     write_materials(folder_ / "materials.json", {&material, 1});
     attack("materials.json", 300, [&] { read_materials(folder_ / "materials.json"); });
-    write_text(folder_ / "scene.json", small_scene().dump(1));
-    attack("scene.json", 300, [&] { load_scene((folder_ / "scene.json").string()); });
+    write_text(folder_ / "scene.json", scenes::testing::small_scene().dump(1));
+    attack("scene.json", 300, [&] { scenes::load_scene((folder_ / "scene.json").string()); });
 }
 
 TEST_F(HostileFiles, Environments) {
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
     for (int i = 0; i < 8 * 16; ++i) hdr += std::string("\x80\x40\x20\x81", 4);
     write_text(folder_ / "e.hdr", hdr);
-    attack("e.hdr", 300, [&] { read_environment(folder_ / "e.hdr"); });
+    attack("e.hdr", 300, [&] { scenes::read_environment(folder_ / "e.hdr"); });
     write_exr_color(folder_ / "e.exr", Image<glm::vec3>({16, 8}, glm::vec3(0.5f)));
-    attack("e.exr", 300, [&] { read_environment(folder_ / "e.exr"); });
+    attack("e.exr", 300, [&] { scenes::read_environment(folder_ / "e.exr"); });
 }
 
 TEST_F(HostileFiles, Meshes) {
@@ -214,7 +214,8 @@ TEST_F(HostileFiles, Meshes) {
                          "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC"}]})";
     write_text(folder_ / "m.gltf", gltf);
     for (const char* name : {"m.obj", "a.ply", "b.ply", "m.gltf"}) {
-        attack(name, 500, [&] { read_mesh(folder_ / name, {.normals = MeshNormals::kSmooth, .height_m = 1}); });
+        attack(name, 500,
+               [&] { scenes::read_mesh(folder_ / name, {.normals = scenes::MeshNormals::kSmooth, .height_m = 1}); });
     }
 }
 

@@ -6,11 +6,11 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include "sensor/json_file.h"
+#include "scenes/files/mesh_file.h"
+#include "scenes/files/scene_file.h"
+#include "sensor/files/json_file.h"
+#include "sensor/files/text_file.h"
 #include "sensor/open.h"
-#include "sensor/synthetic/mesh_file.h"
-#include "sensor/synthetic/scene_file.h"
-#include "sensor/text_file.h"
 #include "sensor/truth.h"
 #include "tests/sensor/sequences.h"
 
@@ -48,7 +48,7 @@ TEST(InputFile, ALongFileIsRefusedBeforeItIsRead) {
     EXPECT_THAT(error_of([&] { JsonValue::read(folder / "a"); }), HasSubstr("has 5368709120 bytes, at most 67108864"));
     EXPECT_THAT(error_of([&] { read_lines(folder / "a"); }), HasSubstr("has 5368709120 bytes, at most 67108864"));
     fs::rename(folder / "a", folder / "a.obj");
-    EXPECT_THAT(error_of([&] { read_mesh(folder / "a.obj", {}); }), HasSubstr("has 5368709120 bytes"));
+    EXPECT_THAT(error_of([&] { scenes::read_mesh(folder / "a.obj", {}); }), HasSubstr("has 5368709120 bytes"));
 }
 
 TEST(InputFile, WhatCannotBeLookedAtIsAnErrorThatNamesIt) {
@@ -88,7 +88,7 @@ TEST(InputFile, DeeplyNestedJsonIsRefusedInEveryFile) {
         write_text(file, nested);
         EXPECT_THAT(error_of([&] { read_lights(file); }),
                     AllOf(HasSubstr(file.string()), HasSubstr("nests deeper than 64 levels")));
-        EXPECT_THAT(error_of([&] { load_scene(file.string()); }), HasSubstr("nests deeper than 64 levels"));
+        EXPECT_THAT(error_of([&] { scenes::load_scene(file.string()); }), HasSubstr("nests deeper than 64 levels"));
         fs::create_directories(folder / "s");
         write_text(folder / "s/sequence.json", nested);
         EXPECT_THAT(error_of([&] { open_sequence(folder / "s"); }), HasSubstr("nests deeper than 64 levels"));
@@ -103,9 +103,10 @@ TEST(InputFile, APipeInPlaceOfAnyInputIsAnError) {
     const TemporaryFolder folder;
     for (const char* name : {"lights.json", "m.obj", "m.ply", "m.glb", "sequence.json"}) make_pipe(folder / name);
     EXPECT_THAT(error_of([&] { read_lights(folder / "lights.json"); }), HasSubstr("is a pipe, not a file"));
-    EXPECT_THAT(error_of([&] { load_scene((folder / "lights.json").string()); }), HasSubstr("is a pipe, not a file"));
+    EXPECT_THAT(error_of([&] { scenes::load_scene((folder / "lights.json").string()); }),
+                HasSubstr("is a pipe, not a file"));
     for (const char* name : {"m.obj", "m.ply", "m.glb"})
-        EXPECT_THAT(error_of([&] { read_mesh(folder / name, {}); }), HasSubstr("is a pipe, not a file"));
+        EXPECT_THAT(error_of([&] { scenes::read_mesh(folder / name, {}); }), HasSubstr("is a pipe, not a file"));
     EXPECT_THAT(error_of([&] { open_sequence(folder / ""); }), HasSubstr("is a pipe, not a file"));
 }
 

@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include "engine/core/error.h"
-#include "sensor/exr_file.h"
+#include "sensor/files/exr_file.h"
+#include "sensor/files/text_file.h"
 #include "sensor/output/apart.h"
 #include "sensor/output/new_file.h"
 #include "sensor/output/new_folder.h"
 #include "sensor/output/output_file.h"
-#include "sensor/text_file.h"
 #include "tests/sensor/sequences.h"
 #include "tests/support/file_size_limit.h"
 

@@ -1,4 +1,4 @@
-#include "sensor/picture_file.h"
+#include "sensor/files/picture_file.h"
 
 #include <cstring>
 #include <limits>

@@ -6,8 +6,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
 
+#include "sensor/files/picture_file.h"
 #include "sensor/inspect.h"
-#include "sensor/picture_file.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor {

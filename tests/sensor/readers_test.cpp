@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "sensor/files/picture_file.h"
 #include "sensor/open.h"
-#include "sensor/picture_file.h"
 #include "sensor/write_sequence.h"
 #include "tests/sensor/sequences.h"
 

@@ -7,8 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdlib.h>
 
+#include "sensor/files/picture_file.h"
 #include "sensor/open.h"
-#include "sensor/picture_file.h"
 #include "sensor/write_sequence.h"
 
 namespace patina::sensor::testing {

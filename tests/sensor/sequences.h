@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::sensor::testing {
 

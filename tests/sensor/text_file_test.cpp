@@ -1,4 +1,4 @@
-#include "sensor/text_file.h"
+#include "sensor/files/text_file.h"
 
 #include <cmath>
 

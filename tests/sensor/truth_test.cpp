@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 TEST(Truth, LightsAndMaterialsFollowTheFormat) {
     const TemporaryFolder folder;
-    write_lights(folder / "lights.json", std::vector<PointLight>{{{1, 2, 3}, {4, 5, 6.5}}});
+    write_lights(folder / "lights.json", std::vector<Light>{{{1, 2, 3}, {4, 5, 6.5}}});
     write_materials(folder / "materials.json",
                     std::vector<Material>{{1, "floor", glm::dvec3(0.25), glm::dvec3(0.5), 0.125},
                                           {2, "wood", std::nullopt, glm::dvec3(0), 1}});
@@ -28,7 +28,7 @@ TEST(Truth, LightsAndMaterialsFollowTheFormat) {
 
 TEST(Truth, WhatIsWrittenReadsBackTheSame) {
     const TemporaryFolder folder;
-    const std::vector<PointLight> lights{{{1, -2, 3}, {4, 0, 6.5}, 0.05}, {{0.1, 0.2, 0.3}, {1, 1, 1}}};
+    const std::vector<Light> lights{{{1, -2, 3}, {4, 0, 6.5}, 0.05}, {{0.1, 0.2, 0.3}, {1, 1, 1}}};
     const std::vector<Material> materials{{1, "floor", glm::dvec3(0.1, 0.2, 1), glm::dvec3(0.5), 0.125},
                                           {65535, "wood", std::nullopt, glm::dvec3(0), 1}};
     write_lights(folder / "lights.json", lights);

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "sensor/files/picture_file.h"
 #include "sensor/open.h"
-#include "sensor/picture_file.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor {

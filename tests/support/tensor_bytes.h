@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "passes/model/network.h"
+#include "passes/state/network.h"
 
 namespace patina::test {
 
@@ -22,7 +22,7 @@ struct TensorBytes {
     std::string joined() const;
 };
 
-/// A network as docs/specular.md says; the list of layers apart, which belongs into __metadata__.network as a string.
+/// A network (format: docs/develop/specular.md); the list of layers apart, for __metadata__.network as a string.
 TensorBytes tensor_bytes(const NetworkDescription& network, nlohmann::json& list);
 
 }  // namespace patina::test

@@ -1,4 +1,4 @@
-#include "passes/model/block_at.h"
+#include "passes/state/block_at.h"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "tools/bright_surfaces.h"
+#include "reconstruction/session/bright_surfaces.h"
 
 #include <limits>
 #include <random>
@@ -31,8 +31,8 @@ TEST(BrightSurfaces, AValueThatIsAloneComesOutAsItIs) {
     EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo);
     bright.add(picture_of(std::vector<float>(30, 0)));
     EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo) << "half of the pixels are more than a twentieth";
-    bright.add(Image<sensor::SrgbPixel>({kTaken, 2000}, sensor::SrgbPixel(10, 200, 30)));
-    EXPECT_FLOAT_EQ(bright.ambient().r, linear_color(sensor::SrgbPixel(10, 200, 30)).g / kUsualAlbedo);
+    bright.add(Image<SrgbPixel>({kTaken, 2000}, SrgbPixel(10, 200, 30)));
+    EXPECT_FLOAT_EQ(bright.ambient().r, linear_color(SrgbPixel(10, 200, 30)).g / kUsualAlbedo);
 }
 
 TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {

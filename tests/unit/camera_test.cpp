@@ -1,4 +1,4 @@
-#include "engine/core/camera.h"
+#include "patina/camera.h"
 
 #include <limits>
 

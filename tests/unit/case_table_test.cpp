@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-#include "shared/extract_surface.h"
+#include "shared/surface/extract_surface.h"
 
 namespace patina::surface {
 namespace {

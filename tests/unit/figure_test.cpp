@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sensor/synthetic/mesh_file.h"
-#include "tests/reference/mesh_facts.h"
+#include "scenes/files/mesh_file.h"
+#include "tests/reference/surface/mesh_facts.h"
 #include "tools/figure/distance.h"
 #include "tools/figure/hare.h"
 #include "tools/figure/polygonise.h"
@@ -19,14 +19,14 @@ namespace {
 
 const std::filesystem::path kShipped = PATINA_SOURCE_DIR "/assets/scenes/figure.ply";
 
-reference::MeshFacts facts_of(const sensor::TriangleMesh& mesh) {
+reference::MeshFacts facts_of(const scenes::TriangleMesh& mesh) {
     std::vector<std::array<uint32_t, 3>> triangles;
     for (const glm::uvec3& t : mesh.triangles) triangles.push_back({t.x, t.y, t.z});
     return reference::mesh_facts(mesh.positions_m, triangles);
 }
 
-const sensor::TriangleMesh& made() {
-    static const sensor::TriangleMesh mesh = make_hare();
+const scenes::TriangleMesh& made() {
+    static const scenes::TriangleMesh mesh = make_hare();
     return mesh;
 }
 
@@ -37,7 +37,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 TEST(Polygonise, AnEllipsoidIsASolidOfItsVolumeWithNormalsOutwards) {
     const auto egg = [](glm::dvec3 p) { return ellipsoid(p, {0.1, 0.2, 0.3}, {0.5, 0.7, 0.4}); };
-    const sensor::TriangleMesh mesh = polygonise(egg, {-0.6, -0.7, -0.3}, {0.8, 1.1, 0.9}, 0.05);
+    const scenes::TriangleMesh mesh = polygonise(egg, {-0.6, -0.7, -0.3}, {0.8, 1.1, 0.9}, 0.05);
     const reference::MeshFacts facts = facts_of(mesh);
     EXPECT_TRUE(facts.closed());
     EXPECT_EQ(facts.euler_number, 2);
@@ -98,10 +98,10 @@ TEST(Figure, TheShippedFileIsWhatTheProgramMakes) {
     const std::string made_bytes = bytes_of(file), shipped_bytes = bytes_of(kShipped);
     EXPECT_EQ(made_bytes.size(), shipped_bytes.size());
     EXPECT_LT(shipped_bytes.size(), 700'000u);
-    sensor::MeshSettings as_it_is;
-    as_it_is.up = sensor::MeshUp::kMinusY;
-    const sensor::TriangleMesh written = sensor::read_mesh(file, as_it_is);
-    const sensor::TriangleMesh shipped = sensor::read_mesh(kShipped, as_it_is);
+    scenes::MeshSettings as_it_is;
+    as_it_is.up = scenes::MeshUp::kMinusY;
+    const scenes::TriangleMesh written = scenes::read_mesh(file, as_it_is);
+    const scenes::TriangleMesh shipped = scenes::read_mesh(kShipped, as_it_is);
     std::filesystem::remove(file);
     EXPECT_EQ(shipped.triangles, written.triangles);
     ASSERT_EQ(shipped.positions_m.size(), written.positions_m.size());
@@ -113,7 +113,7 @@ TEST(Figure, TheShippedFileIsWhatTheProgramMakes) {
 }
 
 TEST(Figure, IsTheSameEachTime) {
-    const sensor::TriangleMesh again = make_hare();
+    const scenes::TriangleMesh again = make_hare();
     EXPECT_EQ(again.positions_m, made().positions_m);
     EXPECT_EQ(again.normals, made().normals);
     EXPECT_EQ(again.triangles, made().triangles);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "passes/lighting/search_lights.h"
+#include "reconstruction/lights/search_lights.h"
 
 namespace patina {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/reference/allocate_blocks.h"
-#include "tests/reference/analytic_scene.h"
-#include "tests/reference/integrate.h"
-#include "tests/reference/raycast.h"
-#include "tests/reference/shade_color.h"
-#include "tests/reference/visible_blocks.h"
+#include "tests/reference/fusion/allocate_blocks.h"
+#include "tests/reference/fusion/integrate.h"
+#include "tests/reference/fusion/raycast.h"
+#include "tests/reference/fusion/shade_color.h"
+#include "tests/reference/fusion/visible_blocks.h"
+#include "tests/reference/scenes/analytic_scene.h"
 
 namespace patina::reference {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/reference/keyframes.h"
+#include "tests/reference/tracking/keyframes.h"
 
 namespace patina::reference {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/network_file.h"
+#include "reconstruction/session/network_file.h"
 
 #include <cstring>
 #include <functional>
@@ -6,12 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "sensor/text_file.h"
+#include "reconstruction/session/tensor_file.h"
+#include "sensor/files/text_file.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
 #include "tests/support/tensor_bytes.h"
 #include "tools/bench/random_network.h"
-#include "tools/tensor_file.h"
 
 namespace patina::tools {
 namespace {

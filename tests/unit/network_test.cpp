@@ -1,4 +1,4 @@
-#include "passes/model/network.h"
+#include "passes/state/network.h"
 
 #include "tests/export/throws.h"
 #include "tools/bench/random_network.h"

@@ -1,4 +1,4 @@
-#include "tests/reference/observation_set.h"
+#include "tests/reference/observation/observation_set.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "passes/model/pool_demand.h"
+#include "passes/state/pool_demand.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,10 @@
-#include "tools/shortfalls.h"
+#include "reconstruction/session/shortfalls.h"
 
 #include <gmock/gmock.h>
 
-namespace patina::tools {
+#include "tools/program/outcome.h"
+
+namespace patina {
 namespace {
 
 using enum TrackingState;
@@ -29,7 +31,7 @@ TEST(LostForGood, IsALossAtTheEndAlone) {
 }
 
 TEST(Outcome, IsShortOnceAnythingIs) {
-    Outcome outcome;
+    tools::Outcome outcome;
     EXPECT_EQ(outcome.exit_code(), 0);
     outcome.fall_short("a");
     outcome.fall_short("b");
@@ -39,4 +41,4 @@ TEST(Outcome, IsShortOnceAnythingIs) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina

@@ -1,4 +1,4 @@
-#include "shared/tracking.h"
+#include "shared/tracking/tracking.h"
 
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 #include "passes/tracking/judge_motion.h"
 #include "passes/tracking/motion_model.h"
-#include "tests/reference/analytic_scene.h"
-#include "tests/reference/track.h"
+#include "tests/reference/scenes/analytic_scene.h"
+#include "tests/reference/tracking/track.h"
 
 namespace patina {
 namespace {

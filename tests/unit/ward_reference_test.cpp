@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/reference/sampling.h"
+#include "tests/reference/scenes/sampling.h"
 
 namespace patina::reference {
 namespace {

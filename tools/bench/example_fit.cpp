@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kVoxels = gpu::kExampleVoxels;
 
-Lights lights_of(const sensor::ExampleScene& scene, float exposure) {
+Lights lights_of(const scenes::ExampleScene& scene, float exposure) {
     std::vector<PointLight> lamps;
     for (size_t i = 0; i < scene.scene.lamps; ++i) {
         const gpu::PointLight& lamp = scene.lamps[i];
@@ -24,14 +24,14 @@ Lights lights_of(const sensor::ExampleScene& scene, float exposure) {
     return lights;
 }
 
-/// lib/reflectance.glsl: is_marched().
+/// lib/records/reflectance.glsl: is_marched().
 gpu::RecordStatus marched_with(const Lights& lights) {
     gpu::RecordStatus status{};
     status.marched = (lights.position_version() % 255 + 1) << 24;
     return status;
 }
 
-glm::uvec2 reached_by(const sensor::ExampleScene& scene, const gpu::ExampleVoxel& voxel) {
+glm::uvec2 reached_by(const scenes::ExampleScene& scene, const gpu::ExampleVoxel& voxel) {
     return {~voxel.shadow & ((1u << scene.scene.lamps) - 1), 0};
 }
 
@@ -57,7 +57,7 @@ std::vector<FilledObservation> observations_of(const ExampleBatch& batch, size_t
 }  // namespace
 
 ExampleBatch render_examples(tools::ExampleRenderer& renderer, uint64_t seed, uint64_t first,
-                             std::vector<sensor::ExampleScene> scenes) {
+                             std::vector<scenes::ExampleScene> scenes) {
     const tools::RenderedExamples rendered = renderer.submit(seed, first, scenes);
     renderer.wait();
     return {std::move(scenes), rendered.halves.as<uint16_t>(), rendered.drawn.as<uint32_t>(),
@@ -73,7 +73,7 @@ ExampleFit::ExampleFit(vulkan::Device& device, uint32_t capacity)
       runner_(device) {}
 
 void ExampleFit::fill(const ExampleBatch& batch) {
-    graph::Frame frame = runner_.begin();
+    graph::FrameGraph frame = runner_.begin();
     map_.reset(frame, glm::dvec3(0));
     table_.reset(frame);
     runner_.submit(std::move(frame));
@@ -106,7 +106,7 @@ void ExampleFit::fill(const ExampleBatch& batch) {
 }
 
 std::vector<gpu::WardFit> ExampleFit::fit_once(const ExampleBatch& batch, const std::vector<gpu::WardMaterial>& said) {
-    graph::Frame frame = runner_.begin();
+    graph::FrameGraph frame = runner_.begin();
     const ObservationMapIds records = map_.import(frame);
     const SegmentSampleIds samples = samples_.import(frame);
     const graph::BufferId status = frame.upload<gpu::RecordStatus>("examples.status", status_);

@@ -4,18 +4,18 @@
 #include <vector>
 
 #include "engine/graph/runner.h"
-#include "passes/model/lights.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/segment_samples.h"
-#include "passes/model/ward_fits.h"
 #include "passes/specular/perceptual.h"
-#include "tools/example_renderer.h"
+#include "passes/state/lights.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/segment_samples.h"
+#include "passes/state/ward_fits.h"
+#include "tools/synth/example_renderer.h"
 
 namespace patina {
 
 /// What became of examples' scenes.
 struct ExampleBatch {
-    std::vector<sensor::ExampleScene> scenes;
+    std::vector<scenes::ExampleScene> scenes;
     std::vector<uint16_t> halves;  ///< as tools::RenderedExamples, and so on
     std::vector<uint32_t> drawn;
     std::vector<gpu::ExampleReading> readings;
@@ -28,7 +28,7 @@ struct ExampleBatch {
 
 /// Renders scenes with a renderer that keeps readings, and waits for them.
 ExampleBatch render_examples(tools::ExampleRenderer& renderer, uint64_t seed, uint64_t first,
-                             std::vector<sensor::ExampleScene> scenes);
+                             std::vector<scenes::ExampleScene> scenes);
 
 /// The Ward fit on those of a batch's scenes that lamps alone light. It is told where these are, how strong, and which
 /// reach a voxel, and is given of each voxel at most gpu::kMaxObservations readings, evenly among those that there are.

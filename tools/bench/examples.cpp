@@ -1,20 +1,19 @@
-// patina_examples_bench: how far specular materials are from the truth on examples as the network is trained with: of
-// the network, of the Ward fit, of both, and of the constant that does best. See docs/training.md.
+// `patina bench examples`: how far specular materials are from the truth on examples as the network is trained with: of
+// the network, of the Ward fit, of both, and of the constant that does best. See docs/guide/training.md.
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 
 #include "passes/specular/run_network.h"
+#include "reconstruction/session/network_file.h"
 #include "tools/bench/example_fit.h"
 #include "tools/bench/network_format.h"
-#include "tools/commands/commands.h"
-#include "tools/network_file.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
@@ -25,7 +24,6 @@ constexpr double kLeastKs = 0.02;   // below it there is nothing that a roughnes
 constexpr float kConfident = 0.5f;  // of the fit
 
 struct Options {
-    tools::DeviceArguments device;
     std::string network;
     std::string format;  ///< a key of kNetworkFormats; empty: what suits the device
     uint64_t seed = 1000001;
@@ -44,7 +42,7 @@ struct Outcome {
 class NetworkRun {
   public:
     NetworkRun(vulkan::Device& device, const Options& options)
-        : network_(device, tools::read_network_file(options.network)),
+        : network_(device, patina::read_network_file(options.network)),
           variant_(named_variant(device.caps(), network_, kBatch, options.format)),
           runner_(device) {}
 
@@ -54,7 +52,7 @@ class NetworkRun {
     std::vector<WardParameters> estimate(const ExampleBatch& batch) {
         std::vector<uint32_t> list(1 + kBatch);
         list[0] = kBatch;
-        graph::Frame frame = runner_.begin();
+        graph::FrameGraph frame = runner_.begin();
         const SegmentBatch segments{frame.upload<uint32_t>("examples.batch", list), kBatch};
         const graph::BufferId images = frame.upload<glm::vec4>("examples.images", images_of(batch));
         const graph::Readback w = frame.read_back(add_run_network(frame, network_, images, segments, variant_));
@@ -110,8 +108,8 @@ void add_outcomes(const ExampleBatch& batch, NetworkRun& network, ExampleFit& fi
 double mean_of(glm::dvec3 v) { return (v.x + v.y + v.z) / 3; }
 
 /// Mean absolute errors: ks per channel, alpha where ks is at least kLeastKs.
-void print(const std::string& name, const std::vector<const Outcome*>& outcomes,
-           const std::function<WardParameters(const Outcome&)>& estimate) {
+void add_row(Report& report, const std::string& name, const std::vector<const Outcome*>& outcomes,
+             const std::function<WardParameters(const Outcome&)>& estimate) {
     double ks = 0, alpha = 0;
     size_t glossy = 0;
     for (const Outcome* outcome : outcomes) {
@@ -121,9 +119,13 @@ void print(const std::string& name, const std::vector<const Outcome*>& outcomes,
         alpha += std::abs(found.alpha - outcome->truth.alpha);
         ++glossy;
     }
-    const std::string alpha_error = glossy == 0 ? "-" : fmt::format("{:.4f}", alpha / static_cast<double>(glossy));
-    fmt::print("{:<32} {:>8.4f} {:>8} {:>9}\n", name, ks / static_cast<double>(outcomes.size()), alpha_error,
-               outcomes.size());
+    ks /= static_cast<double>(outcomes.size());
+    alpha /= static_cast<double>(glossy);  // no number where none is glossy
+    const std::string alpha_error = glossy == 0 ? "-" : fmt::format("{:.4f}", alpha);
+    report.print("{:<32} {:>8.4f} {:>8} {:>9}\n", name, ks, alpha_error, outcomes.size());
+    nlohmann::ordered_json& row = report.json["mean_absolute_error"][name];
+    row = {{"ks", ks}, {"examples", outcomes.size()}};
+    if (glossy > 0) row["alpha"] = alpha;
 }
 
 double median(std::vector<double> values) {
@@ -149,7 +151,7 @@ WardParameters constant_of(const std::vector<const Outcome*>& outcomes) {
     return result;
 }
 
-void report(const std::vector<Outcome>& outcomes) {
+void add_table(Report& report, const std::vector<Outcome>& outcomes) {
     std::vector<const Outcome*> all, lamps, confident, doubtful;
     for (const Outcome& outcome : outcomes) {
         all.push_back(&outcome);
@@ -157,15 +159,15 @@ void report(const std::vector<Outcome>& outcomes) {
         lamps.push_back(&outcome);
         (outcome.confidence >= kConfident ? confident : doubtful).push_back(&outcome);
     }
-    fmt::print("{:<32} {:>8} {:>8} {:>9}\n", "mean absolute error", "ks", "alpha", "examples");
-    const auto table = [](const std::string& name, const std::vector<const Outcome*>& some, bool fitted) {
+    report.print("{:<32} {:>8} {:>8} {:>9}\n", "mean absolute error", "ks", "alpha", "examples");
+    const auto table = [&report](const std::string& name, const std::vector<const Outcome*>& some, bool fitted) {
         if (some.empty()) return;
         const WardParameters constant = constant_of(some);
-        print(name + ", a constant", some, [&](const Outcome&) { return constant; });
-        print(name + ", network", some, [](const Outcome& o) { return o.network; });
+        add_row(report, name + ", a constant", some, [&](const Outcome&) { return constant; });
+        add_row(report, name + ", network", some, [](const Outcome& o) { return o.network; });
         if (!fitted) return;
-        print(name + ", fit", some, [](const Outcome& o) { return *o.fit; });
-        print(name + ", both", some, [](const Outcome& o) { return *o.both; });
+        add_row(report, name + ", fit", some, [](const Outcome& o) { return *o.fit; });
+        add_row(report, name + ", both", some, [](const Outcome& o) { return *o.both; });
     };
     table("all", all, false);
     table("lamps", lamps, true);
@@ -173,13 +175,14 @@ void report(const std::vector<Outcome>& outcomes) {
     table("lamps, fit unsure", doubtful, true);
 }
 
-std::vector<sensor::ExampleScene> draw(uint64_t seed, uint64_t first) {
-    std::vector<sensor::ExampleScene> scenes;
-    for (uint64_t i = 0; i < kBatch; ++i) scenes.push_back(sensor::draw_example_scene(seed, first + i));
+std::vector<scenes::ExampleScene> draw(uint64_t seed, uint64_t first) {
+    std::vector<scenes::ExampleScene> scenes;
+    for (uint64_t i = 0; i < kBatch; ++i) scenes.push_back(scenes::draw_example_scene(seed, first + i));
     return scenes;
 }
 
-void run(vulkan::Device& device, const Options& options) {
+Report run(const Options& options, const Conditions& conditions) {
+    vulkan::Device device(conditions.device);
     NetworkRun network(device, options);
     tools::ExampleRenderer renderer(device, kBatch, network.map(), true);
     ExampleFit fit(device, kBatch);
@@ -188,36 +191,36 @@ void run(vulkan::Device& device, const Options& options) {
         const ExampleBatch batch = render_examples(renderer, options.seed, first, draw(options.seed, first));
         add_outcomes(batch, network, fit, options, outcomes);
     }
-    fmt::print("the network in {}\n", name_of(network.format()));
-    report(outcomes);
+    Report report(device.caps());
+    report.print("the network in {}\n", name_of(network.format()));
+    report.json["format"] = name_of(network.format());
+    add_table(report, outcomes);
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures how far materials of held-out examples are from the truth", "patina_examples_bench");
-    bench::Options options;
-    app.add_option("--network", options.network, "Weight file")->required();
-    app.add_option("--format", options.format, "Of the network's activations and weights: floats, texels or halves")
-        ->check(CLI::IsMember(bench::kNetworkFormats));
-    app.add_option("--seed", options.seed, "Of the examples; the default is that of those held out of the training")
-        ->capture_default_str();
-    app.add_option("--examples", options.examples, "How many")->capture_default_str()->check(CLI::PositiveNumber);
-    app.add_option("--fits", options.fits, "How often each is fitted; each is told by the one before")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        vulkan::Device device(options.device.options());
-        fmt::print("{}, {}\n", device.caps().name, device.caps().driver);
-        bench::run(device, options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_examples_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject examples_subject() {
+    return {"examples",
+            "How far materials of held-out examples are from the truth: of the network, of the fit, and of both",
+            {},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("--network", options->network, "Weight file")->required();
+                app.add_option("--format", options->format,
+                               "Of the network's activations and weights: floats, texels or halves")
+                    ->check(CLI::IsMember(kNetworkFormats));
+                app.add_option("--seed", options->seed,
+                               "Of the examples; the default is that of those held out of the training")
+                    ->capture_default_str();
+                app.add_option("--examples", options->examples, "How many")
+                    ->capture_default_str()
+                    ->check(CLI::PositiveNumber);
+                app.add_option("--fits", options->fits, "How often each is fitted; each is told by the one before")
+                    ->capture_default_str()
+                    ->check(CLI::PositiveNumber);
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

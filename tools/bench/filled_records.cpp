@@ -7,7 +7,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/error.h"
-#include "shared/test_observations.h"
+#include "shared/test/test_observations.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -70,7 +70,7 @@ glm::vec3 kept_point_m(const ObservationMap& map, const FilledRecord& record) {
     return (center_vox + record.normal * offset_vox(map, record)) * map.settings().voxel_m;
 }
 
-void add_fill_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+void add_fill_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                       const std::vector<FilledRecord>& records) {
     constexpr size_t kWords = gpu::kRecordQuads * 4;
     std::vector<gpu::VoxelRecord> packed_records;
@@ -93,7 +93,7 @@ void add_fill_records(graph::Frame& frame, const ObservationMap& map, Observatio
     ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(packed_records)), false);
 }
 
-void add_keep_records(graph::Frame& frame, const SegmentSamples& samples,
+void add_keep_records(graph::FrameGraph& frame, const SegmentSamples& samples,
                       const std::vector<std::vector<uint32_t>>& kept) {
     PATINA_ASSERT(kept.size() <= samples.labels(), kept.size(), " labels of ", samples.labels());
     std::vector<gpu::SegmentSampleCount> counts(samples.labels());
@@ -110,7 +110,7 @@ void add_keep_records(graph::Frame& frame, const SegmentSamples& samples,
     SegmentSamples::keep(frame, ids);
 }
 
-RecordList add_list_records(graph::Frame& frame, uint32_t count) {
+RecordList add_list_records(graph::FrameGraph& frame, uint32_t count) {
     std::vector<uint32_t> list(1 + count);
     list[0] = count;
     std::iota(list.begin() + 1, list.end(), 0u);

@@ -5,10 +5,10 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/graph/frame.h"
-#include "passes/model/observation_map.h"
-#include "passes/model/record_list.h"
-#include "passes/model/segment_samples.h"
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/record_list.h"
+#include "passes/state/segment_samples.h"
 
 namespace patina {
 
@@ -38,14 +38,14 @@ FilledPlace place_of(const ObservationMap& map, const FilledRecord& record);
 glm::vec3 kept_point_m(const ObservationMap& map, const FilledRecord& record);
 
 /// Writes records 0, 1, ... of a map that was just reset, without their entries in its table.
-void add_fill_records(graph::Frame& frame, const ObservationMap& map, ObservationMapIds& ids,
+void add_fill_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                       const std::vector<FilledRecord>& records);
 
 /// What each segment keeps, by label: record ids, at most gpu::kSegmentSamples.
-void add_keep_records(graph::Frame& frame, const SegmentSamples& samples,
+void add_keep_records(graph::FrameGraph& frame, const SegmentSamples& samples,
                       const std::vector<std::vector<uint32_t>>& kept);
 
 /// The list of records 0 to count - 1.
-RecordList add_list_records(graph::Frame& frame, uint32_t count);
+RecordList add_list_records(graph::FrameGraph& frame, uint32_t count);
 
 }  // namespace patina

@@ -1,36 +1,31 @@
-// patina_hemi_bench: how long HemiImages, the network and the fusion of its estimates take, on segments that are made
-// up. See docs/benchmarks.md.
+// `patina bench hemi`: how long HemiImages, the network and the fusion of its estimates take, on segments that are made
+// up. See docs/develop/benchmarks.md.
 #include <cmath>
-#include <exception>
+#include <memory>
 #include <numeric>
 #include <random>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "engine/core/error.h"
 #include "engine/graph/runner.h"
 #include "passes/specular/fuse_estimates.h"
 #include "passes/specular/hemi_images.h"
 #include "passes/specular/run_network.h"
-#include "shared/hemi_images.h"
-#include "tools/bench/distribution.h"
+#include "shared/specular/hemi_images.h"
 #include "tools/bench/filled_records.h"
 #include "tools/bench/network_format.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/random_network.h"
-#include "tools/commands/commands.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
 namespace {
 
 struct Options {
-    tools::DeviceArguments device;
     std::vector<uint32_t> segments{1, 8, 64};
     uint32_t voxels = 256;
-    uint32_t frames = 15;
-    uint32_t warmup = 2;
     std::string format;  ///< a key of kNetworkFormats; empty: what suits the device
 };
 
@@ -64,7 +59,7 @@ class Bench {
           network_(device, random_hemi_network(1)),
           variant_(named_variant(device.caps(), network_, segments, options.format)),
           runner_(device) {
-        graph::Frame frame = runner_.begin();
+        graph::FrameGraph frame = runner_.begin();
         map_.reset(frame, glm::dvec3(0));
         estimates_.reset(frame);
         runner_.submit(std::move(frame));
@@ -78,7 +73,7 @@ class Bench {
 
     void estimate() {
         runner_.wait();
-        graph::Frame frame = runner_.begin();
+        graph::FrameGraph frame = runner_.begin();
         std::vector<uint32_t> list(1 + segments_);
         std::iota(list.begin(), list.end(), 0u);
         list[0] = segments_;
@@ -97,7 +92,7 @@ class Bench {
     graph::Runner& runner() { return runner_; }
 
   private:
-    void fill_samples(graph::Frame& frame, uint32_t voxels) {
+    void fill_samples(graph::FrameGraph& frame, uint32_t voxels) {
         std::vector<std::vector<uint32_t>> kept(segments_ + 1, std::vector<uint32_t>(voxels));
         kept[0].clear();
         for (uint32_t label = 1; label <= segments_; ++label)
@@ -114,60 +109,62 @@ class Bench {
     graph::Runner runner_;
 };
 
-void print(const std::string& name, const Distribution& d, uint32_t segments) {
-    fmt::print("{:<34} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90,
-               d.median / static_cast<float>(segments));
+void add_row(Report& report, nlohmann::ordered_json& json, const Row& row, uint32_t segments) {
+    const auto& [name, ms] = row;
+    report.print("{:<36} {:>10.4f} {:>10.4f} {:>10.4f} {:>10.4f}\n", name, ms.min, ms.median, ms.p90,
+                 ms.median / static_cast<float>(segments));
+    json[name] = to_json(ms);
 }
 
-void run(vulkan::Device& device, const Options& options, uint32_t segments) {
+void measure(vulkan::Device& device, const Options& options, const Conditions& conditions, uint32_t segments,
+             Report& report) {
     Bench bench(device, options, segments);
-    for (uint32_t i = 0; i < options.warmup; ++i) bench.estimate();
+    for (uint32_t i = 0; i < conditions.warmup; ++i) bench.estimate();
     bench.runner().clear_timings();
     std::vector<float> processor;
-    for (uint32_t i = 0; i < options.frames; ++i) {
+    for (uint32_t i = 0; i < conditions.frames; ++i) {
         const double start = processor_ms();
         bench.estimate();
         processor.push_back(static_cast<float>(processor_ms() - start) / 2);
     }
-    fmt::print("\n{} segments, {}, {} frames\n", segments, name_of(bench.format()), options.frames);
-    fmt::print("{:<34} {:>9} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %", "a segment");
+    report.print("\n{} segments, {}, {} frames\n", segments, name_of(bench.format()), conditions.frames);
+    report.print("{:<36} {:>10} {:>10} {:>10} {:>10}\n", "ms", "min", "median", "90 %", "a segment");
+    nlohmann::ordered_json ms;
     float sum = 0;
     for (const graph::Timing& timing : bench.runner().pass_timings()) {
-        const Distribution ms = distribution(timing.samples_ms);
-        print(timing.name, ms, segments);
-        sum += ms.median;
+        const Row row{timing.name, distribution(timing.samples_ms)};
+        add_row(report, ms, row, segments);
+        sum += row.ms.median;
     }
-    print("sum of medians", {options.frames, sum, sum, sum}, segments);
-    print("processor time on two cores", distribution(processor), segments);
+    add_row(report, ms, {"sum of medians", {conditions.frames, sum, sum, sum}}, segments);
+    add_row(report, ms, {"processor time on two cores", distribution(processor)}, segments);
+    report.json["batches"].push_back({{"segments", segments}, {"format", name_of(bench.format())}, {"ms", ms}});
+}
+
+Report run(const Options& options, const Conditions& conditions) {
+    vulkan::Device device(conditions.device);
+    Report report(device.caps());
+    for (const uint32_t segments : options.segments) measure(device, options, conditions, segments, report);
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures how long specular materials take to estimate", "patina_hemi_bench");
-    bench::Options options;
-    app.add_option("--segments", options.segments, "Segments of a batch, one or several")->capture_default_str();
-    app.add_option("--voxels", options.voxels, "That each of them keeps")
-        ->capture_default_str()
-        ->check(CLI::Range(1u, gpu::kSegmentSamples));
-    app.add_option("--frames", options.frames, "How many batches to measure")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--warmup", options.warmup, "How many to run before")->capture_default_str();
-    app.add_option("--format", options.format, "Of activations and weights: floats, texels or halves")
-        ->check(CLI::IsMember(bench::kNetworkFormats));
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        vulkan::Device device(options.device.options());
-        fmt::print("{}, {}\n", device.caps().name, device.caps().driver);
-        for (const uint32_t segments : options.segments) bench::run(device, options, segments);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_hemi_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject hemi_subject() {
+    return {"hemi",
+            "How long specular materials take to estimate, on segments that are made up",
+            {.warmup = 2, .frames = 15},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("--segments", options->segments, "Segments of a batch, one or several")
+                    ->capture_default_str();
+                app.add_option("--voxels", options->voxels, "That each of them keeps")
+                    ->capture_default_str()
+                    ->check(CLI::Range(1u, gpu::kSegmentSamples));
+                app.add_option("--format", options->format, "Of activations and weights: floats, texels or halves")
+                    ->check(CLI::IsMember(kNetworkFormats));
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

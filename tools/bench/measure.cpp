@@ -8,7 +8,7 @@
 #include <sys/resource.h>
 
 #include "engine/core/error.h"
-#include "tools/rgbd_frame.h"
+#include "reconstruction/session/rgbd_frame.h"
 
 namespace patina::bench {
 
@@ -43,8 +43,7 @@ class Bench {
         const vulkan::DeviceCaps& caps = device_.caps();
         if (!caps.timestamps)
             throw Error("the device '", caps.name, "' has no timestamps, so its passes cannot be timed");
-        result_.device = caps.name;
-        result_.driver = caps.driver;
+        result_.caps = caps;
     }
 
     Measurement run(uint32_t warmup) {
@@ -61,8 +60,8 @@ class Bench {
     }
 
   private:
-    void fuse(const sensor::Frame& frame) {
-        const RgbdFrame rgbd = tools::to_rgbd(recording_.info, frame);
+    void fuse(const Frame& frame) {
+        const RgbdFrame rgbd = patina::to_rgbd(recording_.info, frame);
         const auto start = Clock::now();
         reconstruction_.add(rgbd);
         add_ms_.push_back(milliseconds_since(start));
@@ -78,7 +77,8 @@ class Bench {
     }
 
     void note_frame() {
-        visible_mvoxel_.push_back(static_cast<float>(reconstruction_.visible_blocks()) * gpu::kBlockVoxels * 1e-6f);
+        visible_mvoxel_.push_back(static_cast<float>(reconstruction_.statistics().visible_blocks) * gpu::kBlockVoxels *
+                                  1e-6f);
         const graph::CompiledFrame& frame = reconstruction_.runner().last_frame();
         uint32_t dispatches = 0;
         for (const uint32_t pass : frame.plan.order) {
@@ -129,7 +129,7 @@ class Bench {
     }
 
     void extract_surfaces() {
-        const gpu::MapCounters& counters = reconstruction_.counters();
+        const gpu::MapCounters counters = reconstruction_.statistics().map;
         const uint32_t used = counters.capacity - counters.free_blocks;
         result_.allocated_mvoxel = static_cast<float>(used) * gpu::kBlockVoxels * 1e-6f;
         result_.refused_blocks = counters.refused_blocks;
@@ -173,7 +173,7 @@ class Bench {
     Clock::time_point start_ = Clock::now();  // first: before the device is opened
     const Recording& recording_;
     vulkan::Device device_;
-    Reconstruction reconstruction_;
+    Pipeline reconstruction_;
     Measurement result_;
     uint32_t compilations_ = 0;
     std::vector<float> visible_mvoxel_, add_ms_;

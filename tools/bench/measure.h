@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "passes/reconstruction.h"
+#include "reconstruction/pipeline.h"
 #include "tools/bench/distribution.h"
 #include "tools/bench/recording.h"
 
@@ -17,8 +17,7 @@ struct PassTimes {
 
 /// What one run over a recording took. Per-frame figures leave out the warm-up.
 struct Measurement {
-    std::string device;
-    std::string driver;
+    vulkan::DeviceCaps caps;
     uint32_t frames = 0;
     std::vector<PassTimes> passes;   ///< in order of first appearance
     float geometry_ms = 0;           ///< sum of the medians of the dispatches that every frame has
@@ -27,9 +26,9 @@ struct Measurement {
     uint32_t frame_passes = 0;       ///< of that frame, transfers included
     uint32_t late_compilations = 0;  ///< frame shapes that were new after the warm-up
     Distribution integrate_ms, integrate_mvoxel_s, allocate_ms, raycast_ms;
-    float visible_mvoxel = 0;  ///< median over the frames
-    Distribution submit_ms;    ///< host: compile or look up, record, submit
-    Distribution add_ms;       ///< host: all of Reconstruction::add, with declaring the frame and staging its pictures
+    float visible_mvoxel = 0;    ///< median over the frames
+    Distribution submit_ms;      ///< host: compile or look up, record, submit
+    Distribution add_ms;         ///< host: all of Pipeline::add, with declaring the frame and staging its pictures
     float allocated_mvoxel = 0;  ///< at the end
     uint32_t refused_blocks = 0;
     std::vector<PassTimes> surface_passes;  ///< times of one extraction, summed by pass

@@ -1,18 +1,14 @@
-// patina_bench: how fast a recording is reconstructed. See docs/benchmarks.md.
-#include <cstdio>
-#include <exception>
-#include <fstream>
+// `patina bench passes`: how fast a recording is reconstructed. See docs/develop/benchmarks.md.
+
+#include <memory>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "reconstruction/setting_table.h"
 #include "tools/bench/measure.h"
 #include "tools/bench/recording.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/parse.h"
-#include "tools/run_settings.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
@@ -24,18 +20,10 @@ constexpr float kMiB = 1024 * 1024;
 
 struct Options {
     RecordingOptions recording;
-    tools::DeviceArguments device;
-    std::string extent;
-    uint32_t frames = 60;
-    uint32_t warmup = 20;
     bool no_color = false;
     std::vector<std::string> assignments;
-    std::filesystem::path json, dump;
+    std::filesystem::path dump;
 };
-
-ordered_json to_json(const Distribution& d) {
-    return {{"count", d.count}, {"min", d.min}, {"median", d.median}, {"p90", d.p90}};
-}
 
 ordered_json to_json(const std::vector<PassTimes>& passes) {
     ordered_json list = ordered_json::array();
@@ -46,11 +34,9 @@ ordered_json to_json(const std::vector<PassTimes>& passes) {
 ordered_json to_json(const Measurement& m, const Recording& recording, const ReconstructionSettings& settings) {
     ordered_json pools;
     for (const auto& pool : m.pools) pools[pool.name] = pool.bytes;
-    return {{"device", m.device},
-            {"driver", m.driver},
-            {"sequence", recording.info.name},
+    return {{"sequence", recording.info.name},
             {"extent", {recording.info.depth.extent.width, recording.info.depth.extent.height}},
-            {"settings", tools::settings_json(settings)},
+            {"settings", patina::settings_json(settings)},
             {"frames", m.frames},
             {"passes", to_json(m.passes)},
             {"geometry_ms", m.geometry_ms},
@@ -78,106 +64,94 @@ ordered_json to_json(const Measurement& m, const Recording& recording, const Rec
             {"peak_resident_bytes", m.peak_resident_bytes}};
 }
 
-void print_passes(const std::vector<PassTimes>& passes) {
-    fmt::print("{:<28} {:>5} {:>9} {:>9} {:>9}\n", "pass (GPU ms)", "count", "min", "median", "90 %");
+void print_passes(Report& report, const std::vector<PassTimes>& passes) {
+    report.print("{:<28} {:>5} {:>9} {:>9} {:>9}\n", "pass (GPU ms)", "count", "min", "median", "90 %");
     for (const PassTimes& pass : passes) {
-        fmt::print("{:<28} {:>5} {:>9.3f} {:>9.3f} {:>9.3f}\n", pass.name, pass.ms.count, pass.ms.min, pass.ms.median,
-                   pass.ms.p90);
+        report.print("{:<28} {:>5} {:>9.3f} {:>9.3f} {:>9.3f}\n", pass.name, pass.ms.count, pass.ms.min, pass.ms.median,
+                     pass.ms.p90);
     }
-    fmt::print("\n");
+    report.print("\n");
 }
 
-void print_figure(const char* name, const Distribution& d, const char* unit) {
-    fmt::print("{:<28} {:>9.3f} {} (min {:.3f}, 90 % {:.3f})\n", name, d.median, unit, d.min, d.p90);
+void print_figure(Report& report, const char* name, const Distribution& d, const char* unit) {
+    report.print("{:<28} {:>9.3f} {} (min {:.3f}, 90 % {:.3f})\n", name, d.median, unit, d.min, d.p90);
 }
 
-void print_surface(const Measurement& m) {
-    print_passes(m.surface_passes);
-    fmt::print("{:<28} {:>9.3f} ms per million allocated voxels (wall {:.3f}; {:.2f} million voxels, {} triangles)\n",
-               "marching cubes", m.surface_ms.median / m.allocated_mvoxel,
-               m.surface_wall_ms.median / m.allocated_mvoxel, m.allocated_mvoxel, m.triangles);
+void print_surface(Report& report, const Measurement& m) {
+    print_passes(report, m.surface_passes);
+    report.print("{:<28} {:>9.3f} ms per million allocated voxels (wall {:.3f}; {:.2f} million voxels, {} triangles)\n",
+                 "marching cubes", m.surface_ms.median / m.allocated_mvoxel,
+                 m.surface_wall_ms.median / m.allocated_mvoxel, m.allocated_mvoxel, m.triangles);
 }
 
-void print_memory(const Measurement& m) {
+void print_memory(Report& report, const Measurement& m) {
     uint64_t pools = 0;
     for (const auto& pool : m.pools) pools += pool.bytes;
-    fmt::print("{:<28} {:>9.1f} MiB pools + {:.1f} MiB transient\n", "device memory", static_cast<float>(pools) / kMiB,
-               static_cast<float>(m.transient_bytes) / kMiB);
-    fmt::print("{:<28} {:>9.1f} MiB (of it {:.1f} MiB recording)\n", "peak resident",
-               static_cast<float>(m.peak_resident_bytes) / kMiB, static_cast<float>(m.recording_bytes) / kMiB);
+    report.print("{:<28} {:>9.1f} MiB pools + {:.1f} MiB transient\n", "device memory",
+                 static_cast<float>(pools) / kMiB, static_cast<float>(m.transient_bytes) / kMiB);
+    report.print("{:<28} {:>9.1f} MiB (of it {:.1f} MiB recording)\n", "peak resident",
+                 static_cast<float>(m.peak_resident_bytes) / kMiB, static_cast<float>(m.recording_bytes) / kMiB);
 }
 
-void print_warnings(const Measurement& m) {
+void print_warnings(Report& report, const Measurement& m) {
     if (m.late_compilations > 0)
-        fmt::print("warning: {} frames compiled a new shape; raise --warmup\n", m.late_compilations);
+        report.print("warning: {} frames compiled a new shape; raise --warmup\n", m.late_compilations);
     if (m.refused_blocks > 0)
-        fmt::print("warning: the voxel pool grew late or was full: {} requests found no room\n", m.refused_blocks);
+        report.print("warning: the voxel pool grew late or was full: {} requests found no room\n", m.refused_blocks);
 }
 
-void print(const Measurement& m, const Recording& recording) {
-    fmt::print("{}, {}\n{} at {}x{}, {} frames\n\n", m.device, m.driver, recording.info.name,
-               recording.info.depth.extent.width, recording.info.depth.extent.height, m.frames);
-    print_passes(m.passes);
-    fmt::print("{:<28} {:>9.3f} ms in at most {} dispatches; transfers {:.3f} ms, {} passes in all\n",
-               "geometry, sum of medians", m.geometry_ms, m.dispatches, m.transfers_ms, m.frame_passes);
-    fmt::print("{:<28} {:>9.1f} Mvoxel/s (min {:.1f}, 90 % {:.1f}; {:.2f} million voxels visible)\n", "integration",
-               m.integrate_mvoxel_s.median, m.integrate_mvoxel_s.min, m.integrate_mvoxel_s.p90, m.visible_mvoxel);
-    print_figure("allocation", m.allocate_ms, "ms");
-    print_figure("raycast", m.raycast_ms, "ms");
-    print_figure("host: graph submit", m.submit_ms, "ms");
-    print_figure("host: declare and submit", m.add_ms, "ms");
-    fmt::print("{:<28} {:>9.3f} s\n\n", "first fused frame after", m.first_frame_s);
-    print_surface(m);
-    print_memory(m);
-    print_warnings(m);
+void print(Report& report, const Measurement& m, const Recording& recording) {
+    report.print("{} at {}x{}, {} frames\n\n", recording.info.name, recording.info.depth.extent.width,
+                 recording.info.depth.extent.height, m.frames);
+    print_passes(report, m.passes);
+    report.print("{:<28} {:>9.3f} ms in at most {} dispatches; transfers {:.3f} ms, {} passes in all\n",
+                 "geometry, sum of medians", m.geometry_ms, m.dispatches, m.transfers_ms, m.frame_passes);
+    report.print("{:<28} {:>9.1f} Mvoxel/s (min {:.1f}, 90 % {:.1f}; {:.2f} million voxels visible)\n", "integration",
+                 m.integrate_mvoxel_s.median, m.integrate_mvoxel_s.min, m.integrate_mvoxel_s.p90, m.visible_mvoxel);
+    print_figure(report, "allocation", m.allocate_ms, "ms");
+    print_figure(report, "raycast", m.raycast_ms, "ms");
+    print_figure(report, "host: graph submit", m.submit_ms, "ms");
+    print_figure(report, "host: declare and submit", m.add_ms, "ms");
+    report.print("{:<28} {:>9.3f} s\n\n", "first fused frame after", m.first_frame_s);
+    print_surface(report, m);
+    print_memory(report, m);
+    print_warnings(report, m);
 }
 
-void run(Options& options) {
+Report run(const Options& options, const Conditions& conditions) {
     ReconstructionSettings settings;
     settings.view_every_frame = true;
     settings.fusion.color = !options.no_color;
-    for (const std::string& assignment : options.assignments) tools::apply_setting(settings, assignment);
-    if (!options.extent.empty()) options.recording.extent = tools::parse_extent(options.extent);
-    options.recording.frames = options.warmup + options.frames;
-    const vulkan::DeviceOptions device = options.device.options();
-    const Recording recording = load(options.recording, device);
+    for (const std::string& assignment : options.assignments) patina::apply_setting(settings, assignment);
+    RecordingOptions wanted = options.recording;
+    wanted.extent = conditions.extent;
+    wanted.frames = conditions.warmup + conditions.frames;
+    const Recording recording = load(wanted, conditions.device);
     if (!options.dump.empty()) dump(recording, options.dump);
-    const Measurement result = measure(recording, options.warmup, settings, device);
-    print(result, recording);
-    if (options.json.empty()) return;
-    std::ofstream out(options.json);
-    out << to_json(result, recording, settings).dump(2) << '\n';
-    if (!out.flush()) throw Error("the file '", options.json.string(), "' cannot be written");
+    const Measurement result = measure(recording, conditions.warmup, settings, conditions.device);
+    Report report(result.caps);
+    print(report, result, recording);
+    report.json.update(to_json(result, recording, settings));
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures how fast a recording is reconstructed", "patina_bench");
-    bench::Options options;
-    app.add_option("sequence", options.recording.sequence, "Folder of a sequence, or synthetic:SCENE")->required();
-    app.add_option("--format", options.recording.format,
-                   "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
-    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT");
-    app.add_option("--frames", options.frames, "How many frames to measure")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    // The default goes through one removal of empty blocks, whose frame has a shape of its own.
-    app.add_option("--warmup", options.warmup, "How many frames to fuse before")->capture_default_str();
-    app.add_flag("--no-color", options.no_color, "Fuse depth only");
-    app.add_option("--set", options.assignments, "One setting as KEY=VALUE; may be repeated")->take_all();
-    app.add_option("--json", options.json, "Write the figures to this file");
-    app.add_option("--dump", options.dump, "Write the frames to this folder, for other programs");
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        bench::run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject passes_subject() {
+    return {"passes",
+            "How fast a recording is fused, pass by pass",
+            {.warmup = 20, .frames = 60, .extent = kAsRecorded},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("sequence", options->recording.sequence, "Folder of a sequence, or synthetic:SCENE")
+                    ->required();
+                app.add_option("--format", options->recording.format,
+                               "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
+                app.add_flag("--no-color", options->no_color, "Fuse depth only");
+                app.add_option("--set", options->assignments, "One setting as KEY=VALUE; may be repeated")->take_all();
+                app.add_option("--dump", options->dump, "Write the frames to this folder, for other programs");
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

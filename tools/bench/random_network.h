@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "passes/model/network.h"
+#include "passes/state/network.h"
 
 namespace patina {
 
@@ -10,7 +10,7 @@ namespace patina {
 /// and small biases. The same seed, the same weights.
 NetworkDescription with_random_weights(NetworkDescription network, uint32_t seed);
 
-/// A network of the size of HemiCNN (docs/specular.md) that has learned nothing.
+/// A network of the size of HemiCNN (docs/develop/specular.md) that has learned nothing.
 NetworkDescription random_hemi_network(uint32_t seed);
 
 }  // namespace patina

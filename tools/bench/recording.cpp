@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/synthetic_source.h"
 #include "sensor/open.h"
 #include "sensor/resample.h"
-#include "sensor/synthetic/scene_file.h"
-#include "sensor/synthetic/synthetic_source.h"
 
 namespace patina::bench {
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kSynthetic = "synthetic:";
 
-Recording read_all(std::unique_ptr<sensor::Source> source, const RecordingOptions& options) {
+Recording read_all(std::unique_ptr<Source> source, const RecordingOptions& options) {
     if (options.extent) {
         source = std::make_unique<sensor::ResampledSource>(std::move(source), *options.extent, *options.extent);
     }
@@ -25,7 +25,7 @@ Recording read_all(std::unique_ptr<sensor::Source> source, const RecordingOption
     while (recording.frames.size() < options.frames) {
         auto reading = source->next();
         if (!reading) break;
-        auto* frame = std::get_if<sensor::Frame>(&*reading);
+        auto* frame = std::get_if<Frame>(&*reading);
         if (frame && frame->world_from_camera) recording.frames.push_back(std::move(*frame));
     }
     if (recording.frames.size() < options.frames) {
@@ -47,7 +47,7 @@ void append(std::ofstream& out, const std::vector<Value>& values) {
               static_cast<std::streamsize>(values.size() * sizeof(Value)));
 }
 
-std::vector<float> metres(const sensor::DepthImage& depth, double metres_per_unit) {
+std::vector<float> metres(const DepthImage& depth, double metres_per_unit) {
     return std::visit(
         [&](const auto& image) {
             std::vector<float> out(image.pixels().begin(), image.pixels().end());
@@ -78,7 +78,7 @@ nlohmann::json pose_json(const RigidTransform& pose) {
 
 uint64_t Recording::bytes() const {
     uint64_t total = 0;
-    for (const sensor::Frame& frame : frames) total += picture_bytes(frame.color) + picture_bytes(frame.depth);
+    for (const Frame& frame : frames) total += picture_bytes(frame.color) + picture_bytes(frame.depth);
     return total;
 }
 
@@ -87,18 +87,18 @@ Recording load(const RecordingOptions& options, const vulkan::DeviceOptions& dev
         return read_all(sensor::open_sequence(options.sequence, options.format), options);
     }
     vulkan::Device device(device_options);
-    auto scene = sensor::load_scene(options.sequence.substr(kSynthetic.size()));
-    const sensor::SyntheticOptions frames{.frames = options.frames};
-    return read_all(std::make_unique<sensor::SyntheticSource>(device, std::move(scene), frames), options);
+    auto scene = scenes::load_scene(options.sequence.substr(kSynthetic.size()));
+    const scenes::SyntheticOptions frames{.frames = options.frames};
+    return read_all(std::make_unique<scenes::SyntheticSource>(device, std::move(scene), frames), options);
 }
 
 void dump(const Recording& recording, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     std::ofstream depth(folder / "depth_m.f32", std::ios::binary), color(folder / "color.u8", std::ios::binary);
     nlohmann::json poses;
-    for (const sensor::Frame& frame : recording.frames) {
+    for (const Frame& frame : recording.frames) {
         append(depth, metres(frame.depth, recording.info.metres_per_unit));
-        if (const auto* picture = std::get_if<Image<sensor::SrgbPixel>>(&frame.color)) append(color, picture->pixels());
+        if (const auto* picture = std::get_if<Image<SrgbPixel>>(&frame.color)) append(color, picture->pixels());
         poses.push_back(pose_json(*frame.world_from_camera));
     }
     std::ofstream description(folder / "recording.json");

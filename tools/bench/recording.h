@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/vulkan/device.h"
-#include "sensor/source.h"
+#include "patina/source.h"
 
 namespace patina::bench {
 
@@ -20,8 +20,8 @@ struct RecordingOptions {
 
 /// Decoded frames in memory, so that reading files does not disturb what is measured. All have poses.
 struct Recording {
-    sensor::SequenceInfo info;
-    std::vector<sensor::Frame> frames;
+    SequenceInfo info;
+    std::vector<Frame> frames;
 
     uint64_t bytes() const;  ///< of the pictures
 };

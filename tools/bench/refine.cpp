@@ -1,30 +1,25 @@
-// patina_refine_bench: how long the refinement of albedos takes, on records that are made up. See docs/benchmarks.md.
+// `patina bench refine`: the refinement of albedos, on records that are made up. See docs/develop/benchmarks.md.
 #include <cmath>
-#include <exception>
+#include <memory>
 #include <random>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "engine/core/error.h"
 #include "engine/graph/runner.h"
 #include "passes/reflectance/reflectance.h"
-#include "tools/bench/distribution.h"
 #include "tools/bench/filled_records.h"
 #include "tools/bench/processor_time.h"
-#include "tools/commands/commands.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
 namespace {
 
 struct Options {
-    tools::DeviceArguments device;
     uint32_t records = 60000;
     uint32_t observations = gpu::kMaxObservations;
     uint32_t lights = 4;
-    uint32_t frames = 40;
-    uint32_t warmup = 4;
     bool diffuse = false;
 };
 
@@ -65,7 +60,7 @@ struct Bench {
         if (!options.diffuse) materials.set(1, glm::vec3(0.1f), 0.2f);
         settings.shadows = false;
         settings.first_marched_records = settings.marched_records = UINT32_MAX;
-        graph::Frame frame = runner.begin();
+        graph::FrameGraph frame = runner.begin();
         voxel_map.reset(frame, glm::dvec3(0));
         map.reset(frame, glm::dvec3(0));
         state.reset(frame);
@@ -80,7 +75,7 @@ struct Bench {
     /// One update in which `count` records have changed.
     void update(uint32_t count) {
         runner.wait();
-        graph::Frame frame = runner.begin();
+        graph::FrameGraph frame = runner.begin();
         ObservationMapIds ids = map.import(frame);
         const RecordList changed = add_list_records(frame, count);
         add_refine_reflectance(frame, {voxel_map, map, lights, materials, state}, voxel_map.import(frame), ids, changed,
@@ -110,60 +105,49 @@ struct Bench {
     graph::Runner runner;
 };
 
-void print(const char* name, const Distribution& d) {
-    fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
-}
-
-void run(const Options& options) {
-    vulkan::Device device(options.device.options());
+Report run(const Options& options, const Conditions& conditions) {
+    vulkan::Device device(conditions.device);
     Bench bench(device, options);
-    bench.measure(options.records, options.warmup);
+    bench.measure(options.records, conditions.warmup);
     bench.measure(0, 1);
     bench.runner.clear_timings();
-    const Distribution all = distribution(bench.measure(options.records, options.frames));
+    const Distribution all = distribution(bench.measure(options.records, conditions.frames));
     const auto timings = bench.runner.pass_timings();
-    const Distribution none = distribution(bench.measure(0, options.frames));
-    fmt::print("{}, {}\n{} records with {} observations and {} lights, {} frames\n\n", device.caps().name,
-               device.caps().driver, options.records, options.observations, options.lights, options.frames);
-    fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
+    const Distribution none = distribution(bench.measure(0, conditions.frames));
+    std::vector<Row> rows;
     for (const graph::Timing& timing : timings) {
-        if (timing.name.starts_with("reflectance.")) print(timing.name.c_str(), distribution(timing.samples_ms));
+        if (timing.name.starts_with("reflectance.")) rows.push_back({timing.name, distribution(timing.samples_ms)});
     }
-    print("processor time of an update", all);
-    print("the same, nothing to refine", none);
-    fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", "refinement",
-               (all.median - none.median) / 2);
+    rows.push_back({"processor time of an update", all});
+    rows.push_back({"the same, nothing to refine", none});
+    Report report(device.caps());
+    report.print("{} records with {} observations and {} lights, {} frames\n\n", options.records, options.observations,
+                 options.lights, conditions.frames);
+    report.table("ms", rows);
+    report.difference("refinement", all, none);
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures how long the refinement of albedos takes", "patina_refine_bench");
-    bench::Options options;
-    app.add_option("--records", options.records, "Voxels to refine")
-        ->capture_default_str()
-        ->check(CLI::Range(1u, 262144u));
-    app.add_option("--observations", options.observations, "Of each of them")
-        ->capture_default_str()
-        ->check(CLI::Range(1u, gpu::kMaxObservations));
-    app.add_option("--lights", options.lights, "Point lights")
-        ->capture_default_str()
-        ->check(CLI::Range(0u, gpu::kMaxPointLights));
-    app.add_flag("--diffuse", options.diffuse, "Without a specular material");
-    app.add_option("--frames", options.frames, "How many updates to measure")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--warmup", options.warmup, "How many to run before")->capture_default_str();
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        bench::run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_refine_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject refine_subject() {
+    return {"refine",
+            "How long the refinement of albedos takes, on records that are made up",
+            {.warmup = 4, .frames = 40},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("--records", options->records, "Voxels to refine")
+                    ->capture_default_str()
+                    ->check(CLI::Range(1u, 262144u));
+                app.add_option("--observations", options->observations, "Of each of them")
+                    ->capture_default_str()
+                    ->check(CLI::Range(1u, gpu::kMaxObservations));
+                app.add_option("--lights", options->lights, "Point lights")
+                    ->capture_default_str()
+                    ->check(CLI::Range(0u, gpu::kMaxPointLights));
+                app.add_flag("--diffuse", options->diffuse, "Without a specular material");
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

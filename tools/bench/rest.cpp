@@ -1,33 +1,27 @@
-// patina_rest_bench: how the work of a frame falls when the camera rests and nothing moves. See docs/benchmarks.md.
+// `patina bench rest`: how the work of a frame falls while the camera rests. See docs/develop/benchmarks.md.
 #include <array>
-#include <exception>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <span>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "engine/core/error.h"
-#include "passes/reconstruction.h"
-#include "tools/bench/distribution.h"
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/rgbd_frame.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/parse.h"
-#include "tools/rgbd_frame.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
 namespace {
 
 struct Options {
-    tools::DeviceArguments device;
     std::string sequence = "synthetic:cubes";
-    std::string extent = "512x424";
     float voxel_m = 0.02f;
     uint32_t lights = 3;
-    uint32_t frames = 40;
     uint32_t averaged = 4;
     uint32_t runs = 3;
 };
@@ -63,19 +57,19 @@ ReconstructionSettings settings_of(const Options& options) {
 }
 
 /// Lamps above the recording's first camera.
-void set_lights(Reconstruction& reconstruction, const RgbdFrame& frame, uint32_t count) {
+void set_lights(Pipeline& reconstruction, const RgbdFrame& frame, uint32_t count) {
     std::vector<PointLight> lamps;
     for (uint32_t i = 0; i < count; ++i) {
         const auto across = static_cast<float>(i % 4) - 1.5f, along = static_cast<float>(i / 4);
         lamps.push_back({glm::vec3(frame.world_from_depth * glm::dvec4(1.5f * across, -1.5f, 1.5f * along, 1)),
                          glm::vec3(3), 0.05f});
     }
-    reconstruction.reflectance()->set_lights(lamps, glm::vec3(0.02f));
+    reconstruction.set_lights(lamps, glm::vec3(0.02f));
 }
 
 /// Adds the frame again and again to a new reconstruction, each alone on the device.
 std::vector<FrameTimes> rest(vulkan::Device& device, const Options& options, const RgbdFrame& frame, uint32_t frames) {
-    Reconstruction reconstruction(device, settings_of(options));
+    Pipeline reconstruction(device, settings_of(options));
     set_lights(reconstruction, frame, options.lights);
     std::vector<FrameTimes> all;
     for (uint32_t i = 0; i < frames; ++i) {
@@ -92,12 +86,13 @@ std::vector<FrameTimes> rest(vulkan::Device& device, const Options& options, con
 }
 
 /// The runs do the same: the least that one of them took is what it takes when nothing else runs.
-std::vector<FrameTimes> least_of_runs(vulkan::Device& device, const Options& options, const RgbdFrame& frame) {
-    rest(device, options, frame, std::min(options.frames, 2u));  // compiles
-    std::vector<FrameTimes> least = rest(device, options, frame, options.frames);
+std::vector<FrameTimes> least_of_runs(vulkan::Device& device, const Options& options, const RgbdFrame& frame,
+                                      uint32_t frames) {
+    rest(device, options, frame, std::min(frames, 2u));  // compiles
+    std::vector<FrameTimes> least = rest(device, options, frame, frames);
     for (uint32_t run = 1; run < options.runs; ++run) {
-        const std::vector<FrameTimes> again = rest(device, options, frame, options.frames);
-        for (uint32_t i = 0; i < options.frames; ++i) {
+        const std::vector<FrameTimes> again = rest(device, options, frame, frames);
+        for (uint32_t i = 0; i < frames; ++i) {
             least[i].processor_ms = std::min(least[i].processor_ms, again[i].processor_ms);
             for (auto& [pass, ms] : least[i].passes_ms) ms = std::min(ms, again[i].passes_ms.at(pass));
         }
@@ -120,74 +115,82 @@ double mean_of_pass(std::span<const FrameTimes> frames, const std::string& pass)
     return sum / static_cast<double>(frames.size());
 }
 
-/// `averaged`: how many of the first and of the last frames are compared.
-void print(std::span<const FrameTimes> frames, uint32_t averaged) {
-    fmt::print("{:>6}", "frame");
-    for (const char* name : kStageNames) fmt::print(" {:>12}", name);
-    fmt::print(" {:>14}", "processor / 2");
+void report_frames(Report& report, std::span<const FrameTimes> frames) {
+    report.print("{:>6}", "frame");
+    for (const char* name : kStageNames) report.print(" {:>12}", name);
+    report.print(" {:>14}", "processor / 2");
     for (size_t i = 0; i < frames.size(); ++i) {
-        fmt::print("\n{:>6}", i);
-        for (size_t stage = 0; stage < kStages; ++stage)
-            fmt::print(" {:>12.2f}", frames[i].stage_ms(static_cast<Stage>(stage)));
-        fmt::print(" {:>14.2f}", frames[i].processor_ms);
-    }
-    const auto first = frames.first(averaged), last = frames.last(averaged);
-    fmt::print("\n\n{:<40} {:>9} {:>9}\n", "ms, means of frames", "first", "last");
-    for (const auto& [pass, ms] : frames.front().passes_ms) {
-        if (stage_of(pass) != kGeometry)
-            fmt::print("{:<40} {:>9.2f} {:>9.2f}\n", pass, mean_of_pass(first, pass), mean_of_pass(last, pass));
-    }
-    for (const Stage stage : {kObservation, kRefinement}) {
-        const double before = mean_of_stage(first, stage), after = mean_of_stage(last, stage);
-        fmt::print("{:<40} {:>9.2f} {:>9.2f}  falls by {:.1f}\n", kStageNames[stage], before, after, before / after);
+        report.print("\n{:>6}", i);
+        nlohmann::ordered_json times;
+        for (size_t stage = 0; stage < kStages; ++stage) {
+            const double ms = frames[i].stage_ms(static_cast<Stage>(stage));
+            report.print(" {:>12.2f}", ms);
+            times[kStageNames[stage]] = ms;
+        }
+        report.print(" {:>14.2f}", frames[i].processor_ms);
+        times["processor"] = frames[i].processor_ms;
+        report.json["frames_ms"].push_back(std::move(times));
     }
 }
 
-void run(const Options& options) {
-    const vulkan::DeviceOptions device_options = options.device.options();
-    const Recording recording = load({options.sequence, {}, tools::parse_extent(options.extent), 1}, device_options);
-    const RgbdFrame frame = tools::to_rgbd(recording.info, recording.frames.front());
-    vulkan::Device device(device_options);
+/// Compares the first frames with the last.
+void report_fall(Report& report, std::span<const FrameTimes> first, std::span<const FrameTimes> last) {
+    report.print("\n\n{:<40} {:>9} {:>9}\n", "ms, means of frames", "first", "last");
+    for (const auto& [pass, ms] : first.front().passes_ms) {
+        if (stage_of(pass) == kGeometry) continue;
+        const double before = mean_of_pass(first, pass), after = mean_of_pass(last, pass);
+        report.print("{:<40} {:>9.2f} {:>9.2f}\n", pass, before, after);
+        report.json["ms"][pass] = {{"first", before}, {"last", after}};
+    }
+    for (const Stage stage : {kObservation, kRefinement}) {
+        const double before = mean_of_stage(first, stage), after = mean_of_stage(last, stage);
+        report.print("{:<40} {:>9.2f} {:>9.2f}  falls by {:.1f}\n", kStageNames[stage], before, after, before / after);
+        report.json["ms"][kStageNames[stage]] = {{"first", before}, {"last", after}};
+    }
+}
+
+Report run(const Options& options, const Conditions& conditions) {
+    if (options.averaged > conditions.frames) throw Error("--averaged is more than --frames");
+    const Recording recording = load({options.sequence, {}, conditions.extent, 1}, conditions.device);
+    const RgbdFrame frame = patina::to_rgbd(recording.info, recording.frames.front());
+    vulkan::Device device(conditions.device);
     if (!device.caps().timestamps) throw Error("the device '", device.caps().name, "' has no timestamps");
-    const std::vector<FrameTimes> frames = least_of_runs(device, options, frame);
-    fmt::print("{}, {}\nthe first frame of {} at {} again and again, {} m, {} lights\n\n", device.caps().name,
-               device.caps().driver, options.sequence, options.extent, options.voxel_m, options.lights);
-    print(frames, options.averaged);
+    const std::vector<FrameTimes> times = least_of_runs(device, options, frame, conditions.frames);
+    const std::span<const FrameTimes> frames = times;
+    const Extent2D extent = recording.info.depth.extent;
+    Report report(device.caps());
+    report.print("the first frame of {} at {}x{} again and again, {} m, {} lights\n\n", options.sequence, extent.width,
+                 extent.height, options.voxel_m, options.lights);
+    report_frames(report, frames);
+    report_fall(report, frames.first(options.averaged), frames.last(options.averaged));
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures what a frame costs while the camera rests", "patina_rest_bench");
-    bench::Options options;
-    app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE; its first frame is taken")
-        ->capture_default_str();
-    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--voxel", options.voxel_m, "Size of the observations' voxels, 0.02 or 0.01 m")
-        ->capture_default_str();
-    app.add_option("--lights", options.lights, "Point lights")
-        ->capture_default_str()
-        ->check(CLI::Range(0u, gpu::kMaxPointLights));
-    app.add_option("--frames", options.frames, "How often to add the frame")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--averaged", options.averaged, "How many of the first and of the last are compared")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--runs", options.runs, "How often all of it is done; of each pass the least time counts")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        if (options.averaged > options.frames) throw Error("--averaged is more than --frames");
-        bench::run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_rest_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject rest_subject() {
+    return {"rest",
+            "How the work of a frame falls while the camera rests and nothing moves",
+            {.frames = 40, .extent = "512x424"},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("sequence", options->sequence,
+                               "Folder of a sequence, or synthetic:SCENE; its first frame is taken")
+                    ->capture_default_str();
+                app.add_option("--voxel", options->voxel_m, "Size of the observations' voxels, 0.02 or 0.01 m")
+                    ->capture_default_str();
+                app.add_option("--lights", options->lights, "Point lights")
+                    ->capture_default_str()
+                    ->check(CLI::Range(0u, gpu::kMaxPointLights));
+                app.add_option("--averaged", options->averaged, "How many of the first and of the last are compared")
+                    ->capture_default_str()
+                    ->check(CLI::PositiveNumber);
+                app.add_option("--runs", options->runs,
+                               "How often all of it is done; of each pass the least time counts")
+                    ->capture_default_str()
+                    ->check(CLI::PositiveNumber);
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

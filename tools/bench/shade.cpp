@@ -1,9 +1,8 @@
-// patina_shade_bench: how long re-rendering takes, on the model of a recording. See docs/benchmarks.md.
-#include <cstdio>
-#include <exception>
+// `patina bench shade`: how long re-rendering takes, on the model of a recording. See docs/develop/benchmarks.md.
+
+#include <memory>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
@@ -15,26 +14,20 @@
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "passes/shading/restore_detail.h"
-#include "tools/bench/distribution.h"
+#include "reconstruction/session/rgbd_frame.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/parse.h"
-#include "tools/rgbd_frame.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
 namespace {
 
 struct Options {
-    tools::DeviceArguments device;
     std::string sequence = "synthetic:office";
     float voxel_m = 0.02f;
-    std::string extent = "512x424";
     uint32_t lights = 4;
     uint32_t model_frames = 8;
-    uint32_t frames = 20;
-    uint32_t warmup = 4;
 };
 
 ObservationMapSettings map_settings(float voxel_m) {
@@ -54,8 +47,8 @@ class Bench {
           state_(device, records_) {
         set_lights(options.lights);
         materials_.set(1, glm::vec3(0.1f), 0.2f);
-        for (const sensor::Frame& frame : recording.frames) {
-            last_ = tools::to_rgbd(recording.info, frame);
+        for (const Frame& frame : recording.frames) {
+            last_ = patina::to_rgbd(recording.info, frame);
             reconstruction_.add(last_);
             if (&frame == &recording.frames.front()) reset();
             collect();
@@ -98,7 +91,7 @@ class Bench {
     }
 
     void reset() {
-        graph::Frame frame = runner().begin();
+        graph::FrameGraph frame = runner().begin();
         records_.reset(frame, glm::dvec3(last_.world_from_depth[3]));
         state_.reset(frame);
         runner().submit(std::move(frame));
@@ -106,14 +99,14 @@ class Bench {
 
     gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
     const VoxelMap& map() const { return reconstruction_.map(); }
-    VisibleBlocks visible(graph::Frame& frame, const VoxelMapIds& voxels) {
+    VisibleBlocks visible(graph::FrameGraph& frame, const VoxelMapIds& voxels) {
         const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
         return add_visible_blocks(frame, map(), voxels, camera(), 0.1f, far_m);
     }
     MapAccess access() const { return preferred_map_access(device_.caps(), map()); }
 
     void collect() {
-        graph::Frame frame = runner().begin();
+        graph::FrameGraph frame = runner().begin();
         const VoxelMapIds voxels = map().import(frame);
         ObservationMapIds ids = records_.import(frame);
         const RaycastImages model = add_raycast(frame, map(), voxels, visible(frame, voxels), access());
@@ -137,7 +130,7 @@ class Bench {
     }
 
     void refine() {
-        graph::Frame frame = runner().begin();
+        graph::FrameGraph frame = runner().begin();
         ObservationMapIds ids = records_.import(frame);
         add_refine_all_reflectance(frame, {map(), records_, lights_, materials_, state_}, map().import(frame), ids,
                                    preferred_reflectance_access(device_.caps(), map(), records_), {});
@@ -148,7 +141,7 @@ class Bench {
     /// With shading, or without it; what shading reads is there in both.
     graph::Readback cast(bool shade, bool read_back = false) {
         graph::Readback rgb;
-        graph::Frame frame = runner().begin();
+        graph::FrameGraph frame = runner().begin();
         const VoxelMapIds voxels = map().import(frame);
         const VisibleBlocks blocks = visible(frame, voxels);
         const RaycastImages model = add_raycast(frame, map(), voxels, blocks, access());
@@ -163,7 +156,7 @@ class Bench {
         return rgb;
     }
 
-    PredictedImages predict(graph::Frame& frame, const VoxelMapIds& voxels, const VisibleBlocks& blocks,
+    PredictedImages predict(graph::FrameGraph& frame, const VoxelMapIds& voxels, const VisibleBlocks& blocks,
                             const RaycastImages& model, graph::ImageId color) {
         const auto focal_px = static_cast<float>(last_.depth.camera.fx);
         const RaycastImages sharp = add_sharpen_normals(frame, model, focal_px, map().settings().voxel_m);
@@ -177,7 +170,7 @@ class Bench {
     }
 
     vulkan::Device& device_;
-    Reconstruction reconstruction_;
+    Pipeline reconstruction_;
     ObservationMap records_;
     Lights lights_;
     SegmentMaterials materials_;
@@ -186,68 +179,55 @@ class Bench {
     uint32_t collected_ = 0;
 };
 
-void print(const std::string& name, const Distribution& d) {
-    fmt::print("{:<32} {:>9.3f} {:>9.3f} {:>9.3f}\n", name, d.min, d.median, d.p90);
-}
-
-void run(const Options& options) {
-    const Extent2D extent = tools::parse_extent(options.extent);
-    const vulkan::DeviceOptions device_options = options.device.options();
-    const Recording recording = load({options.sequence, {}, extent, options.model_frames}, device_options);
-    vulkan::Device device(device_options);
+Report run(const Options& options, const Conditions& conditions) {
+    const Recording recording =
+        load({options.sequence, {}, conditions.extent, options.model_frames}, conditions.device);
+    const Extent2D extent = recording.info.depth.extent;
+    vulkan::Device device(conditions.device);
     Bench bench(device, options, recording);
     const size_t known = bench.known_pixels();
-    bench.measure(options.warmup, true);
+    bench.measure(conditions.warmup, true);
     bench.measure(1, false);
     bench.runner().clear_timings();
-    const Distribution with = distribution(bench.measure(options.frames, true));
+    const Distribution with = distribution(bench.measure(conditions.frames, true));
     const auto timings = bench.runner().pass_timings();
-    const Distribution without = distribution(bench.measure(options.frames, false));
-    fmt::print("{}, {}\n{} at {}, {} m, {} lights, {} frames; kd known at {:.1f} % of the pixels\n\n",
-               device.caps().name, device.caps().driver, options.sequence, options.extent, options.voxel_m,
-               options.lights, options.frames, 100.0 * static_cast<double>(known) / static_cast<double>(extent.area()));
-    fmt::print("{:<32} {:>9} {:>9} {:>9}\n", "ms", "min", "median", "90 %");
+    const Distribution without = distribution(bench.measure(conditions.frames, false));
+    std::vector<Row> rows;
     for (const graph::Timing& timing : timings) {
         if (timing.name.starts_with("shading.") || timing.name == "fusion.sharpen_normals")
-            print(timing.name, distribution(timing.samples_ms));
+            rows.push_back({timing.name, distribution(timing.samples_ms)});
     }
-    print("processor time of a view", with);
-    print("the same without shading", without);
-    fmt::print("{:<32} {:>9.3f} ms on two cores, from the medians' difference\n", "shading",
-               (with.median - without.median) / 2);
+    rows.push_back({"processor time of a view", with});
+    rows.push_back({"the same without shading", without});
+    Report report(device.caps());
+    report.print("{} at {}x{}, {} m, {} lights, {} frames; kd known at {:.1f} % of the pixels\n\n", options.sequence,
+                 extent.width, extent.height, options.voxel_m, options.lights, conditions.frames,
+                 100.0 * static_cast<double>(known) / static_cast<double>(extent.area()));
+    report.table("ms", rows);
+    report.difference("shading", with, without);
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures how long re-rendering takes", "patina_shade_bench");
-    bench::Options options;
-    app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
-    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--voxel", options.voxel_m, "Size of the observations' voxels, 0.02 or 0.01 m")
-        ->capture_default_str();
-    app.add_option("--lights", options.lights, "Point lights")
-        ->capture_default_str()
-        ->check(CLI::Range(0u, gpu::kMaxPointLights));
-    app.add_option("--model-frames", options.model_frames, "How many frames to fuse and observe")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--frames", options.frames, "How many views to measure")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--warmup", options.warmup, "How many to run before")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        bench::run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_shade_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject shade_subject() {
+    return {"shade",
+            "How long the re-rendering of a view takes, on the model of a recording",
+            {.warmup = 4, .frames = 20, .extent = "512x424"},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("sequence", options->sequence, "Folder of a sequence, or synthetic:SCENE")
+                    ->capture_default_str();
+                app.add_option("--voxel", options->voxel_m, "Size of the observations' voxels, 0.02 or 0.01 m")
+                    ->capture_default_str();
+                app.add_option("--lights", options->lights, "Point lights")
+                    ->capture_default_str()
+                    ->check(CLI::Range(0u, gpu::kMaxPointLights));
+                app.add_option("--model-frames", options->model_frames, "How many frames to fuse and observe first")
+                    ->capture_default_str()
+                    ->check(CLI::PositiveNumber);
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

@@ -1,30 +1,22 @@
-// patina_track_bench: what tracking costs per frame and per iteration. See docs/benchmarks.md.
-#include <cstdio>
-#include <exception>
+// `patina bench track`: what tracking costs per frame and per iteration. See docs/develop/benchmarks.md.
 #include <map>
+#include <memory>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "engine/core/error.h"
-#include "passes/reconstruction.h"
-#include "tools/bench/distribution.h"
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/rgbd_frame.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
-#include "tools/commands/commands.h"
-#include "tools/commands/parse.h"
-#include "tools/rgbd_frame.h"
+#include "tools/bench/subjects.h"
 
 namespace patina::bench {
 
 namespace {
 
 struct Options {
-    tools::DeviceArguments device;
     std::string sequence = "synthetic:office";
-    std::string extent = "512x424";
-    uint32_t frames = 40;
-    uint32_t warmup = 4;
     TrackingSettings tracking;
 };
 
@@ -39,23 +31,23 @@ constexpr const char* kYardstick = "fusion.raycast";
 /// One reconstruction that tracks, frame by frame.
 class Bench {
   public:
-    Bench(const Options& options, const Recording& recording, vulkan::Device& device)
-        : options_(options), recording_(recording), reconstruction_(device, settings()) {}
+    Bench(const Options& options, uint32_t warmup, const Recording& recording, vulkan::Device& device)
+        : options_(options), warmup_(warmup), recording_(recording), reconstruction_(device, settings()) {}
 
     void run() {
-        for (const sensor::Frame& frame : recording_.frames) {
+        for (const Frame& frame : recording_.frames) {
             reconstruction_.runner().clear_timings();
-            RgbdFrame rgbd = tools::to_rgbd(recording_.info, frame);
+            RgbdFrame rgbd = patina::to_rgbd(recording_.info, frame);
             rgbd.world_from_depth = *recording_.frames.front().world_from_camera;
             const double start = processor_ms();
             const bool fused = reconstruction_.add(rgbd);
             reconstruction_.wait();
             if (!fused) ++lost_;
-            if (&frame - recording_.frames.data() >= options_.warmup) keep(processor_ms() - start);
+            if (&frame - recording_.frames.data() >= warmup_) keep(processor_ms() - start);
         }
     }
 
-    void print() const {
+    void report(Report& report) const {
         std::map<std::string, std::vector<float>> by_pass;
         std::vector<float> tracking;
         for (const FrameTimes& times : frames_) {
@@ -66,11 +58,12 @@ class Bench {
             }
             tracking.push_back(sum);
         }
-        fmt::print("{:<36} {:>9} {:>9} {:>9} {:>9}\n", "ms per frame", "min", "median", "90 %", "runs");
-        for (const auto& [pass, samples] : by_pass) print(pass, distribution(samples), runs_.at(pass));
-        print("tracking", distribution(tracking), 1);
-        print("processor time of the frame", distribution(processor_ms_), 1);
-        fmt::print("{} of {} frames did not track\n", lost_, recording_.frames.size());
+        report.print("{:<36} {:>10} {:>10} {:>10} {:>6}\n", "ms per frame", "min", "median", "90 %", "runs");
+        for (const auto& [pass, samples] : by_pass) add_row(report, pass, distribution(samples), runs_.at(pass));
+        add_row(report, "tracking", distribution(tracking), 1);
+        add_row(report, "processor time of the frame", distribution(processor_ms_), 1);
+        report.print("{} of {} frames did not track\n", lost_, recording_.frames.size());
+        report.json["lost_frames"] = lost_;
     }
 
   private:
@@ -90,58 +83,53 @@ class Bench {
         processor_ms_.push_back(static_cast<float>(processor));
     }
 
-    static void print(const std::string& name, const Distribution& d, size_t runs) {
-        fmt::print("{:<36} {:>9.3f} {:>9.3f} {:>9.3f} {:>9}\n", name, d.min, d.median, d.p90, runs);
+    static void add_row(Report& report, const std::string& name, const Distribution& d, size_t runs) {
+        report.print("{:<36} {:>10.4f} {:>10.4f} {:>10.4f} {:>6}\n", name, d.min, d.median, d.p90, runs);
+        report.json["ms"][name] = to_json(d);
+        report.json["ms"][name]["runs"] = runs;
     }
 
     const Options& options_;
+    uint32_t warmup_;
     const Recording& recording_;
-    Reconstruction reconstruction_;
+    Pipeline reconstruction_;
     std::vector<FrameTimes> frames_;
     std::map<std::string, size_t> runs_;  ///< of each pass in a frame
     std::vector<float> processor_ms_;
     uint32_t lost_ = 0;
 };
 
-void run(const Options& options) {
-    const vulkan::DeviceOptions device_options = options.device.options();
-    const Recording recording = load(
-        {options.sequence, {}, tools::parse_extent(options.extent), options.frames + options.warmup}, device_options);
-    vulkan::Device device(device_options);
-    fmt::print("{}, {}\n{} at {}, {} frames\n\n", device.caps().name, device.caps().driver, options.sequence,
-               options.extent, options.frames);
-    Bench bench(options, recording, device);
+Report run(const Options& options, const Conditions& conditions) {
+    const Recording recording =
+        load({options.sequence, {}, conditions.extent, conditions.frames + conditions.warmup}, conditions.device);
+    vulkan::Device device(conditions.device);
+    Bench bench(options, conditions.warmup, recording, device);
     bench.run();
-    bench.print();
+    const Extent2D extent = recording.info.depth.extent;
+    Report report(device.caps());
+    report.print("{} at {}x{}, {} frames\n\n", options.sequence, extent.width, extent.height, conditions.frames);
+    bench.report(report);
+    return report;
 }
 
 }  // namespace
 
-}  // namespace patina::bench
-
-int main(int argc, char** argv) {
-    using namespace patina;
-    CLI::App app("Measures what tracking the camera costs", "patina_track_bench");
-    bench::Options options;
-    app.add_option("sequence", options.sequence, "Folder of a sequence, or synthetic:SCENE")->capture_default_str();
-    app.add_option("--extent", options.extent, "Resample colour and depth to WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--frames", options.frames, "How many frames to measure")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--warmup", options.warmup, "How many frames before")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    app.add_option("--finest", options.tracking.finest, "The finest level that is compared")->capture_default_str();
-    app.add_option("--iterations", options.tracking.iterations, "On each level")->capture_default_str();
-    app.add_option("--finest-iterations", options.tracking.finest_iterations, "On the finest")->capture_default_str();
-    app.add_flag("!--no-color", options.tracking.photometric, "Compare depths alone");
-    options.device.add_to(app);
-    CLI11_PARSE(app, argc, argv);
-    try {
-        bench::run(options);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "patina_track_bench: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+Subject track_subject() {
+    return {"track",
+            "What tracking the camera costs",
+            {.warmup = 4, .frames = 40, .extent = "512x424"},
+            [](CLI::App& app) -> Measure {
+                const auto options = std::make_shared<Options>();
+                app.add_option("sequence", options->sequence, "Folder of a sequence, or synthetic:SCENE")
+                    ->capture_default_str();
+                app.add_option("--finest", options->tracking.finest, "The finest level that is compared")
+                    ->capture_default_str();
+                app.add_option("--iterations", options->tracking.iterations, "On each level")->capture_default_str();
+                app.add_option("--finest-iterations", options->tracking.finest_iterations, "On the finest")
+                    ->capture_default_str();
+                app.add_flag("!--no-color", options->tracking.photometric, "Compare depths alone");
+                return [options](const Conditions& conditions) { return run(*options, conditions); };
+            }};
 }
+
+}  // namespace patina::bench

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/vulkan/device.h"
-#include "tools/sequence_fusion.h"
+#include "tools/program/sequence_options.h"
 
 namespace patina::tools {
 
@@ -19,7 +19,8 @@ struct DeviceArguments {
     /// Adds --device (also from PATINA_DEVICE), --validation and --memory.
     void add_to(CLI::App& command);
     /// With the pipeline cache in the user's cache folder.
-    vulkan::DeviceOptions options() const;
+    DeviceChoice choice() const;
+    vulkan::DeviceOptions options() const;  ///< the same for what uses the engine alone
 };
 
 /// What run and render take to make a reconstruction, the device included.
@@ -27,11 +28,17 @@ struct SequenceArguments {
     DeviceArguments device;
     std::string settings_file;
     std::vector<std::string> assignments;
+    std::string lights, lighting, specular;
+    bool truth_materials = false;
 
     /// Adds the options. Both this and `options` must outlive the parsing.
     void add_to(CLI::App& command, SequenceOptions& options);
     /// Brings settings and device into the options, once the command line is parsed.
     void finish(SequenceOptions& options) const;
+
+  private:
+    LightingChoice lighting_choice() const;
+    Materials materials_choice() const;
 };
 
 /// Each adds one subcommand with its options; the work happens in its callback. Errors are thrown; `exit_code` becomes
@@ -44,5 +51,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);
+void add_settings(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace patina::tools

@@ -27,12 +27,20 @@ void DeviceArguments::add_to(CLI::App& command) {
         ->option_text("MIB");
 }
 
+DeviceChoice DeviceArguments::choice() const {
+    return {.selector = selector,
+            .validation = validation,
+            .pipeline_cache_folder = cache_folder(),
+            .memory_limit = memory_mib << 20};
+}
+
 vulkan::DeviceOptions DeviceArguments::options() const {
+    const DeviceChoice chosen = choice();
     vulkan::DeviceOptions options;
-    options.selector = selector;
-    options.validation = validation;
-    options.memory_limit = memory_mib << 20;
-    options.pipeline_cache_folder = cache_folder();
+    options.selector = chosen.selector;
+    options.validation = chosen.validation;
+    options.memory_limit = chosen.memory_limit;
+    options.pipeline_cache_folder = chosen.pipeline_cache_folder;
     return options;
 }
 

@@ -12,8 +12,8 @@
 #include "tools/eval/eval_report.h"
 #include "tools/eval/eval_text.h"
 #include "tools/eval/evaluate.h"
-#include "tools/export/output_folder.h"
-#include "tools/progress.h"
+#include "tools/program/progress.h"
+#include "tools/report/output_folder.h"
 
 namespace patina::tools {
 

@@ -1,12 +1,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "scenes/files/scene_file.h"
+#include "scenes/files/scene_report.h"
+#include "scenes/render/synthetic_source.h"
 #include "sensor/inspect.h"
 #include "sensor/open.h"
 #include "sensor/prefetch.h"
-#include "sensor/synthetic/scene_file.h"
-#include "sensor/synthetic/scene_report.h"
-#include "sensor/synthetic/synthetic_source.h"
 #include "tools/commands/commands.h"
 
 namespace patina::tools {
@@ -22,9 +22,9 @@ void add_info(CLI::App& app) {
     command->add_option("--format", arguments->format,
                         "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
     command->callback([arguments] {
-        if (const auto scene = sensor::scene_name(arguments->sequence)) {
+        if (const auto scene = scenes::scene_name(arguments->sequence)) {
             const std::string report =
-                sensor::format_scene_report(sensor::load_scene(*scene), sensor::SyntheticOptions{}.frames);
+                scenes::format_scene_report(scenes::load_scene(*scene), scenes::SyntheticOptions{}.frames);
             std::fputs(report.c_str(), stdout);
             return;
         }

@@ -1,11 +1,27 @@
-#include "tools/lights.h"
-
+#include <filesystem>
 #include <memory>
 
+#include "engine/core/input_file.h"
+#include "reconstruction/session/find_lights.h"
+#include "scenes/files/scene_file.h"
+#include "sensor/output/output_file.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
+#include "tools/program/console.h"
+#include "tools/program/inputs.h"
+#include "tools/program/lights_text.h"
 
 namespace patina::tools {
+
+namespace {
+
+/// A wrong path is an error before a device is opened.
+void expect_sequence(const LightsOptions& options) {
+    if (!scenes::scene_name(options.sequence) && !path_exists(options.sequence))
+        throw Error(options.sequence, " does not exist");
+}
+
+}  // namespace
 
 void add_lights(CLI::App& app) {
     CLI::App* command =
@@ -13,13 +29,15 @@ void add_lights(CLI::App& app) {
     struct Arguments {
         LightsOptions lights;
         DeviceArguments device;
+        std::filesystem::path out;
+        bool quiet = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     LightsOptions& options = arguments->lights;
     command
         ->add_option("sequence", options.sequence, "Folder of a sequence, of a lighting sequence, or synthetic:SCENE")
         ->required();
-    command->add_option("--out", options.out, "File to write, such as lights.json");
+    command->add_option("--out", arguments->out, "File to write, such as lights.json");
     command
         ->add_option(
             "--from", options.from,
@@ -37,12 +55,22 @@ void add_lights(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--min-sightings", options.settings.min_sightings, "Leave out lamps seen in fewer frames")
         ->capture_default_str();
-    command->add_flag("--quiet", options.quiet, "Print nothing but errors");
+    command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
     arguments->device.add_to(*command);
     command->callback([arguments] {
-        arguments->lights.device = arguments->device.options();
-        const Illumination found = find_lights(arguments->lights);
-        if (!arguments->lights.quiet) print_lights(found);
+        Console console(arguments->quiet);
+        arguments->lights.callbacks = console.callbacks();
+        std::optional<sensor::OutputFile> out;
+        if (!arguments->out.empty()) out.emplace(arguments->out, sequence_inputs(arguments->lights.sequence));
+        expect_sequence(arguments->lights);
+        vulkan::Device device(arguments->device.options());
+        const Illumination found = find_lights(device, arguments->lights);
+        console.end();
+        if (out) {
+            write_lighting(out->partial_path(), lighting_of(found));
+            out->finish();
+        }
+        if (!arguments->quiet) print_lights(found);
     });
 }
 

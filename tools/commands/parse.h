@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 
 namespace patina::tools {
 

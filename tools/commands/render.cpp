@@ -1,4 +1,4 @@
-#include "tools/render.h"
+#include "tools/render/render.h"
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-#include "tools/run.h"
+#include "tools/run/run.h"
 
 #include <memory>
 
@@ -22,14 +22,13 @@ void add_run(CLI::App& app, int& exit_code) {
         ->add_option("--gains", run_options.gains,
                      "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
                      "recording does not tell the exposure), on, off")
-        ->transform(one_of<GainMode>({{"auto", GainMode::kAuto}, {"on", GainMode::kOn}, {"off", GainMode::kOff}}))
+        ->transform(one_of<Gains>({{"auto", Gains::kAuto}, {"on", Gains::kOn}, {"off", Gains::kOff}}))
         ->option_text("auto|on|off");
     command
         ->add_option("--poses", run_options.poses,
                      "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
                      "by default given where there are any")
-        ->transform(
-            one_of<PoseMode>({{"given", PoseMode::kGiven}, {"track", PoseMode::kTrack}, {"prior", PoseMode::kPrior}}))
+        ->transform(one_of<Poses>({{"given", Poses::kGiven}, {"track", Poses::kTrack}, {"prior", Poses::kPrior}}))
         ->option_text("given|track|prior");
     command->add_option("--hold-out", run_options.hold_out,
                         "Keep the colours of every so many-th frame out of the model, and compare them in the end");

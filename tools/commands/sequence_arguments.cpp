@@ -1,15 +1,18 @@
 #include <memory>
 
-#include "sensor/synthetic/scene_file.h"
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/choices.h"
+#include "reconstruction/setting_table.h"
+#include "scenes/files/scene_file.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
-#include "tools/run_settings.h"
 
 namespace patina::tools {
 
 namespace {
 
-ReflectanceModelSettings& reflectance_of(ReconstructionSettings& settings) {
+ReflectanceStageSettings& reflectance_of(Settings& given) {
+    ReconstructionSettings& settings = Access::values(given);
     return settings.reflectance ? *settings.reflectance : settings.reflectance.emplace();
 }
 
@@ -27,28 +30,29 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
         .add_option("sequence", options.sequence,
                     "Folder of a sequence, or synthetic:SCENE, rendered as it is used; SCENE is a JSON file or one "
                     "of: " +
-                        sensor::scene_names())
+                        scenes::scene_names())
         ->required();
     command.add_option("--format", options.format,
                        "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
     command
         .add_option("--frames", options.frames, "Use at most so many frames; without it all (of a synthetic scene 120)")
         ->check(at_least_one());
-    command.add_option("--lights", options.lights,
+    command.add_option("--lights", lights,
                        "lights.json: estimate what surfaces reflect under these lights, not only where they are");
     command.add_option(
-        "--lighting", options.lighting,
+        "--lighting", lighting,
         "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
         "light; none: no reflectance; by default in the sequence's lighting/");
     command
         .add_option("--labels", options.labels,
                     "Segments: geometry finds them, truth takes those of truth/labels, off does without")
-        ->check(one_of({"off", "geometry", "truth"}))
-        ->capture_default_str();
-    add_truth_option(command, "--materials", options.truth_materials,
+        ->transform(one_of<Labels>({{"off", Labels::kOff}, {"geometry", Labels::kGeometry}, {"truth", Labels::kTruth}}))
+        ->option_text("off|geometry|truth")
+        ->default_str("geometry");
+    add_truth_option(command, "--materials", truth_materials,
                      "Specular materials by label: truth takes those of truth/materials.json");
     command
-        .add_option("--specular", options.specular,
+        .add_option("--specular", specular,
                     "Specular materials of segments: fit (Ward's model, to the observations), hemicnn (the network), "
                     "both (its estimates hold where observations do not tell) or off; by default both where there is "
                     "a network, else fit")
@@ -64,7 +68,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
             "Size of the voxels of reflectance, 20 or 10")
         ->check(one_of({"10", "20"}));
     command.add_option_function<uint64_t>(
-        "--seed", [&options](const uint64_t& seed) { options.seed = options.settings.seed = seed; },
+        "--seed", [&options](const uint64_t& seed) { options.seed = seed; },
         "Another seed for everything that is drawn at random; of a synthetic scene also for noise and samples");
     command.add_flag("--quiet", options.quiet, "Print nothing but errors");
     command.add_option("--settings", settings_file, "TOML file with settings");
@@ -73,11 +77,29 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
     device.add_to(command);
 }
 
+LightingChoice SequenceArguments::lighting_choice() const {
+    if (!lights.empty()) return LightsFromFile{lights};
+    if (lighting.empty()) return LightsBeside{};
+    if (lighting == "none") return NoLights{};
+    if (lighting == "self") return LightsFromMain{};
+    return LightsFromSequence{lighting};
+}
+
+Materials SequenceArguments::materials_choice() const {
+    if (truth_materials) return Materials::kTruth;
+    for (const Materials choice : {Materials::kFit, Materials::kNetwork, Materials::kBoth, Materials::kOff})
+        if (specular == name_of(choice)) return choice;
+    return Materials::kAuto;
+}
+
 void SequenceArguments::finish(SequenceOptions& options) const {
-    if (!settings_file.empty()) load_settings(options.settings, settings_file);
-    for (const std::string& assignment : assignments) apply_setting(options.settings, assignment);
+    ReconstructionSettings& settings = Access::values(options.settings);
+    if (!settings_file.empty()) load_settings(settings, settings_file);
+    for (const std::string& assignment : assignments) apply_setting(settings, assignment);
     options.settings_file = settings_file;
-    options.device = device.options();
+    options.lighting = lighting_choice();
+    options.materials = materials_choice();
+    options.device = device.choice();
 }
 
 }  // namespace patina::tools

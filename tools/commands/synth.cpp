@@ -1,11 +1,11 @@
-#include "tools/synth.h"
+#include "tools/synth/synth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
 
-#include "sensor/synthetic/noise.h"
+#include "scenes/description/noise.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
 
@@ -35,7 +35,7 @@ void add_switch(CLI::App& command, const std::string& names, std::optional<bool>
 }
 
 void add_recording_options(CLI::App& command, SynthOptions& options) {
-    add_optional(command, "--noise", options.noise, "Errors of depth and colour: " + sensor::noise_preset_names());
+    add_optional(command, "--noise", options.noise, "Errors of depth and colour: " + scenes::noise_preset_names());
     command.add_option_function<std::string>(
         "--pose-noise", [&options](const std::string& text) { options.pose_noise = parse_pose_noise(text); },
         "Errors of the recorded poses, METRES,DEGREES: standard deviations per axis");
@@ -63,7 +63,7 @@ void add_synth(CLI::App& app) {
     };
     const auto arguments = std::make_shared<Arguments>();
     SynthOptions& options = arguments->synth;
-    command->add_option("scene", options.scene, "JSON file of a scene, or one of: " + sensor::scene_names())
+    command->add_option("scene", options.scene, "JSON file of a scene, or one of: " + scenes::scene_names())
         ->required();
     command->add_option("--out", options.out, "Folder to create")->required();
     command->add_option("--frames", options.frames, "How many frames to record")

@@ -1,4 +1,4 @@
-#include "tools/synth_hemi.h"
+#include "tools/synth/synth_hemi.h"
 
 #include <memory>
 

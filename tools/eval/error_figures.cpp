@@ -14,8 +14,8 @@
 #include "tools/eval/exr_planes.h"
 #include "tools/eval/frame_channels.h"
 #include "tools/eval/table.h"
-#include "tools/export/drawing.h"
-#include "tools/export/plot.h"
+#include "tools/report/drawing.h"
+#include "tools/report/plot.h"
 
 namespace patina::eval {
 namespace {
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::array<uint32_t, 4> kPanelWidths = {384, 288, 192, 128};  ///< the first that is small enough is taken
 constexpr double kQuantile = 0.99;                                      ///< single outliers do not eat the scale
 constexpr uint32_t kStripes = 60;                                       ///< of hatching across a picture
-constexpr sensor::SrgbPixel kHatch{150, 150, 150};
+constexpr SrgbPixel kHatch{150, 150, 150};
 
 /// What a row of pictures shows.
 struct RowKind {
@@ -161,14 +161,13 @@ Tops tops_of(const Frames& frames) {
 }
 
 /// Diagonal stripes, about as wide in the shrunken picture whatever its extent was.
-sensor::SrgbPixel hatch_pixel(size_t i, uint32_t width) {
+SrgbPixel hatch_pixel(size_t i, uint32_t width) {
     const size_t stripe = std::max<size_t>(2, width / (2 * kStripes));
     return (i % width + i / width) / stripe % 2 == 0 ? kHatch : kNoValue;
 }
 
 /// As large as the largest panel.
-Drawing drawn(const Planes& planes, Extent2D extent, PixelState least,
-              const std::function<sensor::SrgbPixel(size_t)>& pixel) {
+Drawing drawn(const Planes& planes, Extent2D extent, PixelState least, const std::function<SrgbPixel(size_t)>& pixel) {
     Drawing drawing(extent, kNoValue);
     for (size_t i = 0; i < planes.size(); ++i) {
         if (planes.state(i) >= least) {
@@ -199,7 +198,7 @@ DrawnRow draw_row(const FramePair& frame, const RowKind& kind, const Tops& tops)
     DrawnRow drawn_row;
     drawn_row.row.title = kind.title;
     drawn_row.row.errors = scale_of(ColorMap::kInferno, error_top * kind.error_units, kind.error_unit);
-    std::function<sensor::SrgbPixel(glm::vec3)> value_pixel = color_pixel;
+    std::function<SrgbPixel(glm::vec3)> value_pixel = color_pixel;
     if (!kind.is_color) {
         const double top = tops.value.at(kind.channels.truth);
         drawn_row.row.values = scale_of(ColorMap::kViridis, top, kind.value_unit);

@@ -130,7 +130,7 @@ struct Convert {
         return {{"tracking", states.tracking}, {"weak", states.weak}, {"lost", states.lost}};
     }
 
-    static Json to_json(const sensor::PointLight& light) {
+    static Json to_json(const Light& light) {
         return {{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
     }
 

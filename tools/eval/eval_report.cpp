@@ -4,8 +4,8 @@
 
 #include "tools/eval/table.h"
 #include "tools/eval/time_plots.h"
-#include "tools/export/html.h"
-#include "tools/export/report_page.h"
+#include "tools/report/html.h"
+#include "tools/report/report_page.h"
 
 namespace patina::eval {
 namespace {

@@ -94,8 +94,8 @@ void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTr
                     double radius_m, Evaluation& result) {
     const fs::path truth_file = sequence / "truth" / "lights.json", run_file = run / "lights.json";
     if (!path_exists(truth_file) || !path_exists(run_file)) return;
-    std::vector<sensor::PointLight> lights = sensor::read_lights(run_file);
-    for (sensor::PointLight& light : lights) {
+    std::vector<Light> lights = sensor::read_lights(run_file);
+    for (Light& light : lights) {
         light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
     }
     result.lights = compare_lights(sensor::read_lights(truth_file), lights, radius_m);

@@ -16,7 +16,7 @@ struct Settings {
     std::function<void(size_t done, size_t total)> on_frame = {};  ///< called after each frame; may be empty
 };
 
-/// Measures the run in folder `run` against the truth of the sequence in folder `sequence`, as docs/evaluation.md
+/// Measures the run in folder `run` against the truth of the sequence in folder `sequence`, as docs/guide/evaluation.md
 /// defines it. Frames are read one by one. Throws Error when the sequence has no truth/frames, the run no frames, the
 /// two no frame in common, extents or channels disagree, a file is damaged, or the frames that saw a surface are to be
 /// counted and SeenPixels cannot be made.

@@ -10,8 +10,8 @@
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
-#include "sensor/exr_input.h"
-#include "tools/export/run_id.h"
+#include "sensor/files/exr_input.h"
+#include "tools/report/run_id.h"
 
 namespace patina::eval {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 
 namespace patina::eval {
 
@@ -21,7 +21,7 @@ class ExrPlanes {
 
     const std::string& file() const { return file_; }
     Extent2D extent() const { return extent_; }
-    /// The id of the run that wrote the file (tools/export/run_id.h); empty where it has none.
+    /// The id of the run that wrote the file (tools/report/run_id.h); empty where it has none.
     const std::string& run_id() const { return run_id_; }
     const std::map<std::string, std::vector<float>>& planes() const { return planes_; }
     bool has(const std::string& channel) const { return planes_.contains(channel); }

@@ -2,7 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
-#include "sensor/json_file.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::eval {
 

@@ -1,7 +1,7 @@
 #include "tools/eval/frame_states.h"
 
 #include "engine/core/input_file.h"
-#include "sensor/json_file.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::eval {
 

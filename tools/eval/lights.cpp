@@ -60,8 +60,7 @@ glm::dvec3 relative_error(glm::dvec3 truth, glm::dvec3 run) {
 
 }  // namespace
 
-LightErrors compare_lights(std::span<const sensor::PointLight> truth, std::span<const sensor::PointLight> run,
-                           double radius_m) {
+LightErrors compare_lights(std::span<const Light> truth, std::span<const Light> run, double radius_m) {
     LightErrors errors;
     errors.radius_m = radius_m;
     errors.truth.assign(truth.begin(), truth.end());

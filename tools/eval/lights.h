@@ -8,7 +8,6 @@ namespace patina::eval {
 
 /// Pairs each true light with at most one of the run, nearest pairs first, none farther apart than `radius_m`. Both
 /// lists are in one world.
-LightErrors compare_lights(std::span<const sensor::PointLight> truth, std::span<const sensor::PointLight> run,
-                           double radius_m);
+LightErrors compare_lights(std::span<const Light> truth, std::span<const Light> run, double radius_m);
 
 }  // namespace patina::eval

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 #include "tools/eval/result.h"
 
 namespace patina::eval {

@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/error.h"
+
 namespace patina::eval {
 namespace {
 

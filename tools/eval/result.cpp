@@ -1,5 +1,7 @@
 #include "tools/eval/result.h"
 
+#include "engine/core/error.h"
+
 namespace patina::eval {
 
 const char* name_of(Quantity quantity) {

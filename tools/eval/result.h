@@ -11,8 +11,8 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/camera.h"
-#include "engine/core/image.h"
+#include "patina/camera.h"
+#include "patina/image.h"
 #include "sensor/truth.h"
 #include "tools/eval/frame_states.h"
 
@@ -141,12 +141,12 @@ struct LightMatch {
 
 struct LightErrors {
     double radius_m = 0;  ///< farther apart, two lights are not matched
-    std::vector<sensor::PointLight> truth;
-    std::vector<sensor::PointLight> run;  ///< in truth's world
-    std::vector<LightMatch> matches;      ///< in the order of `truth`
-    std::vector<size_t> missed;           ///< indices into `truth`
-    std::vector<size_t> invented;         ///< indices into `run`
-    double common_factor = 1;             ///< run / truth: geometric mean over the matches and channels; 1 without any
+    std::vector<Light> truth;
+    std::vector<Light> run;           ///< in truth's world
+    std::vector<LightMatch> matches;  ///< in the order of `truth`
+    std::vector<size_t> missed;       ///< indices into `truth`
+    std::vector<size_t> invented;     ///< indices into `run`
+    double common_factor = 1;         ///< run / truth: geometric mean over the matches and channels; 1 without any
 };
 
 /// Everything measured. What the run or the sequence does not have is empty.

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Readings in metres; 0 where there is none, or it is too far to be used.
-Image<float> readings_m(const sensor::DepthImage& depth, const sensor::SequenceInfo& info) {
+Image<float> readings_m(const DepthImage& depth, const SequenceInfo& info) {
     return std::visit(
         [&]<class Pixel>(const Image<Pixel>& raw) {
             const double metres = std::is_same_v<Pixel, float> ? 1 : info.metres_per_unit;
@@ -35,7 +35,7 @@ SeenPixels::SeenPixels(const fs::path& sequence, const std::map<uint32_t, fs::pa
       poses_(sensor::read_trajectory(trajectory_file_)),
       surface_(least_frames) {
     sensor::PrefetchSource source(sensor::open_sequence(sequence));
-    const sensor::SequenceInfo& info = source.info();
+    const SequenceInfo& info = source.info();
     color_ = info.color;
     depth_from_color_ = rigid_inverse(info.color_from_depth);
     const uint32_t last = truth_frames.rbegin()->first;
@@ -47,7 +47,7 @@ SeenPixels::SeenPixels(const fs::path& sequence, const std::map<uint32_t, fs::pa
                       [&](size_t, glm::dvec3 point_m) { surface_.add(point_m); });
     }
     while (const auto reading = source.next()) {
-        const auto* frame = std::get_if<sensor::Frame>(&*reading);
+        const auto* frame = std::get_if<Frame>(&*reading);
         if (!frame) continue;
         if (frame->index > last) break;
         surface_.count(frame->index,

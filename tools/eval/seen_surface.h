@@ -6,8 +6,8 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/core/camera.h"
-#include "engine/core/image.h"
+#include "patina/camera.h"
+#include "patina/image.h"
 
 namespace patina::eval {
 

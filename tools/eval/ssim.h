@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/core/image.h"
+#include "patina/image.h"
 
 namespace patina::eval {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/eval/result.h"
-#include "tools/export/plot.h"
+#include "tools/report/plot.h"
 
 namespace patina::eval {
 

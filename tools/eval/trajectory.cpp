@@ -8,7 +8,7 @@
 
 #include "engine/core/error.h"
 #include "sensor/associate.h"
-#include "sensor/text_file.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::eval {
 namespace {

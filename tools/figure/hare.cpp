@@ -78,7 +78,7 @@ double hare(glm::dvec3 p) {
     return join(solid, scarf(p), 0.04);
 }
 
-sensor::TriangleMesh make_hare() {
+scenes::TriangleMesh make_hare() {
     constexpr glm::dvec3 kLow(-0.56, -0.04, -0.72), kHigh(0.56, 1.64, 0.62);  // around it with some air
     constexpr double kCell = 0.0215;                                          // about 20 000 triangles
     return polygonise(hare, kLow, kHigh, kCell);

@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sensor/synthetic/shape.h"
+#include "scenes/description/shape.h"
 
 namespace patina::figure {
 
@@ -11,6 +11,6 @@ namespace patina::figure {
 double hare(glm::dvec3 p);
 
 /// Its surface as shipped.
-sensor::TriangleMesh make_hare();
+scenes::TriangleMesh make_hare();
 
 }  // namespace patina::figure

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        const patina::sensor::TriangleMesh mesh = patina::figure::make_hare();
+        const patina::scenes::TriangleMesh mesh = patina::figure::make_hare();
         patina::figure::write_ply(argv[1], mesh);
         std::printf("%s: %zu vertices, %zu triangles\n", argv[1], mesh.positions_m.size(), mesh.triangles.size());
     } catch (const patina::Error& error) {

@@ -123,13 +123,13 @@ void relax(Polygons& polygons) {
 
 glm::dvec3 surface_normal(const Distance& distance, glm::dvec3 p) { return glm::normalize(gradient(distance, p)); }
 
-sensor::TriangleMesh polygonise(const Distance& distance, glm::dvec3 low, glm::dvec3 high, double cell) {
+scenes::TriangleMesh polygonise(const Distance& distance, glm::dvec3 low, glm::dvec3 high, double cell) {
     Polygons polygons = Marcher(Grid(distance, low, high, cell)).take();
     for (int i = 0; i < kRelaxations; ++i) {
         relax(polygons);
         for (glm::dvec3& p : polygons.places) p = pulled_onto_surface(distance, p);
     }
-    sensor::TriangleMesh mesh;
+    scenes::TriangleMesh mesh;
     for (const glm::dvec3& p : polygons.places) {
         mesh.positions_m.emplace_back(p);
         mesh.normals.emplace_back(surface_normal(distance, p));

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/core/error.h"
-#include "sensor/text_file.h"
+#include "sensor/files/text_file.h"
 
 namespace patina::figure {
 namespace {
@@ -27,7 +27,7 @@ std::string header(size_t vertices, size_t triangles) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& file, const sensor::TriangleMesh& mesh) {
+void write_ply(const std::filesystem::path& file, const scenes::TriangleMesh& mesh) {
     PATINA_ASSERT(mesh.normals.size() == mesh.positions_m.size(), "normals ", mesh.normals.size());
     std::string bytes = header(mesh.positions_m.size(), mesh.triangles.size());
     for (size_t i = 0; i < mesh.positions_m.size(); ++i) {

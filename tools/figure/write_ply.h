@@ -2,11 +2,11 @@
 
 #include <filesystem>
 
-#include "sensor/synthetic/shape.h"
+#include "scenes/description/shape.h"
 
 namespace patina::figure {
 
 /// Writes a mesh with normals as binary little-endian PLY. Throws Error when the file cannot be written.
-void write_ply(const std::filesystem::path& file, const sensor::TriangleMesh& mesh);
+void write_ply(const std::filesystem::path& file, const scenes::TriangleMesh& mesh);
 
 }  // namespace patina::figure

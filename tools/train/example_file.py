@@ -1,4 +1,4 @@
-"""Reads the files of labelled HemiImages that `patina synth-hemi` writes (docs/training.md tells their format)."""
+"""Reads the files of labelled HemiImages that `patina synth-hemi` writes (format: docs/guide/training.md)."""
 
 import os
 import struct

@@ -1,4 +1,4 @@
-"""HemiCNN, its loss, and the materials that its outputs stand for (docs/specular.md)."""
+"""HemiCNN, its loss, and the materials that its outputs stand for (docs/develop/specular.md)."""
 
 import json
 
@@ -85,7 +85,7 @@ WHITE = np.array([0.95047, 1.0, 1.08883])  # D65
 
 
 def material_of(w):
-    """(kd, ks, alpha) of perceptual parameters [example][7], as shaders/lib/perceptual.glsl limits them."""
+    """(kd, ks, alpha) of perceptual parameters [example][7], as shaders/lib/color/perceptual.glsl limits them."""
     w = np.asarray(w, dtype=np.float64)
     y = (w[:, 0] + 0.16) / 1.16
     f = np.stack((y + w[:, 1] / 5, y, y - w[:, 2] / 2), axis=1)

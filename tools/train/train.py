@@ -1,4 +1,4 @@
-"""Trains HemiCNN on files that `patina synth-hemi` wrote and exports its weights (docs/training.md).
+"""Trains HemiCNN on files that `patina synth-hemi` wrote and exports its weights (docs/guide/training.md).
 
 One process trains on one device; `torchrun --nproc-per-node N train.py ...` on several. It goes on from its last
 checkpoint, and stops early on SIGINT or SIGTERM with a checkpoint.

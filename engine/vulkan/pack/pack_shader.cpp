@@ -226,8 +226,61 @@ std::vector<Binding> reflect_bindings(const Module& module, LayoutAssertions& la
     return bindings;
 }
 
+/// Bytes and alignment of a type under the std430 rules, booleans as 32-bit integers.
+struct Layout {
+    size_t bytes = 0, alignment = 4;
+
+    void append(const Layout& member) {
+        bytes = aligned(bytes, member.alignment) + member.bytes;
+        alignment = std::max(alignment, member.alignment);
+    }
+    static size_t aligned(size_t bytes, size_t alignment) { return (bytes + alignment - 1) / alignment * alignment; }
+};
+
+size_t array_length(const Module& module, spvc_type type, unsigned dimension) {
+    const SpvId length = spvc_type_get_array_dimension(type, dimension);
+    if (spvc_type_array_dimension_is_literal(type, dimension)) return length;
+    // A specialization constant counts by its default.
+    const spvc_constant constant = spvc_compiler_get_constant_handle(module.compiler, length);
+    if (!constant) throw std::runtime_error("a shared array's length is computed from specialization constants");
+    return spvc_constant_get_scalar_u32(constant, 0, 0);
+}
+
+Layout std430_layout(const Module& module, spvc_type type) {
+    Layout element;
+    if (spvc_type_get_basetype(type) == SPVC_BASETYPE_STRUCT) {
+        for (unsigned i = 0; i < spvc_type_get_num_member_types(type); ++i) {
+            element.append(std430_layout(
+                module, spvc_compiler_get_type_handle(module.compiler, spvc_type_get_member_type(type, i))));
+        }
+        element.bytes = Layout::aligned(element.bytes, element.alignment);
+    } else {
+        const unsigned rows = spvc_type_get_vector_size(type), columns = spvc_type_get_columns(type);
+        element.alignment = 4u * (rows == 3 ? 4 : rows);
+        element.bytes = columns > 1 ? columns * element.alignment : 4u * rows;
+    }
+    for (unsigned d = 0; d < spvc_type_get_num_array_dimensions(type); ++d)
+        element.bytes = Layout::aligned(element.bytes, element.alignment) * array_length(module, type, d);
+    return element;
+}
+
+/// The most shared memory that a driver may take for the module's variables (Vulkan's rule for
+/// maxComputeSharedMemorySize), in the order of their declaration. Reflection does not list them, the words do.
+size_t shared_bytes(const Module& module, const std::vector<SpvId>& words) {
+    constexpr size_t kHeaderWords = 5;
+    Layout all;
+    for (size_t at = kHeaderWords; at < words.size();) {
+        const SpvId operation = words[at] & SpvOpCodeMask, length = words[at] >> SpvWordCountShift;
+        if (length == 0 || at + length > words.size()) throw std::runtime_error("the SPIR-V module is cut short");
+        if (operation == SpvOpVariable && words[at + 3] == SpvStorageClassWorkgroup)
+            all.append(std430_layout(module, spvc_compiler_get_type_handle(module.compiler, words[at + 1])));
+        at += length;
+    }
+    return all.bytes;
+}
+
 /// Throws where the shader `name` needs more than a device of the portability floor must have.
-void check_floor(const std::string& name, const std::vector<Binding>& bindings, size_t push_bytes,
+void check_floor(const std::string& name, const std::vector<Binding>& bindings, size_t push_bytes, size_t shared,
                  unsigned invocations) {
     namespace floor = patina::vulkan::floor;
     const auto bound = [&](std::initializer_list<const char*> kinds) {
@@ -237,20 +290,23 @@ void check_floor(const std::string& name, const std::vector<Binding>& bindings, 
         }
         return total;
     };
-    const auto check_most = [&](const char* what, size_t has, size_t most) {
+    const auto check_most = [&](size_t has, size_t most, const std::string& what) {
         if (has <= most) return;
         throw std::runtime_error("the shader " + name + " needs " + std::to_string(has) + ' ' + what +
-                                 ", every element of an array counted, but at most " + std::to_string(most) +
-                                 " are portable");
+                                 ", but at most " + std::to_string(most) + " are portable");
+    };
+    const auto check_bound = [&](std::initializer_list<const char*> kinds, size_t most, const std::string& what) {
+        check_most(bound(kinds), most, what + ", every element of an array counted");
     };
     const bool texel_variant = name.ends_with("_texel");
-    check_most("storage buffers", bound({"kStorageBuffer"}), floor::kStorageBuffers);
-    check_most("storage images", bound({"kStorageImage", "kTexelBuffer"}),
-               texel_variant ? floor::kTexelVariantImages : floor::kStorageImages);
-    check_most("sampled images", bound({"kSampledImage"}), floor::kSampledImages);
-    check_most("uniform buffers", bound({"kUniformBuffer"}), floor::kUniformBuffers);
-    check_most("bytes of push constants", push_bytes, floor::kPushBytes);
-    check_most("invocations in a group", invocations, floor::kGroupInvocations);
+    check_bound({"kStorageBuffer"}, floor::kStorageBuffers, "storage buffers");
+    check_bound({"kStorageImage", "kTexelBuffer"}, texel_variant ? floor::kTexelVariantImages : floor::kStorageImages,
+                "storage images");
+    check_bound({"kSampledImage"}, floor::kSampledImages, "sampled images");
+    check_bound({"kUniformBuffer"}, floor::kUniformBuffers, "uniform buffers");
+    check_most(push_bytes, floor::kPushBytes, "bytes of push constants");
+    check_most(shared, floor::kSharedBytes, "bytes of shared memory");
+    check_most(invocations, floor::kGroupInvocations, "invocations in a group");
 }
 
 size_t reflect_push(const Module& module, LayoutAssertions& layouts) {
@@ -317,7 +373,7 @@ void pack(const char* path, const char* name, const char* identifier, const std:
         group[axis] =
             spvc_compiler_get_execution_mode_argument_by_index(module.compiler, SpvExecutionModeLocalSize, axis);
     }
-    check_floor(name, bindings, push_bytes, group[0] * group[1] * group[2]);
+    check_floor(name, bindings, push_bytes, shared_bytes(module, words), group[0] * group[1] * group[2]);
 
     out << "// Generated from the SPIR-V of " << name
         << ".\n#include <cstddef>\n#include <type_traits>\n#include <vector>\n"

@@ -2,8 +2,8 @@
 // lead away from the surface; alpha > 0.
 #ifndef PATINA_LIB_BRDF_WARD_GLSL
 #define PATINA_LIB_BRDF_WARD_GLSL
-#include "lib/pi.glsl"
-#include "lib/sampling.glsl"
+#include "lib/math/pi.glsl"
+#include "lib/math/sampling.glsl"
 
 // The half-angle form, for many lights and views of one surface point: the lobe is
 //   ward_scale(alpha) * ward_falloff(kWardExponent / alpha^2 * ward_half_tan2(...)) / sqrt(cos_i * cos_o).

@@ -1,0 +1,68 @@
+#include "export/scene_files.h"
+
+#include "engine/core/version.h"
+#include "export/materials.h"
+#include "export/trajectory.h"
+#include "sensor/files/text_file.h"
+#include "sensor/output/output_file.h"
+
+namespace patina {
+
+namespace {
+
+glm::dvec3 rounded(glm::dvec3 v) { return glm::round(v * 1e6) / 1e6; }
+
+/// Whole or not at all.
+template <class Write>
+void put(const std::filesystem::path& file, Write&& write) {
+    sensor::OutputFile out(file);
+    write(out.partial_path());
+    out.finish();
+}
+
+}  // namespace
+
+Lighting rounded(Lighting lighting) {
+    lighting.ambient = rounded(lighting.ambient);
+    for (Light& light : lighting.lights) {
+        light.position_m = rounded(light.position_m);
+        light.intensity = rounded(light.intensity);
+        light.radius_m = rounded(glm::dvec3(light.radius_m)).x;
+    }
+    return lighting;
+}
+
+Lighting in_recorded_world(const Scene& scene) {
+    Lighting lighting = rounded(scene.lighting);
+    for (Light& light : lighting.lights) light.position_m += scene.world_offset_m;
+    return lighting;
+}
+
+GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const std::string& version) {
+    const Lighting lighting = rounded(scene.lighting);
+    return write_glb(file, {scene.mesh, &scene.reflectance, scene.segment_names, lighting.lights},
+                     {.version = version, .name = scene.name, .world_offset_m = scene.world_offset_m});
+}
+
+void Scene::save_glb(const std::filesystem::path& file) const {
+    put(file, [this](const auto& partial) { write_scene_glb(partial, *this, kVersion); });
+}
+
+void Scene::save(const std::filesystem::path& folder) const {
+    std::filesystem::create_directories(folder);
+    save_glb(folder / "scene.glb");
+    std::vector<TimedPose> poses = trajectory;
+    for (TimedPose& pose : poses) pose.world_from_camera[3] += glm::dvec4(world_offset_m, 0);
+    put(folder / "trajectory.txt",
+        [&](const auto& partial) { sensor::write_bytes(partial, trajectory_text(poses)); });
+    if (!reflectance.segments.empty()) {
+        put(folder / "materials.json", [this](const auto& partial) {
+            sensor::write_bytes(partial, materials_json(reflectance.segments, segment_names));
+        });
+    }
+    if (!lighting.empty())
+        put(folder / "lights.json",
+            [this](const auto& partial) { write_lighting(partial, in_recorded_world(*this)); });
+}
+
+}  // namespace patina

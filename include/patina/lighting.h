@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace patina {
+
+/// A lamp: the radiance that arrives at distance r is intensity / r^2, in the sequence's linear pixel values.
+struct Light {
+    glm::dvec3 position_m{0};  ///< world
+    glm::dvec3 intensity{0};   ///< RGB, linear pixel value * m^2
+    double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for; 0: a point, or unknown
+
+    bool operator==(const Light&) const = default;
+};
+
+/// What lights a room: lamps, and light that arrives everywhere alike.
+struct Lighting {
+    std::vector<Light> lights;       ///< at most 64
+    glm::dvec3 ambient{0};           ///< irradiance over pi that every surface receives, linear pixel value
+    std::string found_by = "given";  ///< "given", "file", "lighting sequence", "main sequence" or "none"
+
+    bool empty() const { return lights.empty() && ambient == glm::dvec3(0); }
+};
+
+/// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or no
+/// finite number, or an intensity or a radius is below 0.
+Lighting read_lighting(const std::filesystem::path& file);
+
+/// Writes lights.json of the sequence format. Throws Error when the file cannot be written.
+void write_lighting(const std::filesystem::path& file, const Lighting& lighting);
+
+}  // namespace patina

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "patina/camera.h"
+#include "patina/lighting.h"
+
+namespace patina {
+
+/// A welded triangle mesh in world coordinates (metres). The three vertex arrays have one length. Triangles are
+/// counter-clockwise seen from outside (free space).
+struct Mesh {
+    std::vector<glm::vec3> positions_m;
+    std::vector<glm::vec3> normals;  ///< unit length, towards free space
+    std::vector<glm::vec3> colors;   ///< linear RGB; zero where no colour was seen
+    std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+/// Ward's specular material (paper, Eq. 2-4).
+struct WardGloss {
+    glm::vec3 ks{0};                    ///< RGB specular albedo
+    float alpha = 1;                    ///< roughness, in (0, 1]
+    std::optional<float> confidence{};  ///< of an estimate: 0 to 1
+};
+
+/// What is known of a segment.
+struct SegmentReflectance {
+    std::optional<glm::vec3> kd;     ///< mean over its voxels; empty where too few know it
+    std::optional<WardGloss> gloss;  ///< empty: all is diffuse
+    uint32_t voxels = 0;             ///< that were observed
+    uint32_t observations = 0;       ///< kept by them
+    float confidence = 0;            ///< mean certainty of kd over its voxels, of the least sure channel: 0 to 1
+};
+
+/// What the surface of a mesh reflects.
+struct MeshReflectance {
+    std::vector<glm::vec4> kd;     ///< by vertex: diffuse albedo; a: 1 known, 0.5 its segment's, 0 unknown (all is 0)
+    std::vector<uint32_t> labels;  ///< by vertex: segment, 0 for none
+    std::vector<SegmentReflectance> segments;  ///< by label; label 0 is no segment
+};
+
+/// A camera's pose at a time.
+struct TimedPose {
+    double timestamp_s = 0;
+    RigidTransform world_from_camera{1.0};
+};
+
+/// A finished reconstruction. Mesh, lights and trajectory are in one world, whose origin is at `world_offset_m` of the
+/// recording's: 0 but for a recording that is more than 1 km from its own origin.
+struct Scene {
+    std::string name = "scene";
+    Mesh mesh;
+    MeshReflectance reflectance;             ///< of the mesh; empty where there was no light to find it by
+    std::vector<std::string> segment_names;  ///< by label, where they are known
+    Lighting lighting;
+    std::vector<TimedPose> trajectory;  ///< of the depth camera, in the frames that were fused
+    glm::dvec3 world_offset_m{0};
+
+    /// Writes a binary glTF 2.0 with materials and lights, whole or not at all. Throws Error for a value that is not
+    /// finite, a mesh that is too large for glTF, or a file that cannot be written.
+    void save_glb(const std::filesystem::path& file) const;
+
+    /// Writes scene.glb, trajectory.txt and, where there are any, materials.json and lights.json into a folder, which is
+    /// created where there is none. Throws Error as save_glb() does.
+    void save(const std::filesystem::path& folder) const;
+};
+
+}  // namespace patina

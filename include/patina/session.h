@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "patina/device.h"
+#include "patina/error.h"
+#include "patina/frame.h"
+#include "patina/lighting.h"
+#include "patina/reconstruction.h"
+#include "patina/scene.h"
+#include "patina/settings.h"
+#include "patina/source.h"
+
+namespace patina {
+
+/// Lights are looked for in the lighting sequence that the main sequence has (lighting/), if it has one.
+struct LightsBeside {};
+/// No light: geometry and colours alone.
+struct NoLights {};
+/// The lights of a lights.json.
+struct LightsFromFile {
+    std::filesystem::path file;
+};
+/// Lights are looked for in a sequence of low exposure (paper, Section 3.2), or in the lighting/ of one.
+struct LightsFromSequence {
+    std::string sequence;
+};
+/// Lights are looked for in what they light in the main sequence, which is read twice for that.
+struct LightsFromMain {};
+
+/// Where a session's lights come from.
+using LightingChoice =
+    std::variant<LightsBeside, NoLights, LightsFromFile, LightsFromSequence, LightsFromMain, Lighting>;
+
+/// Where segments come from.
+enum class Labels {
+    kGeometry,  ///< found
+    kOff,       ///< there are none
+    kTruth      ///< the sequence's own (truth/labels)
+};
+
+/// Where the specular materials of segments come from.
+enum class Materials {
+    kAuto,     ///< kBoth where there is a network and a lamp, else kFit; without a lamp kOff
+    kFit,      ///< Ward's model, fitted to the observations
+    kNetwork,  ///< the network
+    kBoth,     ///< the network where observations do not suffice
+    kOff,      ///< all is diffuse
+    kTruth     ///< truth/materials.json of the sequence, by label
+};
+
+/// Where the frames' poses come from.
+enum class Poses {
+    kAuto,   ///< given where the source has any, else tracked
+    kGiven,  ///< by the source
+    kTrack,  ///< by tracking; of given ones the first alone is used
+    kPrior   ///< by tracking that starts from the given motion from frame to frame
+};
+
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class Gains {
+    kAuto,  ///< where the source does not know the exposure
+    kOn,
+    kOff
+};
+
+/// How far a session is with one of its tasks.
+struct SessionProgress {
+    std::string_view task;          ///< "frames", "lamps", "lights"
+    uint32_t done = 0;              ///< frames
+    std::optional<uint32_t> total;  ///< empty: the source says when it ends
+    std::string detail;             ///< a few words for a person
+};
+
+/// What a session calls while it works, on the thread that called it. Any may be empty.
+struct SessionCallbacks {
+    std::function<void(const SessionProgress&)> progress;
+    std::function<void(const std::string&)> message;  ///< one line for a person
+    std::function<bool()> stop;                       ///< whether to stop: the session throws Interrupted then
+};
+
+/// What a session is made with. Whatever is left open is decided once, when it is made.
+struct SessionOptions {
+    std::string sequence;  ///< folder of a recording, or "synthetic:SCENE"; empty where a source is given
+    std::string format;    ///< of the recording; empty: recognised
+    uint32_t frames = 0;   ///< at most so many frames; 0 takes all (120 of a synthetic scene)
+    LightingChoice lighting = LightsBeside{};
+    Labels labels = Labels::kGeometry;
+    Materials materials = Materials::kAuto;
+    Poses poses = Poses::kAuto;
+    Gains gains = Gains::kAuto;
+    std::filesystem::path network;  ///< weights; empty: those that ship with Patina
+    /// Of everything that is drawn at random, of a synthetic scene noise and samples too; empty: the fixed ones.
+    std::optional<uint64_t> seed;
+    uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
+    /// What needs reflectance, such as "--show kd": without light that is an error that names it. Empty: nothing does.
+    std::string reflectance_for;
+    Settings settings;
+    SessionCallbacks callbacks;
+};
+
+/// A reconstruction of all that a source yields.
+class Session {
+  public:
+    /// Opens options.sequence, looks at its first frames, and finds the lights. Throws Error for what cannot be read or
+    /// met, Interrupted where the caller stops it. The device must outlive this.
+    Session(Device& device, const SessionOptions& options);
+
+    /// The same with a source of one's own, such as a camera. Lights cannot be looked for in it before.
+    Session(Device& device, std::unique_ptr<Source> source, const SessionOptions& options);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// Takes one frame: fuses it, or notes why not (last()). False when the source has ended. Throws Error when the
+    /// device was lost, Interrupted where the caller stops it; what was fused so far is still there.
+    bool step();
+
+    /// What became of the last frame; empty before the first one.
+    const std::optional<FrameResult>& last() const;
+
+    const SequenceInfo& info() const;
+    Lighting lighting() const;  ///< those in use, in the scene's world
+
+    /// Casts the model into a camera, as Reconstruction::view() does.
+    PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
+    void wait();
+
+    ReconstructionStatistics statistics();
+
+    /// What the result falls short of so far: pools that are full, lights that were not found, frames that were not
+    /// used; a sentence each.
+    std::vector<std::string> shortfalls();
+
+    /// The scene of what was fused so far; waits. Throws Error where no frame could be used.
+    Scene finish();
+
+  private:
+    friend struct Access;
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace patina

@@ -1,0 +1,16 @@
+#include "passes/state/rebuild_table.h"
+
+#include "spirv/shaders.h"
+
+namespace patina {
+
+void add_rebuild_table(graph::FrameGraph& frame, const BlockTable& table, const gpu::VoxelGrid& grid) {
+    auto rebuild = frame.compute("fusion.rebuild_table", spirv::rebuild_table);
+    rebuild.read("BlockKeys", table.block_keys).push(grid);
+    table.keys = rebuild.modify("Keys", table.keys);
+    table.blocks = rebuild.modify("Blocks", table.blocks);
+    table.counters = rebuild.modify("Counters", table.counters);
+    rebuild.dispatch_indirect(table.block_arguments);
+}
+
+}  // namespace patina

@@ -1,0 +1,31 @@
+#include "passes/state/reflectance_state.h"
+
+namespace patina {
+
+ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
+    : status_(device.create_buffer(
+          {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
+      cursors_(device.create_buffer({.name = "reflectance.cursors", .bytes = sizeof(gpu::RefreshCursors)})) {}
+
+void ReflectanceState::reset(graph::FrameGraph& frame) {
+    stamp_ = 0;
+    ReflectanceStateIds ids = import(frame);
+    ids.status = frame.fill(ids.status, 0);
+    ids.cursors = frame.fill(ids.cursors, 0);
+    keep(frame, ids);
+}
+
+void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {
+    enlargement.add(status_, records * sizeof(gpu::RecordStatus), {.fill = 0});
+}
+
+ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {
+    return {frame.import(status_), frame.import(cursors_)};
+}
+
+void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids) {
+    frame.keep(ids.status);
+    frame.keep(ids.cursors);
+}
+
+}  // namespace patina

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/graph/frame_graph.h"
+#include "engine/vulkan/device.h"
+#include "passes/state/observation_map.h"
+#include "shared/reflectance/reflectance.h"
+
+namespace patina {
+
+/// Versions of the state's buffers within one frame.
+struct ReflectanceStateIds {
+    graph::BufferId status;   ///< gpu::RecordStatus per record
+    graph::BufferId cursors;  ///< gpu::RefreshCursors
+};
+
+/// What the visibility and the albedo of an observation map's records were computed from, and which of them have their
+/// turn next: 24 bytes a record. Lives as long as the map.
+class ReflectanceState {
+  public:
+    /// Throws Error when memory runs out.
+    ReflectanceState(vulkan::Device& device, const ObservationMap& map);
+
+    /// Nothing is up to date; the first thing done with it, and whenever the map is reset.
+    void reset(graph::FrameGraph& frame);
+
+    /// Announces that the map's pool grows to `records`; nothing is up to date of the new ones.
+    void enlarge(graph::Enlargement& enlargement, uint32_t records);
+
+    ReflectanceStateIds import(graph::FrameGraph& frame) const;
+    static void keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids);
+
+    /// Counts updates; the first is 1.
+    uint32_t next_stamp() { return ++stamp_; }
+
+  private:
+    vulkan::BufferRef status_, cursors_;
+    uint32_t stamp_ = 0;
+};
+
+}  // namespace patina

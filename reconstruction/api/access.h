@@ -1,0 +1,24 @@
+#pragma once
+
+#include "engine/vulkan/device.h"
+#include "patina/device.h"
+#include "patina/reconstruction.h"
+#include "patina/session.h"
+#include "patina/settings.h"
+#include "reconstruction/pipeline.h"
+
+namespace patina {
+
+class SessionCore;
+
+/// What is behind the public types, for the library's own programs, which show more than the public API does.
+struct Access {
+    static vulkan::Device& vulkan(Device& device);
+    static ReconstructionSettings& values(Settings& settings);
+    static const ReconstructionSettings& values(const Settings& settings);
+    static Pipeline& pipeline(Reconstruction& reconstruction);
+    static SessionCore& core(Session& session);
+    static PendingView pending(ViewReadback view);
+};
+
+}  // namespace patina

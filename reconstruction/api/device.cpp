@@ -1,0 +1,31 @@
+#include "patina/device.h"
+
+#include "reconstruction/api/access.h"
+
+namespace patina {
+
+struct Device::State {
+    vulkan::Device device;
+};
+
+Device::Device(const DeviceChoice& choice)
+    : state_(new State{vulkan::Device({.selector = choice.selector,
+                                       .validation = choice.validation,
+                                       .pipeline_cache_folder = choice.pipeline_cache_folder,
+                                       .memory_limit = choice.memory_limit})}) {}
+
+Device::~Device() = default;
+
+std::string Device::name() const { return state_->device.caps().name; }
+std::string Device::driver() const { return state_->device.caps().driver; }
+std::vector<std::string> Device::validation_messages() const { return state_->device.validation_messages(); }
+
+std::vector<std::string> device_names() {
+    std::vector<std::string> names;
+    for (const vulkan::DeviceReport& device : vulkan::list_devices()) names.push_back(device.caps.name);
+    return names;
+}
+
+vulkan::Device& Access::vulkan(Device& device) { return device.state_->device; }
+
+}  // namespace patina

@@ -1,0 +1,94 @@
+#include "patina/reconstruction.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "reconstruction/api/access.h"
+#include "reconstruction/api/statistics.h"
+#include "reconstruction/pipeline.h"
+
+namespace patina {
+
+struct PendingView::State {
+    ViewReadback view;
+};
+
+PendingView::PendingView(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PendingView::PendingView(PendingView&&) noexcept = default;
+PendingView& PendingView::operator=(PendingView&&) noexcept = default;
+PendingView::~PendingView() = default;
+
+bool PendingView::ready() const { return state_->view.ready(); }
+ModelView PendingView::get() const { return state_->view.get(); }
+
+PendingView Access::pending(ViewReadback view) {
+    return PendingView(std::make_unique<PendingView::State>(PendingView::State{std::move(view)}));
+}
+
+namespace {
+
+/// Light is needed for reflectance, and nothing else.
+ReconstructionSettings with_light(ReconstructionSettings settings, const Lighting& lighting) {
+    if (lighting.empty()) {
+        settings.reflectance.reset();
+        settings.specular.reset();
+    } else if (!settings.reflectance) {
+        settings.reflectance.emplace();
+    }
+    return settings;
+}
+
+std::vector<PointLight> lamps_of(const Lighting& lighting) {
+    std::vector<PointLight> lamps;
+    for (const Light& light : lighting.lights)
+        lamps.push_back(
+            {glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
+    return lamps;
+}
+
+}  // namespace
+
+struct Reconstruction::State {
+    Pipeline pipeline;
+    Lighting lighting;
+    std::vector<TimedPose> trajectory;
+};
+
+Reconstruction::Reconstruction(Device& device, const Settings& settings, const Lighting& lighting)
+    : state_(new State{
+          Pipeline(Access::vulkan(device), with_light(Access::values(settings), lighting)), lighting, {}}) {
+    state_->pipeline.set_lights(lamps_of(lighting), glm::vec3(lighting.ambient));
+}
+
+Reconstruction::~Reconstruction() = default;
+
+FrameResult Reconstruction::add(const RgbdFrame& frame) {
+    FrameResult result{.fused = state_->pipeline.add(frame), .reason = "", .world_from_depth = frame.world_from_depth};
+    if (const TrackingReport* report = state_->pipeline.tracking_report()) {
+        result.state = report->state;
+        result.reason = report->reason;
+        result.world_from_depth = report->world_from_depth;
+    }
+    if (result.fused) state_->trajectory.push_back({frame.time.timestamp_s, result.world_from_depth});
+    return result;
+}
+
+PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    return Access::pending(state_->pipeline.view(camera, world_from_camera));
+}
+
+void Reconstruction::wait() { state_->pipeline.wait(); }
+ReconstructionStatistics Reconstruction::statistics() { return statistics_of(state_->pipeline); }
+
+Scene Reconstruction::finish() {
+    Scene scene;
+    scene.mesh = state_->pipeline.extract_surface();
+    scene.reflectance = state_->pipeline.sample_reflectance(scene.mesh);
+    scene.lighting = state_->lighting;
+    scene.trajectory = state_->trajectory;
+    return scene;
+}
+
+Pipeline& Access::pipeline(Reconstruction& reconstruction) { return reconstruction.state_->pipeline; }
+
+}  // namespace patina

@@ -1,0 +1,49 @@
+#include "patina/session.h"
+
+#include <utility>
+
+#include "reconstruction/api/access.h"
+#include "reconstruction/api/statistics.h"
+#include "reconstruction/session/session_core.h"
+#include "reconstruction/session/shortfalls.h"
+
+namespace patina {
+
+struct Session::State {
+    SessionCore core;
+};
+
+Session::Session(Device& device, const SessionOptions& options)
+    : state_(new State{SessionCore(Access::vulkan(device), options)}) {}
+
+Session::Session(Device& device, std::unique_ptr<Source> source, const SessionOptions& options)
+    : state_(new State{SessionCore(Access::vulkan(device), options, std::move(source))}) {}
+
+Session::~Session() = default;
+
+bool Session::step() { return state_->core.step(); }
+const std::optional<FrameResult>& Session::last() const { return state_->core.last(); }
+const SequenceInfo& Session::info() const { return state_->core.info(); }
+
+Lighting Session::lighting() const {
+    Lighting lighting = lighting_of(state_->core.illumination());
+    for (Light& light : lighting.lights) light.position_m -= state_->core.world_offset_m();
+    return lighting;
+}
+
+PendingView Session::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    return Access::pending(state_->core.reconstruction().view(camera, world_from_camera));
+}
+
+void Session::wait() { state_->core.reconstruction().wait(); }
+ReconstructionStatistics Session::statistics() { return statistics_of(state_->core.reconstruction()); }
+std::vector<std::string> Session::shortfalls() { return shortfalls_of(state_->core); }
+
+Scene Session::finish() {
+    state_->core.expect_frames();
+    return state_->core.scene();
+}
+
+SessionCore& Access::core(Session& session) { return session.state_->core; }
+
+}  // namespace patina

@@ -1,0 +1,65 @@
+#include "reconstruction/frame_context.h"
+
+#include "engine/core/error.h"
+#include "engine/core/shader_camera.h"
+#include "passes/input/convert_color.h"
+#include "passes/input/convert_depth.h"
+
+namespace patina {
+
+namespace {
+
+template <class Pixels>
+void check_size(const char* what, const Pixels& pixels, const Intrinsics& camera) {
+    const size_t count = std::visit([](const auto& span) { return span.size(); }, pixels);
+    if (count != camera.extent.area()) {
+        throw Error("the ", what, " picture has ", count, " pixels, its camera ", camera.extent);
+    }
+}
+
+}  // namespace
+
+PosedCamera make_posed_camera(const Intrinsics& intrinsics, const RigidTransform& world_from_camera) {
+    return {intrinsics, world_from_camera, make_camera(intrinsics, world_from_camera)};
+}
+
+void FrameHistory::note(const FrameContext& frame) {
+    world_from_color = frame.color.world_from_camera;
+    ++frames;
+    if (frame.fuses_color) ++color_frames;
+}
+
+FrameContext make_frame_context(const RgbdFrame& frame, const FrameHistory& before, const DepthRange& range,
+                                bool fuses_color) {
+    FrameContext context;
+    context.index = before.frames;
+    context.color_index = before.color_frames;
+    context.depth = make_posed_camera(frame.depth.camera, frame.world_from_depth);
+    context.color =
+        make_posed_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
+    context.range = range;
+    if (before.world_from_color) {
+        context.motion = {make_camera(frame.color.camera, *before.world_from_color).camera_from_world,
+                          frame.shutter_share};
+    }
+    context.fuses_color = fuses_color && !frame.held_out;
+    context.held_out = frame.held_out;
+    context.labels = frame.labels;
+    return context;
+}
+
+void check_frame(const RgbdFrame& frame, uint32_t number) {
+    check_size("depth", frame.depth.pixels, frame.depth.camera);
+    check_size("colour", frame.color.pixels, frame.color.camera);
+    check_depth(frame.depth);
+    check_color(frame.color);
+    if (!frame.labels.empty() && frame.labels.size() != frame.depth.camera.extent.area()) {
+        throw Error("the label picture has ", frame.labels.size(), " pixels, the depth camera ",
+                    frame.depth.camera.extent);
+    }
+    // Readers orthonormalise poses; what is left is rounding.
+    const double defect = rotation_defect(frame.world_from_depth);
+    if (!(defect < 1e-3)) throw Error("the pose of frame ", number, " is not rigid: its rotation is off by ", defect);
+}
+
+}  // namespace patina

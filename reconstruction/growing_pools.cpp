@@ -1,0 +1,204 @@
+#include "reconstruction/growing_pools.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "passes/fusion/grow_voxels.h"
+#include "passes/observation/grow_observations.h"
+#include "passes/segmentation/grow_labels.h"
+#include "passes/surface/extract_surface.h"
+
+namespace patina {
+
+namespace {
+
+/// When memory is short, less and less is asked for, down to this part of what was wanted.
+constexpr uint32_t kSmallestShare = 16;
+/// And where that is in vain, this many frames go by until the next attempt.
+constexpr uint32_t kFramesBetweenAttempts = 8;
+
+template <class Counters>
+auto count_in(graph::Readback PoolReadbacks::*read) {
+    return [read](const PoolReadbacks& counters) { return count_of((counters.*read).as<Counters>().front()); };
+}
+
+}  // namespace
+
+GrowingPools::GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation,
+                           ReflectanceStage* reflectance, SpecularStage* specular)
+    : device_(device) {
+    add_voxel_pool(map, segmentation);
+    if (reflectance) add_observation_pools(*reflectance);
+    if (segmentation) add_label_pool(*segmentation, reflectance, specular);
+}
+
+void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation) {
+    Pool pool{{"voxel blocks", "map.capacity_blocks"}, map.settings().limit_blocks};
+    pool.capacity = [&map] { return map.capacity(); };
+    pool.most = [&map] { return map.most_blocks(); };
+    pool.step = [&map] { return map.chunk_blocks(); };
+    pool.enlarge = [&map, segmentation](graph::Enlargement& enlargement, uint32_t blocks) {
+        map.enlarge(enlargement, blocks);
+        if (segmentation) segmentation->enlarge_blocks(enlargement, blocks);
+    };
+    pool.add_grow = [&map](graph::FrameGraph& frame, uint32_t before) {
+        VoxelMapIds ids = map.import(frame);
+        add_grow_voxels(frame, map, ids, before);
+    };
+    pool.keep = [&map](graph::FrameGraph& frame) { VoxelMap::keep(frame, map.import(frame)); };
+    pool.reserve = kSurfaceBlockBytes;
+    pool.count = count_in<gpu::MapCounters>(&PoolReadbacks::voxels);
+    pools_.push_back(std::move(pool));
+}
+
+void GrowingPools::add_observation_pools(ReflectanceStage& reflectance) {
+    const ObservationMap& map = reflectance.observations();
+    const auto add = [&](PoolState state, uint32_t limit, graph::Readback PoolReadbacks::*counters, auto add_grow) {
+        Pool& pool = pools_.emplace_back(Pool{state, limit});
+        pool.add_grow = [&map, add_grow](graph::FrameGraph& frame, uint32_t before) {
+            ObservationMapIds ids = map.import(frame);
+            add_grow(frame, map, ids, before);
+        };
+        pool.keep = [&map](graph::FrameGraph& frame) { ObservationMap::keep(frame, map.import(frame)); };
+        pool.count = count_in<gpu::MapCounters>(counters);
+        return &pool;
+    };
+    Pool* pool = add({"observed blocks", "reflectance.capacity_blocks"}, map.settings().limit_blocks,
+                     &PoolReadbacks::observed_blocks, add_grow_observed_blocks);
+    pool->capacity = pool->step = [&map] { return map.capacity_blocks(); };
+    pool->most = [&map] { return map.most_blocks(); };
+    pool->enlarge = [&reflectance](graph::Enlargement& enlargement, uint32_t count) {
+        reflectance.enlarge_blocks(enlargement, count);
+    };
+    pool = add({"observed voxels", "reflectance.capacity_records"}, map.settings().limit_records,
+               &PoolReadbacks::observed_records, add_grow_records);
+    pool->capacity = [&map] { return map.capacity_records(); };
+    pool->most = [&map] { return map.most_records(); };
+    pool->step = [&map] { return map.chunk_records(); };
+    pool->enlarge = [&reflectance](graph::Enlargement& enlargement, uint32_t count) {
+        reflectance.enlarge_records(enlargement, count);
+    };
+}
+
+void GrowingPools::add_label_pool(SegmentationStage& segmentation, ReflectanceStage* reflectance,
+                                  SpecularStage* specular) {
+    Pool pool{{"labels", "segmentation.capacity_labels"}, segmentation.settings().limit_labels};
+    const SegmentTable& table = segmentation.table();
+    pool.capacity = [&table] { return table.capacity(); };
+    const uint32_t most_fits = specular ? WardFits::most_labels(device_.caps()) : UINT32_MAX;
+    pool.most = [&segmentation, most_fits] { return std::min(segmentation.most_labels(), most_fits); };
+    pool.step = pool.capacity;
+    pool.enlarge = [&segmentation, reflectance, specular](graph::Enlargement& enlargement, uint32_t labels) {
+        segmentation.enlarge_labels(enlargement, labels);
+        if (reflectance) reflectance->enlarge_labels(enlargement, labels);
+        if (specular) specular->enlarge_labels(enlargement, labels);
+    };
+    pool.add_grow = [&table](graph::FrameGraph& frame, uint32_t before) {
+        SegmentTableIds ids = table.import(frame);
+        add_grow_labels(frame, table, ids, before);
+    };
+    pool.keep = [&table](graph::FrameGraph& frame) { SegmentTable::keep(frame, table.import(frame)); };
+    pool.count = count_in<gpu::SegmentCounters>(&PoolReadbacks::labels);
+    pools_.push_back(std::move(pool));
+}
+
+void GrowingPools::reset() {
+    pending_.clear();
+    for (Pool& pool : pools_) {
+        pool.demand = {};
+        pool.grown_at = pool.try_at = pool.came_again = 0;
+    }
+}
+
+void GrowingPools::await(uint32_t index, const PoolReadbacks& counters) { pending_.push_back({index, counters}); }
+
+void GrowingPools::note(Pool& pool, const Pending& counted) {
+    pool.demand.note(pool.count(counted.counters));
+    if (counted.frame < pool.grown_at) pool.came_again = pool.demand.refused();
+}
+
+void GrowingPools::note_until(uint32_t frame) {
+    for (; !pending_.empty() && pending_.front().frame <= frame; pending_.pop_front()) {
+        for (Pool& pool : pools_) note(pool, pending_.front());
+    }
+}
+
+bool GrowingPools::first_was_refused() {
+    note_until(0);
+    return std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) { return pool.demand.refused() > 0; });
+}
+
+bool GrowingPools::grow(graph::Runner& runner, uint32_t index) {
+    graph::FrameGraph frame = runner.begin();  // waits for frame `index` - 2
+    note_until(std::max(index, PoolDemand::kFramesAhead) - PoolDemand::kFramesAhead);
+    std::vector<graph::Enlargement> committed;
+    std::vector<Pool*> grown;
+    for (Pool& pool : pools_) {
+        const uint32_t before = pool.capacity();
+        auto enlargement = grow(frame, pool, index);
+        if (!enlargement) continue;
+        committed.push_back(*std::move(enlargement));
+        grown.push_back(&pool);
+        pool.add_grow(frame, before);
+    }
+    if (grown.empty()) return false;
+    // Two pools may share a buffer: what is kept is the last version.
+    for (const Pool* pool : grown) pool->keep(frame);
+    for (const graph::Enlargement& enlargement : committed) enlargement.keep(frame);
+    runner.submit(std::move(frame));
+    for (graph::Enlargement& enlargement : committed) enlargement.accept();
+    for (Pool* pool : grown) {
+        ++pool->state.growths;
+        pool->grown_at = index;
+    }
+    runner.forget_shapes();
+    return true;
+}
+
+std::optional<graph::Enlargement> GrowingPools::grow(graph::FrameGraph& frame, Pool& pool, uint32_t index) {
+    const uint32_t capacity = pool.capacity(), most = pool.most();
+    const uint64_t wanted = pool.demand.wanted(capacity, pool.step());
+    if (wanted > most) pool.state.limit = most == pool.limit_setting ? PoolLimit::kSetting : PoolLimit::kBuffers;
+    const auto target = static_cast<uint32_t>(std::min<uint64_t>(wanted, most));
+    if (target == capacity || index < pool.try_at) return std::nullopt;
+    for (uint32_t share = 1; share <= std::min(kSmallestShare, target - capacity); share *= 2) {
+        if (auto enlargement = try_capacity(frame, pool, capacity + (target - capacity) / share)) {
+            if (pool.state.limit == PoolLimit::kMemory) pool.state.limit = PoolLimit::kNone;
+            return enlargement;
+        }
+    }
+    // Frames in flight, and the old buffers of a pool that grew, give theirs back.
+    pool.state.limit = PoolLimit::kMemory;
+    pool.try_at = index + kFramesBetweenAttempts;
+    return std::nullopt;
+}
+
+std::optional<graph::Enlargement> GrowingPools::try_capacity(graph::FrameGraph& frame, const Pool& pool,
+                                                             uint32_t capacity) {
+    graph::Enlargement enlargement(device_);
+    pool.enlarge(enlargement, capacity);
+    if (enlargement.bytes() + pool.reserve * capacity > device_.available_memory()) return std::nullopt;
+    try {
+        enlargement.allocate();
+    } catch (const vulkan::OutOfMemory&) {
+        return std::nullopt;
+    }
+    enlargement.commit(frame);
+    return enlargement;
+}
+
+std::vector<PoolState> GrowingPools::states() const {
+    std::vector<PoolState> states;
+    for (Pool pool : pools_) {
+        for (const Pending& counted : pending_) {
+            if (counted.counters.voxels.ready()) note(pool, counted);
+        }
+        PoolState& state = states.emplace_back(pool.state);
+        state.capacity = pool.capacity();
+        state.used = pool.demand.used();
+        state.refused = pool.demand.refused() - pool.came_again;
+    }
+    return states;
+}
+
+}  // namespace patina

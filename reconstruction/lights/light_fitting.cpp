@@ -1,0 +1,155 @@
+#include "reconstruction/lights/light_fitting.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/core/error.h"
+#include "engine/core/seed.h"
+#include "passes/lighting/sample_surface.h"
+
+namespace patina {
+namespace {
+
+constexpr uint32_t kFinalSteps = 10;
+constexpr float kBrightAlbedo = 0.8f, kBrightQuantile = 0.95f;
+constexpr float kExplained = 0.5f;  // a highlight, by a lamp
+
+std::vector<gpu::LightSample> draw_samples(Pipeline& reconstruction) {
+    const ReflectanceStage* reflectance = reconstruction.reflectance();
+    if (!reflectance) throw Error("lights cannot be found in a reconstruction without reflectance");
+    reconstruction.wait();  // so that all frames are fused
+    graph::FrameGraph frame = reconstruction.runner().begin();
+    const ObservationMap& map = reflectance->observations();
+    const uint32_t seed = seed_of_draw(0, reconstruction.settings().seed);
+    const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame), seed));
+    reconstruction.runner().submit(std::move(frame));
+    reconstruction.wait();
+    return samples.as<gpu::LightSample>();
+}
+
+/// The highlights as samples of a pass, which takes whole groups.
+std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
+    std::vector<gpu::LightSample> padded = highlights;
+    padded.resize((highlights.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+    return padded;
+}
+
+/// Tries lamps in the reconstruction's volume, as many at once as a pass takes. A highlight is not explained by a lamp
+/// that does not reach it.
+class TryInVolume {
+  public:
+    TryInVolume(Pipeline& reconstruction, std::span<const gpu::LightSample> drawn, const LitSurface& surface)
+        : reconstruction_(reconstruction),
+          drawn_(drawn),
+          surface_(surface),
+          highlights_(in_groups(surface.highlights())) {}
+
+    std::vector<TrialLamp> operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
+        std::vector<TrialLamp> lamps;
+        while (!places_m.empty()) {
+            const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
+            places_m = places_m.subspan(batch.size());
+            const std::vector<float> received = try_batch(drawn_, batch, count);
+            const std::vector<float> reached =
+                highlights_.empty() ? std::vector<float>()
+                                    : try_batch(highlights_, batch, static_cast<uint32_t>(highlights_.size()));
+            for (size_t i = 0; i < batch.size(); ++i) {
+                const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
+                lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
+                TrialLamp& lamp = lamps.back();
+                for (size_t k = 0; k < lamp.unexplained.size(); ++k)
+                    if (reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
+            }
+        }
+        return lamps;
+    }
+
+  private:
+    std::vector<float> try_batch(std::span<const gpu::LightSample> lit, std::span<const glm::vec3> places_m,
+                                 uint32_t count) const {
+        graph::FrameGraph frame = reconstruction_.runner().begin();
+        const auto samples = frame.upload<gpu::LightSample>("lighting.samples", lit);
+        const VoxelMap& map = reconstruction_.map();
+        const graph::Readback received =
+            frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m, count));
+        reconstruction_.runner().submit(std::move(frame));
+        reconstruction_.wait();
+        return received.as<float>();
+    }
+
+    Pipeline& reconstruction_;
+    std::span<const gpu::LightSample> drawn_;
+    const LitSurface& surface_;
+    std::vector<gpu::LightSample> highlights_;
+};
+
+/// What the brightest groups' albedo is when every sample receives 1 on the mean.
+double brightest_albedo(const std::array<FittedIntensities, 3>& channels) {
+    std::vector<float> albedo;
+    for (size_t g = 0; g < channels[0].albedo.size(); ++g) {
+        const float most = std::max({channels[0].albedo[g], channels[1].albedo[g], channels[2].albedo[g]});
+        if (most > 0) albedo.push_back(most);
+    }
+    if (albedo.empty()) return 0;
+    const auto at = static_cast<ptrdiff_t>(kBrightQuantile * static_cast<float>(albedo.size() - 1));
+    std::nth_element(albedo.begin(), albedo.begin() + at, albedo.end());
+    return albedo[static_cast<size_t>(at)];
+}
+
+/// Sightings are the highlights that no other lamp explains better, spread the median distance of their mirrored rays.
+void measure_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps, size_t index, FoundLight& found) {
+    std::vector<float> off_m;
+    for (size_t i = 0; i < surface.highlights().size(); ++i) {
+        const float own = lamps[index].unexplained[i];
+        const bool best = std::all_of(lamps.begin(), lamps.end(),
+                                      [&](const TrialLamp& other) { return other.unexplained[i] >= own; });
+        if (!best || own > kExplained) continue;
+        const gpu::LightSample& sample = surface.highlights()[i];
+        const glm::vec3 normal(sample.normal), viewer(sample.highlight);
+        const glm::vec3 mirrored = 2 * glm::dot(viewer, normal) * normal - viewer;
+        off_m.push_back(glm::length(glm::cross(found.position_m - glm::vec3(sample.point_m), mirrored)));
+    }
+    found.sightings = static_cast<uint32_t>(off_m.size());
+    if (off_m.empty()) return;
+    const auto middle = off_m.begin() + static_cast<ptrdiff_t>(off_m.size() / 2);
+    std::nth_element(off_m.begin(), middle, off_m.end());
+    found.spread_m = *middle;
+}
+
+FittedLights told(const LitSurface& surface, std::span<const TrialLamp> lamps) {
+    std::vector<ReceivedLight> received;
+    for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
+    std::array<FittedIntensities, 3> channels;
+    for (int c = 0; c < 3; ++c)
+        channels[c] = surface.fit(received, kFinalSteps, surface.size(), static_cast<LightChannel>(c));
+    const double scale = brightest_albedo(channels) / kBrightAlbedo;
+    FittedLights fitted;
+    for (size_t l = 0; l < lamps.size(); ++l) {
+        FoundLight lamp;
+        lamp.position_m = lamps[l].place_m;
+        for (int c = 0; c < 3; ++c) lamp.intensity[c] = static_cast<float>(scale * channels[c].intensities[l]);
+        measure_highlights(surface, lamps, l, lamp);
+        fitted.lamps.push_back(lamp);
+    }
+    for (int c = 0; c < 3; ++c) fitted.ambient[c] = static_cast<float>(scale * channels[c].intensities.back());
+    const auto total = [](const FoundLight& l) { return l.intensity.r + l.intensity.g + l.intensity.b; };
+    std::stable_sort(fitted.lamps.begin(), fitted.lamps.end(),
+                     [&](const FoundLight& a, const FoundLight& b) { return total(a) > total(b); });
+    const FittedIntensities all = surface.fit(received, kFinalSteps, surface.size());
+    fitted.misfit = static_cast<float>(all.misfit);
+    fitted.unexplained = static_cast<float>(unexplained_highlights(surface, lamps, all.intensities));
+    return fitted;
+}
+
+}  // namespace
+
+FittedLights fit_lights(Pipeline& reconstruction, std::span<const glm::vec3> seen_m,
+                        const LightFittingSettings& settings) {
+    const std::vector<gpu::LightSample> drawn = draw_samples(reconstruction);
+    const LitSurface surface(drawn, settings.cell_m);
+    if (surface.size() == 0) return {};
+    const TryInVolume try_lamps(reconstruction, drawn, surface);
+    return told(surface, search_lights(surface, try_lamps, seen_m, settings.search));
+}
+
+}  // namespace patina

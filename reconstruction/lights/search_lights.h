@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "reconstruction/lights/fit_intensities.h"
+
+namespace patina {
+
+struct LightSearchSettings {
+    uint32_t most_lamps = 6;
+    float highlight_share = 0.5f;  ///< what unexplained highlights count beside the misfit of diffuse light
+    float least_gain = 0.12f;      ///< a lamp makes the sum of both smaller by this share, or is left out
+};
+
+/// A lamp's place, what it gives the samples, and how badly it explains each highlight.
+struct TrialLamp {
+    glm::vec3 place_m{0};
+    ReceivedLight received;
+    std::vector<float> unexplained;
+};
+
+/// What lamps at these places would give the samples of a surface; of the first `count` places of samples only, if that
+/// is all that is asked for.
+using TryLamps = std::function<std::vector<TrialLamp>(std::span<const glm::vec3> places_m, uint32_t count)>;
+
+/// Share of the surface's highlights that none of the lamps explains; 0 where there are no highlights. Lamps that give
+/// the surface less than a hundredth of its light, by `intensities`, explain none.
+double unexplained_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps,
+                              std::span<const double> intensities);
+
+/// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, all moved to
+/// better places whenever there is a new one; then those that matter too little are left out.
+std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
+                                     std::span<const glm::vec3> seen_m, const LightSearchSettings& settings);
+
+}  // namespace patina

@@ -1,0 +1,121 @@
+#include "reconstruction/pipeline.h"
+
+#include <algorithm>
+
+#include "reconstruction/sample_mesh.h"
+
+namespace patina {
+
+Pipeline::Pipeline(vulkan::Device& device, const ReconstructionSettings& settings)
+    : runner_(device), stages_(device, settings), fusion_(runner_, stages_) {
+    if (stages_.tracking) tracked_.emplace(runner_, stages_, fusion_);
+}
+
+void Pipeline::set_lights(std::span<const PointLight> lights, glm::vec3 ambient) {
+    if (stages_.reflectance) stages_.reflectance->set_lights(lights, ambient);
+}
+
+void Pipeline::set_material(uint32_t label, glm::vec3 ks, float alpha) {
+    if (stages_.reflectance) stages_.reflectance->set_material(label, ks, alpha);
+}
+
+void Pipeline::set_relocaliser(Relocaliser relocaliser) {
+    if (tracked_) tracked_->set_relocaliser(std::move(relocaliser));
+}
+
+bool Pipeline::add(const RgbdFrame& frame) {
+    check_frame(frame, frames());
+    if (tracked_) return tracked_->add(frame);
+    fusion_.add(frame);
+    return true;
+}
+
+void Pipeline::add_posed(const RgbdFrame& frame) {
+    check_frame(frame, frames());
+    if (tracked_) return tracked_->add_posed(frame);
+    fusion_.add(frame);
+}
+
+void Pipeline::fuse_waiting() {
+    if (tracked_) tracked_->fuse_waiting();
+}
+
+void Pipeline::wait() {
+    fuse_waiting();
+    runner_.wait();
+}
+
+uint32_t Pipeline::frames() const { return fusion_.frames() + (tracked_ && tracked_->has_waiting() ? 1 : 0); }
+
+ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    fuse_waiting();
+    graph::FrameGraph graph = runner_.begin();
+    ViewReadback view = wire_view(graph, stages_, make_posed_camera(camera, world_from_camera));
+    runner_.submit(std::move(graph));
+    return view;
+}
+
+Mesh Pipeline::extract_surface() {
+    if (fusion_.frames() == 0) return {};
+    wait();
+    return stages_.geometry.extract_surface(runner_);
+}
+
+void Pipeline::refine_all() {
+    if (!stages_.reflectance || fusion_.frames() == 0) return;
+    fuse_waiting();
+    graph::FrameGraph graph = runner_.begin();
+    stages_.reflectance->refine_all(graph, map().import(graph));
+    runner_.submit(std::move(graph));
+}
+
+void Pipeline::relight(std::span<const PointLight> lights, glm::vec3 ambient) {
+    if (!stages_.reflectance || fusion_.frames() == 0) return;
+    refine_all();
+    graph::FrameGraph graph = runner_.begin();
+    stages_.reflectance->relight(graph, map().import(graph), lights, ambient);
+    runner_.submit(std::move(graph));
+}
+
+MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
+    if (!stages_.reflectance || fusion_.frames() == 0) return {};
+    refine_all();
+    MeshReflectance sampled = sample_mesh(runner_, *stages_.reflectance, mesh);
+    if (stages_.specular) add_confidence(sampled);
+    return sampled;
+}
+
+/// How sure the fits of the segments' gloss are.
+void Pipeline::add_confidence(MeshReflectance& sampled) {
+    graph::FrameGraph graph = runner_.begin();
+    const graph::Readback read = graph.read_back(stages_.specular->fits(graph));
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    const auto fits = read.as<gpu::WardFit>();
+    for (size_t label = 0; label < std::min(fits.size(), sampled.segments.size()); ++label) {
+        if (auto& gloss = sampled.segments[label].gloss) gloss->confidence = fits[label].confidence;
+    }
+}
+
+Statistics Pipeline::statistics() {
+    Statistics statistics = fusion_.statistics();
+    if (const TrackingReport* report = tracking_report()) statistics.tracking = *report;
+    return statistics;
+}
+
+gpu::KeyframeCounters Pipeline::keyframe_counters() {
+    if (!stages_.keyframes || fusion_.frames() == 0) return {};
+    fuse_waiting();
+    graph::FrameGraph graph = runner_.begin();
+    const graph::Readback read = stages_.keyframes->read_counters(graph);
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    return read.as<gpu::KeyframeCounters>().front();
+}
+
+std::span<const gpu::ColorGains> Pipeline::gains() {
+    if (!stages_.color_correction) return {};
+    return stages_.color_correction->gains();
+}
+
+}  // namespace patina

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "engine/graph/runner.h"
+#include "patina/frame.h"
+#include "patina/lighting.h"
+#include "patina/scene.h"
+#include "reconstruction/posed_fusion.h"
+#include "reconstruction/reconstruction_settings.h"
+#include "reconstruction/stages/stages.h"
+#include "reconstruction/statistics.h"
+#include "reconstruction/tracked_fusion.h"
+#include "reconstruction/view_readback.h"
+
+namespace patina {
+
+/// Fuses RGB-D frames into a volume and extracts its surface. Frames are
+/// submitted without waiting for the device, two in flight. Joins the stages
+/// with the two ways to fuse, at poses that are given and at poses that
+/// tracking finds. One device, one thread.
+class Pipeline {
+  public:
+    /// Throws Error for settings that cannot be met, or lack of memory. The
+    /// device must outlive this.
+    Pipeline(vulkan::Device& device, const ReconstructionSettings& settings);
+
+    /// Replaces all lights of the reflectance; at any time. `ambient` is
+    /// irradiance over pi, linear pixel value. Without reflectance nothing
+    /// changes. Throws Error as Lights::set does.
+    void set_lights(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    /// Sets the specular material of a label (SegmentMaterials::set); at any
+    /// time. Without reflectance nothing changes.
+    void set_material(uint32_t label, glm::vec3 ks, float alpha);
+
+    /// Fuses a frame. The first one places the volume around its camera. With
+    /// tracking its pose is found first: one graph fuses the frame before, casts
+    /// the model and searches, and its end is waited for; the frame itself, whose
+    /// pictures stay on the device, is fused by the next one's graph, or as soon
+    /// as anything is asked of the model. Returns whether the frame is fused:
+    /// without tracking all are, with it those that track. Throws Error when a
+    /// picture is not its camera's size, or the device was lost.
+    bool add(const RgbdFrame& frame);
+
+    /// Fuses a frame at its given pose although others are tracked; tracking goes
+    /// on from there. Throws Error as add().
+    void add_posed(const RgbdFrame& frame);
+
+    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of
+    /// the keyframes; the first from which the frame tracks is taken. Without
+    /// tracking nothing changes.
+    void set_relocaliser(Relocaliser relocaliser);
+
+    /// How the last frame was tracked, and from where it was taken; null where
+    /// poses are given.
+    const TrackingReport* tracking_report() const { return tracking() ? &tracking()->last() : nullptr; }
+
+    /// Casts the model into a pinhole camera (lens distortion is left out). Ready
+    /// two frames later, or after wait().
+    ViewReadback view(const Intrinsics& camera, const RigidTransform& world_from_camera);
+
+    /// How far surfaces are fused and seen, metres along the optical axis of a
+    /// depth camera (GeometryStage::range).
+    float reach_m(const Intrinsics& camera) const { return stages_.geometry.range(camera).reach_m; }
+
+    /// Fuses what waits to be, and waits for the device.
+    void wait();
+
+    /// Extracts the surface from what was fused so far; waits.
+    Mesh extract_surface();
+
+    /// What a mesh of the surface and all segments reflect, brought up to date
+    /// before; waits. Empty without reflectance.
+    MeshReflectance sample_reflectance(const Mesh& mesh);
+
+    /// Brings all of the reflectance up to date, where there is any; else that is
+    /// spread over frames.
+    void refine_all();
+
+    /// Puts the model under other lights than those of its frames, for views
+    /// alone: no frame may be added after that. Brings the reflectance up to date
+    /// first. Without reflectance nothing changes. Throws Error as Lights::set
+    /// does.
+    void relight(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+
+    /// Counters as of at most two frames ago; exact after wait(). Does not wait.
+    /// With tracking, the last frame is counted only after wait();
+    /// runner().wait() does not fuse it.
+    Statistics statistics();
+
+    /// The keyframes' counters; waits. Zero without keyframes.
+    gpu::KeyframeCounters keyframe_counters();
+
+    /// The colour gains of the frames so far (ColorCorrection::gains), with the
+    /// delay of statistics(); empty where the settings estimate none.
+    std::span<const gpu::ColorGains> gains();
+
+    uint32_t frames() const;  ///< fused, or about to be
+    const ReconstructionSettings& settings() const { return stages_.settings; }
+    const VoxelMap& map() const { return stages_.geometry.map(); }
+    graph::Runner& runner() { return runner_; }
+
+    // The stages besides the geometry; null where the settings have none.
+    const SegmentationStage* segmentation() const { return pointer_to(stages_.segmentation); }
+    const ReflectanceStage* reflectance() const { return pointer_to(stages_.reflectance); }
+    const SpecularStage* specular() const { return pointer_to(stages_.specular); }
+    const TrackingStage* tracking() const { return pointer_to(stages_.tracking); }
+    const KeyframeStage* keyframes() const { return pointer_to(stages_.keyframes); }
+
+  private:
+    void fuse_waiting();
+    void add_confidence(MeshReflectance& sampled);
+
+    graph::Runner runner_;
+    Stages stages_;
+    PosedFusion fusion_;
+    std::optional<TrackedFusion> tracked_;  ///< empty where poses are given
+};
+
+}  // namespace patina

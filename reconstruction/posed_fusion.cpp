@@ -1,0 +1,95 @@
+#include "reconstruction/posed_fusion.h"
+
+#include "passes/input/convert_color.h"
+#include "passes/input/convert_depth.h"
+
+namespace patina {
+
+PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages)
+    : runner_(runner),
+      stages_(stages),
+      pools_(runner.device(), stages.geometry.map(), pointer_to(stages.segmentation), pointer_to(stages.reflectance),
+             pointer_to(stages.specular)) {}
+
+void PosedFusion::add(const RgbdFrame& frame) {
+    if (history_.frames == 0) return add_first(frame);
+    note(submit(begin(), frame));
+}
+
+/// Nothing is known yet of what the first frame asks for. Where that is more
+/// than the pools hold, they grow, and the frame is fused anew, into an empty
+/// model.
+void PosedFusion::add_first(const RgbdFrame& frame) {
+    Declared declared;
+    do {
+        start_map(frame);
+        declared = submit(runner_.begin(), frame);
+        pools_.await(0, declared.counters.pools);
+        runner_.wait();
+    } while (pools_.first_was_refused() && pools_.grow(runner_, 0));
+    count(declared);
+}
+
+void PosedFusion::start_map(const RgbdFrame& frame) {
+    graph::FrameGraph graph = runner_.begin();
+    stages_.reset(graph, glm::dvec3(frame.world_from_depth[3]));
+    runner_.submit(std::move(graph));
+    pools_.reset();
+}
+
+PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFrame& frame) {
+    const InputPictures pictures{add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)};
+    Declared declared = declare(graph, frame, pictures);
+    runner_.submit(std::move(graph));
+    return declared;
+}
+
+graph::FrameGraph PosedFusion::begin() {
+    pools_.grow(runner_, history_.frames);
+    return runner_.begin();
+}
+
+PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdFrame& frame,
+                                           const InputPictures& pictures) {
+    Declared declared;
+    declared.frame =
+        make_frame_context(frame, history_, stages_.geometry.range(frame.depth.camera), stages_.settings.fusion.color);
+    declared.counters = wire_frame(graph, stages_, declared.frame, pictures);
+    return declared;
+}
+
+void PosedFusion::note(const Declared& declared) {
+    pools_.await(declared.frame.index, declared.counters.pools);
+    count(declared);
+}
+
+void PosedFusion::count(const Declared& declared) {
+    pending_.push_back(declared.counters);
+    history_.note(declared.frame);
+    take_counters();
+}
+
+void PosedFusion::take_counters() {
+    for (; !pending_.empty() && pending_.front().visible_blocks.ready(); pending_.pop_front()) {
+        const FrameReadbacks& read = pending_.front();
+        counted_.map = read.pools.voxels.as<gpu::MapCounters>().front();
+        counted_.visible_blocks = read.visible_blocks.as<uint32_t>().front();
+        if (stages_.segmentation) {
+            counted_.segments = read.pools.labels.as<gpu::SegmentCounters>().front();
+            counted_.label_stability.add(counted_.segments);
+        }
+        if (!stages_.reflectance) continue;
+        counted_.observations.blocks = read.pools.observed_blocks.as<gpu::MapCounters>().front();
+        counted_.observations.records = read.pools.observed_records.as<gpu::MapCounters>().front();
+    }
+}
+
+Statistics PosedFusion::statistics() {
+    take_counters();
+    Statistics statistics = counted_;
+    statistics.frames = history_.frames;
+    statistics.pools = pools_.states();
+    return statistics;
+}
+
+}  // namespace patina

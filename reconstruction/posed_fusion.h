@@ -1,0 +1,59 @@
+#pragma once
+
+#include <deque>
+
+#include "engine/graph/runner.h"
+#include "passes/input/input.h"
+#include "reconstruction/frame_context.h"
+#include "reconstruction/frame_graph.h"
+#include "reconstruction/growing_pools.h"
+#include "reconstruction/stages/stages.h"
+#include "reconstruction/statistics.h"
+
+namespace patina {
+
+/// Fuses frames whose pose is known, one graph each, two of them in flight.
+/// Before a graph the pools grow where they are short; after it the frame's
+/// counters are gathered as they arrive.
+class PosedFusion {
+  public:
+    /// Both must outlive this.
+    PosedFusion(graph::Runner& runner, Stages& stages);
+
+    /// Fuses a frame in a graph of its own. The first one places the map around
+    /// its camera. Throws Error when the device was lost or lacks memory.
+    void add(const RgbdFrame& frame);
+
+    /// A frame whose passes are declared.
+    struct Declared {
+        FrameContext frame;
+        FrameReadbacks counters;
+    };
+    /// The steps of add(), for a graph that does more than fuse a frame; not for
+    /// the first one. begin() starts a graph, declare() adds the frame's passes
+    /// to it, note() counts the frame once the graph was submitted.
+    graph::FrameGraph begin();
+    Declared declare(graph::FrameGraph& graph, const RgbdFrame& frame, const InputPictures& pictures);
+    void note(const Declared& declared);
+
+    uint32_t frames() const { return history_.frames; }  ///< fused so far
+
+    /// Of the frames that the device has finished; without tracking.
+    Statistics statistics();
+
+  private:
+    void add_first(const RgbdFrame& frame);
+    Declared submit(graph::FrameGraph graph, const RgbdFrame& frame);
+    void start_map(const RgbdFrame& frame);
+    void count(const Declared& declared);
+    void take_counters();
+
+    graph::Runner& runner_;
+    Stages& stages_;
+    GrowingPools pools_;
+    FrameHistory history_;
+    std::deque<FrameReadbacks> pending_;  ///< of frames that the device may work on
+    Statistics counted_;                  ///< but for pools
+};
+
+}  // namespace patina

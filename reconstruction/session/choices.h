@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "patina/session.h"
+
+namespace patina {
+
+/// The scene of "synthetic:SCENE"; empty for a recording.
+std::optional<std::string> synthetic_scene(const SessionOptions& options);
+
+/// The words by which command line and run.json know a choice.
+std::string name_of(const LightingChoice& lighting);  ///< "", "none", "self", or the sequence that is named
+std::string name_of(Labels labels);
+std::string name_of(Poses poses);
+std::string name_of(Materials materials);  ///< "" where it is open
+
+/// Whether poses of the source are used for more than the first frame's.
+bool uses_given_poses(const SessionOptions& options);
+
+/// Calls what the caller gave, if anything.
+void report(const SessionCallbacks& callbacks, const SessionProgress& progress);
+void report(const SessionCallbacks& callbacks, const std::string& message);
+bool stop_requested(const SessionCallbacks& callbacks);
+
+}  // namespace patina

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "reconstruction/pipeline.h"
+#include "patina/frame.h"
+
+namespace patina {
+
+/// A source's frame as a reconstruction takes it. Borrows the frame's pixels. The frame has a pose.
+RgbdFrame to_rgbd(const SequenceInfo& info, const Frame& frame);
+
+/// Of the time since the frame before, taken at `before_s`, the share in which the colour camera's shutter was open.
+/// Where the exposure is not known, half a frame's time is assumed; 0 where the sequence has no motion blur.
+float shutter_share(const SequenceInfo& info, const Frame& frame, double before_s);
+
+}  // namespace patina

@@ -1,0 +1,334 @@
+#include "reconstruction/session/session_core.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/choices.h"
+#include "reconstruction/session/preflight.h"
+#include "reconstruction/session/rgbd_frame.h"
+#include "reconstruction/session/session_lights.h"
+#include "reconstruction/session/session_materials.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/synthetic_source.h"
+#include "sensor/look_ahead_source.h"
+#include "sensor/open.h"
+#include "sensor/prefetch.h"
+#include "sensor/recentred_source.h"
+
+namespace patina {
+
+namespace {
+
+void expect_poses(const SessionOptions& options, const Source& source) {
+    const bool needs_poses = options.poses == Poses::kGiven || options.poses == Poses::kPrior;
+    if (needs_poses && !source.info().has_poses) {
+        throw Error("the sequence '", options.sequence, "' has no poses, but --poses ", name_of(options.poses),
+                    " needs them");
+    }
+}
+
+std::unique_ptr<scenes::SyntheticSource> open_scene(const SessionOptions& options, vulkan::Device& device) {
+    scenes::SyntheticScene scene = scenes::load_scene(*synthetic_scene(options), {.seed = options.seed});
+    scenes::SyntheticOptions recording;
+    if (options.frames > 0) recording.frames = options.frames;
+    return std::make_unique<scenes::SyntheticSource>(device, std::move(scene), recording);
+}
+
+bool needs_reflectance(const SessionOptions& options) {
+    return !options.reflectance_for.empty() || options.materials == Materials::kTruth ||
+           Access::values(options.settings).reflectance;
+}
+
+[[noreturn]] void fail_without_lights(const SessionOptions& options, const std::string& because = "") {
+    throw Error(options.reflectance_for.empty() ? "reflectance" : options.reflectance_for,
+                " needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self",
+                because.empty() ? "" : "; ", because);
+}
+
+/// Throws Error where there is no light for what was asked. After a search that failed a run goes on without, but not
+/// what shows nothing else.
+void check_light(const SessionOptions& options, const SessionLight& light) {
+    if (shines(light.illumination) || !needs_reflectance(options)) return;
+    const bool searched = !light.shortfalls.empty();
+    if (!searched) fail_without_lights(options, light.none_because);
+    if (!options.reflectance_for.empty())
+        fail_without_lights(options, fmt::format("{}", fmt::join(light.shortfalls, "; ")));
+}
+
+}  // namespace
+
+ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info,
+                                   const Illumination& light,
+                                   std::optional<NetworkDescription> network) {
+    ReconstructionSettings settings = Access::values(options.settings);
+    if (options.seed) settings.seed = *options.seed;
+    const bool drifts = options.gains == Gains::kAuto && !info.exposure_known && settings.fusion.color;
+    if (options.gains == Gains::kOff) settings.gains.reset();
+    if ((drifts || options.gains == Gains::kOn) && !settings.gains) settings.gains.emplace();
+    if (!shines(light)) {
+        settings.reflectance.reset();
+    } else if (!settings.reflectance) {
+        settings.reflectance.emplace();
+    }
+    if (options.labels == Labels::kOff) {
+        settings.segmentation.reset();
+    } else if (!settings.segmentation) {
+        settings.segmentation.emplace();
+    }
+    if (options.poses == Poses::kGiven || (options.poses == Poses::kAuto && info.has_poses)) {
+        settings.tracking.reset();
+        settings.keyframes.reset();
+    } else {
+        if (!settings.tracking) settings.tracking.emplace();
+        if (!settings.keyframes) settings.keyframes.emplace();
+        if (settings.gains) settings.keyframes->tests = KeyframeTests::kDepth;
+    }
+    if (settings.segmentation) settings.segmentation->given = options.labels == Labels::kTruth;
+    set_specular(settings, options, std::move(network));
+    if (light.lights.empty() && options.materials == Materials::kAuto) {
+        settings.specular.reset();
+        settings.network.reset();
+    }
+    return settings;
+}
+
+std::string full_pool_warning(const PoolState& pool) {
+    const char* reason = "";
+    switch (pool.limit) {
+        case PoolLimit::kNone: reason = " and had no frame left to grow in"; break;
+        case PoolLimit::kSetting: reason = ", the limit in the settings"; break;
+        case PoolLimit::kBuffers: reason = ", all that the device's buffers hold"; break;
+        case PoolLimit::kMemory: reason = ", all that the device has memory for"; break;
+    }
+    return fmt::format("the pool of {} is full: {} requests were refused, it holds {}{}", pool.name, pool.refused,
+                       pool.capacity, reason);
+}
+
+/// Wrong paths and options are found before lights are looked for, which takes time.
+SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source)
+    : device_(device), options_(options) {
+    open(std::move(source));
+    if (needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone) fail_without_lights(options_);
+    std::optional<NetworkDescription> network = read_network(options_);
+    take_light(light_of(device_, options_, world_offset_m_));
+    start_reconstruction(std::move(network));
+    if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
+}
+
+void SessionCore::open(std::unique_ptr<Source> given) {
+    const scenes::SyntheticSource* scene = nullptr;
+    if (given) {
+        source_ = std::move(given);
+        expect_poses(options_, *source_);
+    } else if (synthetic_scene(options_)) {
+        auto rendered = open_scene(options_, device_);
+        scene = rendered.get();
+        source_ = std::move(rendered);
+    } else {
+        auto recording = sensor::open_sequence(options_.sequence, options_.format);
+        expect_poses(options_, *recording);
+        auto ahead = std::make_unique<sensor::LookAheadSource>(
+            std::make_unique<sensor::PrefetchSource>(std::move(recording)));
+        const Preflight seen = look_ahead(*ahead, options_);
+        world_offset_m_ = seen.world_offset_m;
+        for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
+        source_ = std::make_unique<sensor::RecentredSource>(std::move(ahead), world_offset_m_);
+    }
+    truth_.emplace(options_.sequence, scene);
+    info_ = source_->info();
+    if (options_.frames > 0 && info_.frames) info_.frames = std::min(*info_.frames, options_.frames);
+    if (!scene) inspector_.emplace(info_, convention_check(options_));
+}
+
+void SessionCore::start_reconstruction(std::optional<NetworkDescription> network) {
+    reconstruction_.emplace(device_, settings_of(options_, info_, illumination_, std::move(network)));
+    if (!reconstruction_->reflectance()) return;
+    reconstruction_->set_lights(lights_, illumination_.ambient);
+    if (options_.materials != Materials::kTruth) return;
+    for (const sensor::Material& m : truth_->materials())
+        reconstruction_->set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
+}
+
+void SessionCore::take_light(SessionLight light) {
+    check_light(options_, light);
+    illumination_ = std::move(light.illumination);
+    lights_ = point_lights(illumination_);
+    shortfalls_ = std::move(light.shortfalls);
+    if (!light.none_because.empty()) {
+        materials_missing_ = "no materials, only geometry and colours: " + light.none_because;
+    } else if (lights_.empty()) {
+        materials_missing_ = "materials hold a diffuse albedo alone: there is ambient light, but no lamp to show gloss";
+    }
+}
+
+bool SessionCore::step() {
+    fused_.reset();
+    stop_if_interrupted();
+    const uint32_t limit = info_.frames.value_or(options_.frames);
+    if (limit > 0 && ledger_.read() >= limit) return false;
+    std::optional<Reading> reading = source_->next();
+    if (!reading) return false;
+    ledger_.note(*reading);
+    if (inspector_) inspector_->add(*reading);
+    if (const auto* skipped = std::get_if<Skipped>(&*reading)) {
+        last_ = FrameResult{.state = TrackingState::kLost, .reason = skipped->reason};
+        report(options_.callbacks, fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
+    } else {
+        fuse(std::get<Frame>(*std::move(reading)));
+    }
+    report_full_pools();
+    report(options_.callbacks, {.task = "frames",
+                                .done = ledger_.read(),
+                                .total = info_.frames,
+                                .detail = fmt::format("{} blocks", blocks_used())});
+    return true;
+}
+
+void SessionCore::report_full_pools() {
+    const Statistics statistics = reconstruction_->statistics();
+    for (const PoolState& pool : statistics.pools) {
+        if (!pool.is_full() || pool.limit == PoolLimit::kNone || !full_pools_.insert(pool.name).second) continue;
+        report(options_.callbacks,
+               "warning: " + full_pool_warning(pool) + "; what does not fit is left out from here on");
+    }
+}
+
+void SessionCore::end() {
+    reconstruction_->wait();
+    if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
+    expect_frames();
+}
+
+void SessionCore::expect_frames() const {
+    if (ledger_.used() > 0) return;
+    throw Error("no frame of '", options_.sequence.empty() ? info_.name : options_.sequence, "' could be used; ",
+                ledger_.skipped().empty()
+                    ? "the source ended before its first one"
+                    : "the first was skipped because: " + ledger_.skipped().front().reason);
+}
+
+void SessionCore::skip(uint32_t index, std::string reason) {
+    last_ = FrameResult{.state = TrackingState::kLost, .reason = reason};
+    ledger_.skip(index, std::move(reason));
+}
+
+void SessionCore::fuse(Frame frame) {
+    if (!frame.world_from_camera && !tracks()) return skip(frame.index, fmt::format("frame {} has no pose", frame.index));
+    RgbdFrame rgbd = to_rgbd(info_, frame);
+    Image<uint16_t> labels;
+    if (options_.labels == Labels::kTruth) {
+        try {
+            labels = truth_->labels(frame.index, info_.depth.extent);
+        } catch (const Error& error) {
+            return skip(frame.index, error.what());
+        }
+        rgbd.labels = labels.pixels();
+    }
+    if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
+    rgbd.held_out = options_.hold_out > 0 && frame.index % options_.hold_out == options_.hold_out - 1;
+    if (!add(rgbd, frame)) return;
+    last_ = FrameResult{.fused = true, .reason = "", .world_from_depth = *frame.world_from_camera};
+    ledger_.use(frame.index);
+    used_.push_back(frame.index);
+    poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
+    fused_ = std::move(frame);
+}
+
+/// Sets the frame's pose where it is tracked.
+bool SessionCore::add(RgbdFrame& rgbd, Frame& frame) {
+    if (!tracks()) return reconstruction_->add(rgbd);
+    if (!first_given_) first_given_ = frame.world_from_camera;
+    rgbd.world_from_depth = first_given_.value_or(RigidTransform(1.0));
+    if (options_.poses == Poses::kPrior) rgbd.time.prior = frame.world_from_camera;
+    const bool fused = reconstruction_->add(rgbd);
+    const TrackingReport& report = *reconstruction_->tracking_report();
+    tracked_.push_back({frame.index, report});
+    frame.world_from_camera = report.world_from_depth;
+    if (!fused) {
+        ledger_.skip(frame.index, fmt::format("frame {} was not fused, tracking was {}: {}", frame.index,
+                                              name_of(report.state), report.reason));
+        last_ = FrameResult{false, report.state, report.reason, report.world_from_depth};
+    }
+    return fused;
+}
+
+void SessionCore::stop_if_interrupted() {
+    if (!stop_requested(options_.callbacks)) return;
+    reconstruction_->wait();
+    throw Interrupted("interrupted after ", ledger_.read(), info_.frames ? text(" of ", *info_.frames) : "", " frames");
+}
+
+std::string SessionCore::gains_text() {
+    std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
+    const auto gains = reconstruction_->gains();
+    for (size_t i = 0; i < gains.size(); ++i) {
+        const glm::vec4 gain = gains[i].gain;
+        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+    }
+    return lines;
+}
+
+std::optional<std::string> SessionCore::reach_warning() const {
+    const float reach_m = reconstruction_->reach_m(info_.depth);
+    const double wanted_m = std::min<double>(settings().fusion.max_depth_m, info_.max_metres);
+    if (reach_m >= wanted_m) return std::nullopt;
+    return fmt::format(
+        "with voxels of {} m the view reaches {:.2f} m, not {:.2f} m: what lies farther is left out; raise "
+        "map.voxel_m, or lower fusion.max_depth_m",
+        settings().map.voxel_m, reach_m, wanted_m);
+}
+
+std::vector<std::string> SessionCore::warnings() const {
+    std::vector<std::string> all;
+    if (const auto reach = reach_warning()) all.push_back(*reach);
+    if (inspector_) {
+        for (std::string& implausible : inspector_->report().warnings) all.push_back(std::move(implausible));
+    }
+    return all;
+}
+
+std::vector<TimedPose> SessionCore::world_poses() const {
+    std::vector<TimedPose> poses = poses_;
+    for (TimedPose& pose : poses) pose.world_from_camera[3] += glm::dvec4(world_offset_m_, 0);
+    return poses;
+}
+
+std::vector<PoolState> SessionCore::pools() {
+    try {
+        reconstruction_->wait();
+    } catch (const std::exception&) {
+        // Of a device that was lost the host knows what it knew before.
+    }
+    return reconstruction_->statistics().pools;
+}
+
+uint32_t SessionCore::blocks_used() {
+    const gpu::MapCounters counters = reconstruction_->statistics().map;
+    return counters.capacity - counters.free_blocks;
+}
+
+Scene SessionCore::scene_without_reflectance() {
+    Scene scene;
+    scene.name = info_.name;
+    scene.mesh = reconstruction_->extract_surface();
+    scene.lighting = lighting_of(illumination_);
+    for (Light& light : scene.lighting.lights) light.position_m -= world_offset_m_;
+    scene.trajectory = poses_;
+    scene.world_offset_m = world_offset_m_;
+    return scene;
+}
+
+void SessionCore::add_reflectance(Scene& scene) {
+    scene.reflectance = reconstruction_->sample_reflectance(scene.mesh);
+    if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
+}
+
+Scene SessionCore::scene() {
+    Scene scene = scene_without_reflectance();
+    add_reflectance(scene);
+    return scene;
+}
+
+}  // namespace patina

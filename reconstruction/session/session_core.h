@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/vulkan/device.h"
+#include "patina/session.h"
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/find_lights.h"
+#include "reconstruction/session/sequence_truth.h"
+#include "reconstruction/session/tracked_frame.h"
+#include "sensor/inspect.h"
+#include "sensor/ledger.h"
+
+namespace patina {
+
+struct SessionLight;
+
+/// One sentence on a pool that could not grow: what it holds, how much, and what kept it from growing.
+std::string full_pool_warning(const PoolState& pool);
+
+/// What is behind a Session: a source with all that belongs to it, and the pipeline that its frames are fused into.
+/// Every choice that the options leave open is decided by the constructor.
+class SessionCore {
+  public:
+    /// Opens options.sequence where `source` is null, looks at its first frames, and finds the lights. A world far from
+    /// its origin is moved there (world_offset_m). Throws Error for what cannot be read or met, Interrupted when the
+    /// caller stops it. The device must outlive this.
+    SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source = nullptr);
+
+    /// Takes one reading from the source: fuses it, or notes why not. False at the source's end. Throws Interrupted when
+    /// the caller stops it; the device has finished then.
+    bool step();
+
+    /// Waits for the device. Throws Error when no frame could be used, or the source yielded another number of frames
+    /// than it has.
+    void end();
+
+    /// Throws Error where no frame could be used so far.
+    void expect_frames() const;
+
+    /// The frame that the last step() fused, with its pose; null where it fused none.
+    const Frame* fused() const { return fused_ ? &*fused_ : nullptr; }
+    const std::optional<FrameResult>& last() const { return last_; }
+
+    /// Throws Interrupted when the caller stops it; the device has finished then.
+    void stop_if_interrupted();
+
+    Pipeline& reconstruction() { return *reconstruction_; }
+    vulkan::Device& device() { return device_; }
+    const SessionOptions& options() const { return options_; }
+    const SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
+    const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
+    const std::vector<PointLight>& lights() const { return lights_; }
+    const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
+    /// Why materials are not all that they could be, and what to give; empty where nothing is missing.
+    const std::string& materials_missing() const { return materials_missing_; }
+    /// What the search for lights, or what was asked of materials without any, fell short of.
+    const std::vector<std::string>& shortfalls() const { return shortfalls_; }
+    /// What is implausible about the frames that were read (sensor::inspect), and what the settings leave out of them.
+    std::vector<std::string> warnings() const;
+    /// What was taken from all positions, metres: those of poses(), lights() and the reconstruction lack it.
+    glm::dvec3 world_offset_m() const { return world_offset_m_; }
+    const SequenceTruth& truth() const { return *truth_; }
+    const sensor::Ledger& ledger() const { return ledger_; }
+    const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
+    std::vector<TimedPose> world_poses() const;                     ///< the same in the recording's world
+    /// The colour gains of the frames that were fused, as lines "index red green blue"; complete after end().
+    std::string gains_text();
+    uint32_t blocks_used();
+    /// How full the pools are, and what keeps them from growing; waits. Of a device that was lost what the host knows.
+    std::vector<PoolState> pools();
+    /// Says that surfaces are left out that fusion.max_depth_m and the sequence would have, where that is so.
+    std::optional<std::string> reach_warning() const;
+    /// How each frame that was read was tracked; empty where poses are given.
+    const std::vector<TrackedFrame>& tracked() const { return tracked_; }
+
+    /// Surface, materials, lights and trajectory of what was fused so far; waits.
+    Scene scene();
+    /// The same without what the surface reflects, and that alone: a run keeps the one where the other fails.
+    Scene scene_without_reflectance();
+    void add_reflectance(Scene& scene);
+
+  private:
+    bool tracks() const { return settings().tracking.has_value(); }
+    void open(std::unique_ptr<Source> given);
+    void take_light(SessionLight light);
+    void start_reconstruction(std::optional<NetworkDescription> network);
+    void fuse(Frame frame);
+    bool add(RgbdFrame& rgbd, Frame& frame);
+    void skip(uint32_t index, std::string reason);
+    void report_full_pools();
+
+    vulkan::Device& device_;  // outlives the source, which may compute on it
+    SessionOptions options_;
+    std::unique_ptr<Source> source_;
+    std::optional<SequenceTruth> truth_;
+    SequenceInfo info_;
+    glm::dvec3 world_offset_m_{0};
+    Illumination illumination_;
+    std::vector<PointLight> lights_;
+    std::string materials_missing_;
+    std::vector<std::string> shortfalls_;
+    std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene
+    std::optional<Pipeline> reconstruction_;
+    sensor::Ledger ledger_;
+    std::optional<Frame> fused_;
+    std::optional<FrameResult> last_;
+    std::vector<TimedPose> poses_;
+    std::vector<TrackedFrame> tracked_;
+    std::optional<RigidTransform> first_given_;  ///< of the first frame that has a pose
+    std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
+    std::set<std::string> full_pools_;           ///< those that were reported
+};
+
+/// The settings of a pipeline for these options: with light, reflectance is estimated; without, there is nothing to
+/// estimate it from. Ambient light alone shows nothing of gloss.
+ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info, const Illumination& light,
+                                   std::optional<NetworkDescription> network);
+
+}  // namespace patina

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "passes/state/lights.h"
+#include "reconstruction/session/find_lights.h"
+
+namespace patina {
+
+/// Lights and ambient term of a lights.json, in a world moved by `world_offset_m`. Throws Error as sensor::read_lights
+/// does.
+Illumination illumination_from_file(const std::filesystem::path& file, glm::dvec3 world_offset_m = glm::dvec3(0));
+
+/// The same of lights in the recording's world.
+Illumination illumination_of(const Lighting& lighting, glm::dvec3 world_offset_m);
+
+/// The light of a session, and what about it is not as asked for.
+struct SessionLight {
+    Illumination illumination;
+    std::string none_because;             ///< why there is no light, and what to give; empty where there is some
+    std::vector<std::string> shortfalls;  ///< how a search that was asked for, or begun, failed
+};
+
+/// Where a session's lights come from.
+enum class LightsSource {
+    kNone,              ///< nowhere: geometry alone is reconstructed
+    kGiven,             ///< the options hold them, or name their file
+    kLightingSequence,  ///< the sequence that the user names, or the one that the main sequence has
+    kMainSequence       ///< what they light there
+};
+
+/// Where the options and the sequence say that lights come from; no light has been looked for. Throws Error where a
+/// synthetic scene cannot be loaded.
+LightsSource lights_source(const SessionOptions& options);
+
+/// The lights of a session: those that the options hold, or found where they say, or in the lighting sequence that the
+/// main sequence has. Where a lighting sequence shows no lamp, lights are looked for in what they
+/// light in the main sequence; where there is no lamp either, the ambient light stands alone. A search that fails costs
+/// the light, not the run. Throws Error when the file that is given cannot be read, or the sequence that is named
+/// cannot be opened; Interrupted when the user stops it.
+SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m);
+
+std::vector<PointLight> point_lights(const Illumination& illumination);
+
+/// For run.json: the lights, how they were found, and how sure that is.
+nlohmann::ordered_json lights_json(const Illumination& illumination);
+
+}  // namespace patina

@@ -1,0 +1,118 @@
+#include "reconstruction/stages/reflectance_stage.h"
+
+#include "passes/shading/pack_records.h"
+#include "shared/fusion/voxel_map.h"
+
+namespace patina {
+namespace {
+
+ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceStageSettings& settings) {
+    ObservationMapSettings observations;
+    observations.voxel_m = settings.voxel_m;
+    observations.block_m = map.settings().voxel_m * gpu::kBlockEdge;
+    observations.capacity_blocks = settings.capacity_blocks;
+    observations.capacity_records = settings.capacity_records;
+    observations.limit_blocks = settings.limit_blocks;
+    observations.limit_records = settings.limit_records;
+    return observations;
+}
+
+}  // namespace
+
+ReflectanceStage::ReflectanceStage(vulkan::Device& device, const VoxelMap& map,
+                                   const ReflectanceStageSettings& settings)
+    : map_(map),
+      settings_(settings),
+      observations_(device, observations_of(map, settings)),
+      materials_(device, settings.capacity_labels),
+      state_(device, observations_),
+      access_(preferred_reflectance_access(device.caps(), map, observations_)) {}
+
+void ReflectanceStage::set_lights(std::span<const PointLight> lights, glm::vec3 ambient) {
+    lights_.set(lights, ambient);
+}
+
+void ReflectanceStage::set_material(uint32_t label, glm::vec3 ks, float alpha) { materials_.set(label, ks, alpha); }
+
+void ReflectanceStage::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
+    observations_.reset(graph, center_m);
+    state_.reset(graph);
+    // Uploaded before a frame that replaces them.
+    materials_.import(graph);
+}
+
+void ReflectanceStage::enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks) {
+    observations_.enlarge_blocks(enlargement, blocks);
+}
+
+void ReflectanceStage::enlarge_records(graph::Enlargement& enlargement, uint32_t records) {
+    observations_.enlarge_records(enlargement, records);
+    state_.enlarge(enlargement, records);
+}
+
+RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+                                 const FrameContext& frame) {
+    ObservationMapIds records = observations_.import(graph);
+    const CollectedRecords collected = add_collect_observations(
+        graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
+    add_refine_reflectance(graph, models(), voxels, records, collected.changed, access_, settings_.refine);
+    ObservationMap::keep(graph, records);
+    return collected.changed;
+}
+
+SpecularInputs ReflectanceStage::add_specular_inputs(graph::FrameGraph& graph) {
+    return {observations_,         observations_.import(graph), state_.import(graph).status,
+            lights_.upload(graph), lights_.position_version(),  materials_.import(graph),
+            materials_.capacity()};
+}
+
+void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels) {
+    ObservationMapIds records = observations_.import(graph);
+    add_refine_all_reflectance(graph, models(), voxels, records, access_, settings_.refine);
+    ObservationMap::keep(graph, records);
+}
+
+void ReflectanceStage::relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const PointLight> lights,
+                               glm::vec3 ambient) {
+    lights_.set(lights, ambient);
+    settings_.refine.albedo = false;
+    refine_all(graph, voxels);
+}
+
+PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
+                                            const VisibleBlocks& visible, const RaycastImages& cast) {
+    PredictRadianceInputs inputs;
+    inputs.position_m = cast.position_m;
+    inputs.normal = cast.normal;
+    inputs.view = visible.view;
+    inputs.view_grid = visible.grid;
+    inputs.lights = lights_.upload(graph);
+    inputs.most_lights = static_cast<uint32_t>(lights_.point_lights().size());
+    inputs.materials = materials_.import(graph);
+    inputs.material_count = materials_.capacity();
+    const ObservationMapIds records = observations_.import(graph);
+    inputs.segments = add_average_segments(graph, observations_, records, materials_.capacity());
+    inputs.shadows = settings_.refine.shadows;
+    inputs.access = access_.voxels;
+    return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
+            inputs.segments};
+}
+
+SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {
+    return {add_average_segments(graph, observations_, observations_.import(graph), materials_.capacity()),
+            materials_.import(graph)};
+}
+
+graph::BufferId ReflectanceStage::add_sample(graph::FrameGraph& graph, graph::BufferId positions_m,
+                                             graph::BufferId normals, uint32_t points) {
+    const ObservationMapIds records = observations_.import(graph);
+    const SampleReflectanceInputs inputs{positions_m,
+                                         normals,
+                                         add_pack_records(graph, observations_, records, state_.import(graph)),
+                                         add_average_segments(graph, observations_, records, materials_.capacity()),
+                                         points,
+                                         materials_.capacity()};
+    return add_sample_reflectance(graph, observations_, records, inputs);
+}
+
+}  // namespace patina

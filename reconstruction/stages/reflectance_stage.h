@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "passes/fusion/raycast.h"
+#include "passes/observation/observation.h"
+#include "passes/reflectance/average_segments.h"
+#include "passes/reflectance/reflectance.h"
+#include "passes/shading/predict_radiance.h"
+#include "passes/shading/sample_reflectance.h"
+#include "reconstruction/frame_context.h"
+
+namespace patina {
+
+/// Size and settings of the reflectance beside the geometry.
+struct ReflectanceStageSettings {
+    float voxel_m = 0.02f;               ///< of observations: half or a quarter of a voxel block
+    uint32_t capacity_blocks = 65536;    ///< at first
+    uint32_t capacity_records = 262144;  ///< at first
+    uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far
+                                         ///< as buffers and memory allow
+    uint32_t limit_records = 0;          ///< likewise
+    ObservationSettings observe;
+    ReflectanceSettings refine;
+    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at
+                                      ///< first that of the segments
+};
+
+/// What a camera sees of the reflectance.
+struct PredictedView {
+    PredictedImages images;
+    graph::BufferId segments;  ///< gpu::SegmentAlbedo per label
+};
+
+/// What is known of the segments, by label.
+struct SegmentIds {
+    graph::BufferId albedo;     ///< gpu::SegmentAlbedo per label
+    graph::BufferId materials;  ///< gpu::SegmentMaterial per label
+};
+
+/// What estimates of specular materials read and replace.
+struct SpecularInputs {
+    const ObservationMap& map;
+    ObservationMapIds records;
+    graph::BufferId status;     ///< gpu::RecordStatus per record
+    graph::BufferId lights;     ///< Lights::upload
+    uint32_t position_version;  ///< of the lights
+    graph::BufferId materials;  ///< gpu::SegmentMaterial per label; to be kept once replaced
+    uint32_t material_count;
+};
+
+/// What a surface reflects, beside the voxel map that says where it is:
+/// observations by voxel, the lights, materials by label, and kd refined from
+/// them (paper, Sections 3.4 and 3.7). Lives as long as the map.
+class ReflectanceStage {
+  public:
+    /// Throws Error for settings that cannot be met, or lack of memory. The map
+    /// must outlive the stage.
+    ReflectanceStage(vulkan::Device& device, const VoxelMap& map, const ReflectanceStageSettings& settings);
+
+    /// Replaces all lights; see Lights::set.
+    void set_lights(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    /// Sets the specular material of a label; see SegmentMaterials::set.
+    void set_material(uint32_t label, glm::vec3 ks, float alpha);
+
+    /// Empties the model, placing it around the map's centre; the first thing
+    /// done with it.
+    void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
+
+    /// Collects a frame's observations and refines what they change. Returns the
+    /// records that they changed.
+    RecordList add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
+                   const FrameContext& frame);
+
+    /// Announce that a pool of the observations grows; see ObservationMap.
+    void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);
+    void enlarge_records(graph::Enlargement& enlargement, uint32_t records);
+    /// Announces that there will be `labels` materials.
+    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) { materials_.enlarge(enlargement, labels); }
+
+    /// The observations, for passes beside those of the model; what they write
+    /// comes before or after add() in a frame.
+    const ObservationMap& observations() const { return observations_; }
+
+    /// What the frame's records and materials are so far.
+    SpecularInputs add_specular_inputs(graph::FrameGraph& graph);
+
+    /// Brings every record up to date.
+    void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels);
+
+    /// Puts the model under other lights than those it was observed under: their
+    /// visibility is found, kd stays. Nothing may be added or refined after that.
+    void relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const PointLight> lights,
+                 glm::vec3 ambient);
+
+    /// What a camera sees that was cast into the model.
+    PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                              const RaycastImages& cast);
+
+    /// What is known of each segment.
+    SegmentIds add_segments(graph::FrameGraph& graph);
+
+    /// What is known of points of the surface: gpu::SampledReflectance[points];
+    /// see add_sample_reflectance.
+    graph::BufferId add_sample(graph::FrameGraph& graph, graph::BufferId positions_m, graph::BufferId normals,
+                               uint32_t points);
+
+    std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
+    const ReflectanceStageSettings& settings() const { return settings_; }
+    const Lights& lights() const { return lights_; }
+
+  private:
+    ReflectanceModels models() { return {map_, observations_, lights_, materials_, state_}; }
+
+    const VoxelMap& map_;
+    ReflectanceStageSettings settings_;
+    ObservationMap observations_;
+    Lights lights_;
+    SegmentMaterials materials_;
+    ReflectanceState state_;
+    ReflectanceAccess access_;
+};
+
+}  // namespace patina

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "sensor/files/json_file.h"
+#include "scenes/description/scene.h"
+
+namespace patina::scenes {
+
+/// Reads the member "environment" of a scene file: an HDR file, or one that is drawn.
+Environment read_environment(const sensor::JsonValue& value);
+
+}  // namespace patina::scenes

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "sensor/files/json_file.h"
+#include "scenes/description/recording.h"
+
+namespace patina::scenes {
+
+/// Reads the member "recording" of a scene file; what it leaves out keeps Recording's defaults.
+Recording read_recording(const sensor::JsonValue& value);
+
+}  // namespace patina::scenes

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "sensor/files/json_file.h"
+#include "scenes/description/scene.h"
+
+namespace patina::scenes {
+
+/// Reads one of a scene file's textures: a picture file or a pattern, what a repeat of it spans, and where in (u, v)
+/// its top left corner lies.
+Texture read_texture(const sensor::JsonValue& value);
+
+}  // namespace patina::scenes

@@ -1,0 +1,92 @@
+#include "scenes/files/scene_file.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/core/did_you_mean.h"
+#include "engine/core/error.h"
+#include "engine/core/input_file.h"
+#include "sensor/files/json_file.h"
+#include "scenes/files/readers/camera.h"
+#include "scenes/files/readers/environment.h"
+#include "scenes/files/readers/lights.h"
+#include "scenes/files/readers/materials.h"
+#include "scenes/files/readers/objects.h"
+#include "scenes/files/readers/recording.h"
+#include "scenes/description/vary.h"
+
+namespace patina::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExtension = ".json";
+
+fs::path scenes_folder() { return assets_folder() / "scenes"; }
+
+/// In alphabetical order.
+std::vector<std::string> built_in_scenes() {
+    std::vector<std::string> names;
+    std::error_code ignored;  // a folder that is missing has no scenes
+    for (const auto& entry : fs::directory_iterator(scenes_folder(), ignored))
+        if (entry.path().extension() == kExtension) names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+fs::path file_of(const std::string& name_or_file) {
+    if (name_or_file.find('/') != std::string::npos || name_or_file.ends_with(kExtension)) return name_or_file;
+    const fs::path file = scenes_folder() / (name_or_file + kExtension);
+    if (!path_exists(file)) {
+        const std::vector<std::string> names = built_in_scenes();
+        const std::string meant = did_you_mean(name_or_file, names);
+        throw Error("there is no built-in scene '", name_or_file, "' in ", scenes_folder().string(),
+                    meant.empty() ? "; there is: " + scene_names() : meant);
+    }
+    return file;
+}
+
+SyntheticScene read_scene(const fs::path& file, const fs::path& mesh) {
+    const sensor::JsonValue root = sensor::JsonValue::read(file);
+    root.expect_keys({"name", "fps", "camera", "color_camera", "depth", "textures", "materials", "objects", "lights",
+                      "environment", "path", "lighting", "recording"});
+    SyntheticScene scene;
+    scene.name = root.find("name") ? root.at("name").string() : file.stem().string();
+    scene.objects = read_objects(root.at("objects"), MaterialReader(root), mesh);
+    if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights);
+    if (const auto environment = root.find("environment")) scene.environment = read_environment(*environment);
+    read_cameras(root, scene);
+    if (const auto recording = root.find("recording")) scene.recording = read_recording(*recording);
+    return scene;
+}
+
+}  // namespace
+
+SyntheticScene load_scene(const std::string& name_or_file, const SceneChanges& changes) {
+    if (!changes.mesh.empty()) expect_file(changes.mesh);
+    SyntheticScene scene = read_scene(file_of(name_or_file), changes.mesh);
+    if (changes.seed) scene.recording.seed = scene.recording.render.seed = *changes.seed;
+    return changes.vary ? varied(std::move(scene), *changes.vary) : scene;
+}
+
+std::optional<std::string> scene_name(const std::string& sequence) {
+    constexpr std::string_view kSynthetic = "synthetic:";
+    if (!sequence.starts_with(kSynthetic)) return std::nullopt;
+    return sequence.substr(kSynthetic.size());
+}
+
+std::filesystem::path assets_folder() {
+    const char* assets = std::getenv("PATINA_ASSETS");
+    return assets ? assets : PATINA_ASSETS_FOLDER;
+}
+
+std::string scene_names() {
+    std::string list;
+    for (const std::string& name : built_in_scenes()) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+}  // namespace patina::scenes

@@ -1,0 +1,65 @@
+// Marches rays through the voxel map, on nearest voxels. Space that was never seen is open. The includer declares the
+// map's table and distances and defines, before it includes this,
+//   KEYS(bucket)    uvec4, the keys of a bucket
+//   BLOCK(slot)     uint, the block id of a table slot
+//   VOXEL(C, i)     uint, voxel i of the literal chunk C
+// and sets `grid` before it marches.
+#ifndef PATINA_LIB_MARCH_MAP_GLSL
+#define PATINA_LIB_MARCH_MAP_GLSL
+#include "lib/map/block_lookup.glsl"
+#include "lib/map/voxel_chunks.glsl"
+
+const uint kMaxSteps = 1024u;
+const float kInsideVox = 0.5;       // a voxel this deep is inside, whatever the noise of a nearest voxel
+const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
+
+// A copy of the voxel map's, whose loads software devices do not hoist out of loops.
+VoxelGrid grid;
+
+// The voxel at voxel coordinates; `block` is its block.
+uint load_voxel(uint block, ivec3 coordinates) {
+    const ivec3 within = coordinates & 7;
+    const uint index =
+        index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    uint voxel;
+#define LOAD_VOXEL(C) voxel = VOXEL(C, index)
+    WITH_CHUNK(grid.chunk_shift, block, LOAD_VOXEL)
+    return voxel;
+}
+
+// How far a ray goes on within the block that it is in.
+float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
+    const vec3 ends = (vec3(block * 8) + 8.0 * step(vec3(0.0), inverse_direction) - at) * inverse_direction;
+    return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
+}
+
+struct Passage {
+    bool open;
+    bool uncertain;  // it passes a surface, on either side, so near that another point of the voxel may see otherwise
+};
+
+// Along a ray from `gone` to `reach` (voxels), which begins `lift` above a surface and leaves it with `slope`.
+Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, float lift, float graze_vox) {
+    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    float deepest = 1e6;
+    bool grazed = false;
+    for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
+        const vec3 at = start + direction * gone;
+        const ivec3 voxel = ivec3(floor(at));
+        const uint block = find_block(grid, voxel >> 3);
+        const bool have = block != kNoBlock;
+        const uint loaded = load_voxel(have ? block : 0u, voxel);
+        const uint found = have ? loaded : 0u;
+        const bool seen = voxel_weight(found) > 0u;
+        const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
+        deepest = min(deepest, here);
+        // The surface itself is this far.
+        grazed = grazed || here < min(graze_vox, 0.5 * (lift + gone * slope));
+        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
+        gone += have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
+    }
+    const bool open = deepest > -kInsideVox;
+    return Passage(open, grazed && deepest > -graze_vox);
+}
+
+#endif

@@ -1,0 +1,66 @@
+// Visibility of lights and refinement of the albedo, by record of the observation map.
+#ifndef PATINA_SHARED_REFLECTANCE_H
+#define PATINA_SHARED_REFLECTANCE_H
+#include "shared/lighting/lights.h"
+#include "shared/observation/observations.h"
+INTEROP_BEGIN
+
+INTEROP_CONST float kKdDeviation = 0.05f;    // an albedo of this standard deviation has half the weight of an exact one
+INTEROP_CONST uint kWindowGroup = 64u;       // of the pass over table slots
+INTEROP_CONST float kBusyChanges = 1024.0f;  // so many changed records, and all of a window are marched again;
+INTEROP_CONST float kLeastRefreshed = 1.0f / 16.0f;  // of fewer their share, but no less than this
+
+// The specular part of a segment's material; label 0, and labels without an entry, have none.
+struct SegmentMaterial {
+    vec4 ks_alpha;  // rgb, Ward roughness
+    uint version;   // changes with the material, above 0; 0: no entry
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+// A segment's albedo: sums over its records, whole numbers, so that the order of arrival does not matter.
+struct SegmentAlbedo {
+    uvec4 kd;      // rgb: certainty times kd (up to 1), in steps of 1 / (kCertaintySteps kAlbedoSteps); w: all records
+    uvec4 weight;  // rgb: certainty, in steps of 1 / kCertaintySteps; w: observations
+};
+INTEROP_CONST float kAlbedoSteps = 1023.0f;  // 32 bits hold the sums of 1.3 M records
+INTEROP_CONST float kCertaintySteps = 3.0f;
+INTEROP_CONST float kTextureDeviation = 0.1f;    // of a record's albedo from its segment's mean
+INTEROP_CONST float kLeastSegmentWeight = 3.0f;  // records, certain ones, that a segment's albedo takes
+
+// What a record's visibility and albedo were computed from.
+struct RecordStatus {
+    uint marched;       // surface and version of the lights' positions, lib/records/reflectance.glsl; 0: never
+    uint refined;       // versions of lights and material; 0: never
+    uint march_stamp;   // the update that listed it last for marching
+    uint refine_stamp;  // for refinement
+    uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
+};
+
+// Where the next update goes on; its parity says which entry it reads, and it writes the other.
+struct RefreshCursors {
+    uvec2 window;  // bucket of the table
+};
+
+struct ReflectanceParams {
+    VoxelGrid records;  // the observation map's grid
+    VoxelGrid voxels;   // the voxel map's
+    uint edge_shift;    // of the observation map
+    uint stamp;         // the update's index + 1
+    uint refreshed;     // records looked at again in one update though nothing says that they have changed, about
+    uint max_window;    // buckets of the table looked at
+    uint shadows;       // 0: every light reaches every voxel
+    uint materials;     // entries of the table
+    float least_share;  // of the records looked at, that is marched again although no record changed
+    uint pad0;
+};
+
+// Which of the records that wait for marching are taken.
+struct AcceptParams {
+    uint stamp;  // as ReflectanceParams
+    uint most;   // about
+};
+
+INTEROP_END
+#endif

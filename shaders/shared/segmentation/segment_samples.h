@@ -1,0 +1,39 @@
+// A fixed number of records per segment, chosen at random, from which random samples are drawn. See
+// passes/state/segment_samples.h.
+#ifndef PATINA_SHARED_SEGMENT_SAMPLES_H
+#define PATINA_SHARED_SEGMENT_SAMPLES_H
+#include "shared/observation/observations.h"
+INTEROP_BEGIN
+
+INTEROP_CONST uint kSegmentSamples = 256u;  // records kept of a segment
+INTEROP_CONST uint kSampleLevels = 16u;     // a record's level is how many leading zeros its hash has, this at most - 1
+INTEROP_CONST uint kDrawGroup = 128u;       // invocations per segment
+
+// How many records of a segment were kept, and of how many.
+struct SegmentSampleCount {
+    uint kept;
+    uint eligible;
+    uint level;  // records of this level or above were kept
+    uint pad0;
+};
+
+// The albedo of the records that were kept of a segment: whole numbers, so that the order of arrival does not matter.
+struct SegmentKd {
+    uint samples;  // records whose kd is known
+    uint r;        // sums of kd, up to 1, in steps of 1 / kKdSteps
+    uint g;
+    uint b;
+};
+INTEROP_CONST float kKdSteps = 1023.0f;
+INTEROP_CONST float kLeastKdCertainty = 0.5f;  // in every channel, of a record whose kd counts
+INTEROP_CONST uint kLeastKdSamples = 8u;       // that say what a segment's albedo is
+
+struct SegmentSampleParams {
+    uint seed;
+    uint labels;            // label 0 included
+    uint min_observations;  // of an eligible record
+    uint draws;             // samples to draw from each segment
+};
+
+INTEROP_END
+#endif

@@ -1,0 +1,178 @@
+#include "reconstruction/growing_pools.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/rgbd_frame.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/synthetic_source.h"
+#include "tests/gpu/gpu_test.h"
+
+namespace patina {
+namespace {
+
+using ::testing::Each;
+using ::testing::Field;
+
+/// Frames of the built-in scene, coarse and small.
+struct SmallCubes {
+    SmallCubes(vulkan::Device& device, uint32_t count) {
+        scenes::SyntheticScene scene = scenes::load_scene("cubes");
+        scene.camera = scaled_to(scene.camera, {128, 106});
+        scenes::SyntheticSource source(device, std::move(scene), {.frames = count});
+        info = source.info();
+        while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
+        for (const Light& light : source.scene().lights)
+            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), float(light.radius_m)});
+    }
+
+    SequenceInfo info;
+    std::vector<Frame> frames;
+    std::vector<PointLight> lights;
+};
+
+struct Result {
+    Mesh mesh;
+    MeshReflectance reflectance;
+    std::vector<PoolState> pools;
+
+    const PoolState& pool(const std::string& name) const {
+        for (const PoolState& each : pools) {
+            if (each.name == name) return each;
+        }
+        throw Error("there is no pool of ", name);
+    }
+};
+
+template <class Element>
+bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0;
+}
+
+void expect_same(const Result& a, const Result& b) {
+    EXPECT_TRUE(same_bytes(a.mesh.positions_m, b.mesh.positions_m));
+    EXPECT_TRUE(same_bytes(a.mesh.colors, b.mesh.colors));
+    EXPECT_TRUE(same_bytes(a.reflectance.labels, b.reflectance.labels));
+    EXPECT_TRUE(same_bytes(a.reflectance.kd, b.reflectance.kd));
+}
+
+class GrowingPoolsTest : public GpuTest {
+  protected:
+    static ReconstructionSettings settings(uint32_t blocks, uint32_t observed_blocks, uint32_t records,
+                                           uint32_t labels = 4096) {
+        ReconstructionSettings settings;
+        settings.map.voxel_m = 0.01f;
+        settings.map.capacity_blocks = blocks;
+        settings.fusion.truncation_m = 0.03f;
+        settings.remove_every = 4;
+        settings.segmentation.emplace();
+        settings.segmentation->capacity_labels = labels;
+        settings.reflectance.emplace();
+        settings.reflectance->voxel_m = 0.04f;
+        settings.reflectance->capacity_blocks = observed_blocks;
+        settings.reflectance->capacity_records = records;
+        return settings;
+    }
+
+    Result reconstruct(const ReconstructionSettings& settings, vulkan::Device& on = device()) const {
+        Pipeline reconstruction(on, settings);
+        reconstruction.set_lights(cubes_.lights);
+        for (const Frame& frame : cubes_.frames) reconstruction.add(patina::to_rgbd(cubes_.info, frame));
+        Result result;
+        result.mesh = reconstruction.extract_surface();
+        result.reflectance = reconstruction.sample_reflectance(result.mesh);
+        reconstruction.wait();
+        result.pools = reconstruction.statistics().pools;
+        return result;
+    }
+
+    const SmallCubes cubes_{device(), 12};
+};
+
+TEST_F(GrowingPoolsTest, SmallPoolsGrowIntoTheModelOfLargeOnes) {
+    const Result large = reconstruct(settings(16384, 32768, 65536));
+    ASSERT_GT(large.mesh.positions_m.size(), 1000u);
+    const Result small = reconstruct(settings(64, 64, 64, 3));
+    expect_same(small, large);
+    for (const PoolState& pool : small.pools) {
+        EXPECT_GT(pool.growths, 0u) << pool.name;
+        EXPECT_EQ(pool.limit, PoolLimit::kNone) << pool.name;
+        EXPECT_EQ(pool.refused, 0u) << pool.name << ": the first frame is fused anew, later ones find room";
+        EXPECT_FALSE(pool.is_full());
+        EXPECT_LE(pool.used, pool.capacity);
+    }
+    EXPECT_THAT(large.pools, Each(Field(&PoolState::growths, 0u)));
+}
+
+TEST_F(GrowingPoolsTest, EveryRunGrowsAlike) {
+    const Result first = reconstruct(settings(128, 128, 256)), again = reconstruct(settings(128, 128, 256));
+    expect_same(first, again);
+    for (size_t i = 0; i < first.pools.size(); ++i) {
+        EXPECT_EQ(first.pools[i].capacity, again.pools[i].capacity);
+        EXPECT_EQ(first.pools[i].growths, again.pools[i].growths);
+    }
+}
+
+TEST_F(GrowingPoolsTest, GainsAreThoseOfTheFramesAlthoughTheFirstIsFusedAnew) {
+    ReconstructionSettings small = settings(64, 64, 64);
+    small.reflectance.reset();
+    small.gains.emplace();
+    Pipeline reconstruction(device(), small);
+    for (const Frame& frame : cubes_.frames) reconstruction.add(patina::to_rgbd(cubes_.info, frame));
+    reconstruction.wait();
+    EXPECT_EQ(reconstruction.gains().size(), cubes_.frames.size());
+}
+
+TEST_F(GrowingPoolsTest, GivenLabelsBeyondTheCapacityAreTaken) {
+    ReconstructionSettings given = settings(16384, 32768, 65536, 4);
+    given.segmentation->given = true;
+    Pipeline reconstruction(device(), given);
+    reconstruction.set_lights(cubes_.lights);
+    reconstruction.set_material(300, glm::vec3(0.1f), 0.2f);
+    const Extent2D extent = cubes_.info.depth.extent;
+    const std::vector<uint16_t> labels(size_t{extent.width} * extent.height, 300);
+    for (const Frame& frame : cubes_.frames) {
+        RgbdFrame rgbd = patina::to_rgbd(cubes_.info, frame);
+        rgbd.labels = labels;
+        reconstruction.add(rgbd);
+    }
+    const Mesh mesh = reconstruction.extract_surface();
+    const MeshReflectance reflectance = reconstruction.sample_reflectance(mesh);
+    EXPECT_GT(std::count(reflectance.labels.begin(), reflectance.labels.end(), 300u),
+              ptrdiff_t(mesh.positions_m.size() / 2));
+    ASSERT_GT(reflectance.segments.size(), 300u);
+    ASSERT_TRUE(reflectance.segments[300].gloss.has_value());
+    EXPECT_FLOAT_EQ(reflectance.segments[300].gloss->alpha, 0.2f);
+    reconstruction.wait();
+    const Statistics statistics = reconstruction.statistics();
+    for (const PoolState& pool : statistics.pools) EXPECT_FALSE(pool.is_full()) << pool.name;
+}
+
+TEST_F(GrowingPoolsTest, ALimitInTheSettingsIsKeptAndNamed) {
+    ReconstructionSettings limited = settings(64, 64, 64);
+    limited.map.limit_blocks = 300;
+    const Result result = reconstruct(limited);
+    const PoolState& blocks = result.pool("voxel blocks");
+    EXPECT_EQ(blocks.capacity, 300u);
+    EXPECT_EQ(blocks.limit, PoolLimit::kSetting);
+    EXPECT_TRUE(blocks.is_full());
+    EXPECT_GT(blocks.refused, 100u);
+    EXPECT_STREQ(blocks.setting, "map.capacity_blocks");
+    EXPECT_FALSE(result.pool("observed voxels").is_full());
+}
+
+TEST_F(GrowingPoolsTest, MemoryThatRunsOutIsNamedAndTheRunGoesOn) {
+    vulkan::DeviceOptions options;
+    options.memory_limit = 1;  // what is there at first is there; nothing grows
+    vulkan::Device poor(options);
+    const Result result = reconstruct(settings(300, 4096, 16384), poor);
+    const PoolState& blocks = result.pool("voxel blocks");
+    EXPECT_EQ(blocks.capacity, 300u);
+    EXPECT_EQ(blocks.limit, PoolLimit::kMemory);
+    EXPECT_TRUE(blocks.is_full());
+    EXPECT_GT(result.mesh.positions_m.size(), 100u);
+}
+
+}  // namespace
+}  // namespace patina

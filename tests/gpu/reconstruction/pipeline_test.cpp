@@ -1,0 +1,312 @@
+#include "reconstruction/pipeline.h"
+
+#include <algorithm>
+
+#include "reconstruction/session/rgbd_frame.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/synthetic_source.h"
+#include "tests/gpu/gpu_test.h"
+#include "tools/bench/random_network.h"
+
+namespace patina {
+namespace {
+
+using ::testing::IsEmpty;
+
+/// Small enough for hundreds of reconstructions, large enough to chunk nothing away.
+ReconstructionSettings small_settings() {
+    ReconstructionSettings settings;
+    settings.map.voxel_m = 0.02f;
+    settings.map.capacity_blocks = 4096;
+    settings.fusion.truncation_m = 0.06f;
+    return settings;
+}
+
+/// A few frames of the built-in scene.
+struct Cubes {
+    Cubes(vulkan::Device& device, uint32_t count) {
+        scenes::SyntheticSource source(device, scenes::load_scene("cubes"), {.frames = count});
+        info = source.info();
+        while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
+    }
+
+    void add_to(Pipeline& reconstruction, uint32_t index) const {
+        reconstruction.add(patina::to_rgbd(info, frames[index]));
+    }
+
+    SequenceInfo info;
+    std::vector<Frame> frames;
+};
+
+class PipelineTest : public GpuTest {
+  protected:
+    /// Shows the last frame to the checker, which must find it right and each of its barriers needed.
+    void expect_sound(Pipeline& reconstruction, const std::string& which) {
+        const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+        EXPECT_THAT(graph::check(compiled.description, compiled.plan), IsEmpty()) << which;
+        EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), IsEmpty()) << which;
+    }
+
+    const Cubes cubes_{device(), 4};
+};
+
+TEST_F(PipelineTest, EveryFrameShapeIsOrderedByBarriersThatAreAllNeeded) {
+    for (const bool view_every_frame : {false, true}) {
+        ReconstructionSettings settings = small_settings();
+        settings.remove_every = 2;
+        settings.view_every_frame = view_every_frame;
+        Pipeline reconstruction(device(), settings);
+        for (uint32_t i = 0; i < 4; ++i) {
+            cubes_.add_to(reconstruction, i);
+            expect_sound(reconstruction, text("frame ", i, view_every_frame ? " with" : " without", " view"));
+        }
+        const ViewReadback view = reconstruction.view(cubes_.info.color, *cubes_.frames[3].world_from_camera);
+        expect_sound(reconstruction, "view");
+        reconstruction.extract_surface();
+        expect_sound(reconstruction, "last frame of the surface extraction");
+        EXPECT_TRUE(view.ready());
+    }
+}
+
+/// The built-in scene with what each pixel shows, and the lights and materials that are true.
+struct LabelledCubes {
+    explicit LabelledCubes(vulkan::Device& device, uint32_t count) {
+        scenes::SyntheticScene scene = scenes::load_scene("cubes");
+        scene.camera = scaled_to(scene.camera, {256, 212});
+        scenes::SyntheticSource source(device, std::move(scene), {.frames = count, .truth_every = count - 1});
+        info = source.info();
+        while (auto reading = source.next()) {
+            frames.push_back(std::get<Frame>(std::move(*reading)));
+            labels.push_back(source.truth().labels);
+            if (source.truth().seen) seen = *source.truth().seen;  // of the last frame in the end
+        }
+        for (const Light& light : source.scene().lights)
+            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), float(light.radius_m)});
+        materials = scenes::materials_of(source.scene());
+    }
+
+    void prepare(Pipeline& reconstruction) const {
+        reconstruction.set_lights(lights);
+        for (const sensor::Material& m : materials) reconstruction.set_material(m.id, glm::vec3(m.ks), float(m.alpha));
+    }
+
+    RgbdFrame frame(uint32_t index) const {
+        RgbdFrame rgbd = patina::to_rgbd(info, frames[index]);
+        rgbd.labels = labels[index].pixels();
+        return rgbd;
+    }
+
+    SequenceInfo info;
+    std::vector<Frame> frames;
+    std::vector<Image<uint16_t>> labels;
+    scenes::FrameTruth::Seen seen;
+    std::vector<PointLight> lights;
+    std::vector<sensor::Material> materials;
+};
+
+/// Coarse geometry with blocks of 8 cm, so that observations have voxels of 4 cm.
+ReconstructionSettings small_settings_with_reflectance() {
+    ReconstructionSettings settings = small_settings();
+    settings.map.voxel_m = 0.01f;
+    settings.map.capacity_blocks = 16384;
+    settings.fusion.truncation_m = 0.03f;
+    settings.reflectance.emplace();
+    settings.reflectance->voxel_m = 0.04f;
+    settings.reflectance->capacity_blocks = 16384;
+    settings.reflectance->capacity_records = 65536;
+    settings.segmentation.emplace();
+    settings.segmentation->given = true;
+    return settings;
+}
+
+TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
+    constexpr uint32_t kFrames = 8;
+    const LabelledCubes cubes(device(), kFrames);
+    Pipeline reconstruction(device(), small_settings_with_reflectance());
+    cubes.prepare(reconstruction);
+    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
+    expect_sound(reconstruction, "a frame with reflectance");
+    reconstruction.refine_all();
+    expect_sound(reconstruction, "refinement of all");
+    const ViewReadback pending = reconstruction.view(cubes.info.color, *cubes.frames.back().world_from_camera);
+    expect_sound(reconstruction, "a view with reflectance");
+    reconstruction.wait();
+    const ModelView view = pending.get();
+    ASSERT_TRUE(view.reflectance);
+    std::vector<double> kd_errors, rgb_errors;
+    size_t labelled = 0;
+    for (size_t i = 0; i < view.reflectance->kd.pixels().size(); ++i) {
+        if (cubes.seen.object_id.pixels()[i] == 0) continue;
+        labelled += view.reflectance->label.pixels()[i] == cubes.seen.object_id.pixels()[i];
+        const glm::vec4 kd = view.reflectance->kd.pixels()[i], rgb = view.reflectance->rgb.pixels()[i];
+        if (kd.a == 0) continue;
+        kd_errors.push_back(glm::length(glm::vec3(kd) - glm::vec3(cubes.seen.kd.pixels()[i])));
+        rgb_errors.push_back(glm::length(glm::vec3(rgb) - glm::vec3(cubes.seen.radiance.pixels()[i])));
+    }
+    ASSERT_GT(kd_errors.size(), 20000u);
+    std::sort(kd_errors.begin(), kd_errors.end());
+    std::sort(rgb_errors.begin(), rgb_errors.end());
+    EXPECT_GT(labelled, kd_errors.size() * 9 / 10);
+    EXPECT_LT(kd_errors[kd_errors.size() / 2], 0.02);
+    EXPECT_LT(kd_errors[kd_errors.size() * 8 / 10], 0.08) << "4 cm voxels do not follow the shadows' borders";
+    EXPECT_LT(rgb_errors[rgb_errors.size() / 2], 0.02);
+    EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
+}
+
+TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {
+    constexpr uint32_t kFrames = 16, kFloor = 1;
+    const LabelledCubes cubes(device(), kFrames);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular.emplace();
+    Pipeline reconstruction(device(), settings);
+    reconstruction.set_lights(cubes.lights);
+    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
+    expect_sound(reconstruction, "a frame with a fit");
+    const MeshReflectance found = reconstruction.sample_reflectance(reconstruction.extract_surface());
+    for (const sensor::Material& truth : cubes.materials) {
+        if (truth.id != kFloor) continue;
+        const std::optional<WardGloss>& gloss = found.segments[truth.id].gloss;
+        ASSERT_TRUE(gloss && gloss->confidence);
+        EXPECT_LT(glm::distance(gloss->ks, glm::vec3(truth.ks)), 0.02f);
+        EXPECT_NEAR(gloss->alpha, truth.alpha, 0.04);
+        EXPECT_GT(*gloss->confidence, 0.5f);
+    }
+    EXPECT_FALSE(found.segments[100].gloss) << "no segment";
+}
+
+TEST_F(PipelineTest, SpecularMaterialsFollowTheNetwork) {
+    const LabelledCubes cubes(device(), 8);
+    for (const bool fit : {false, true}) {
+        ReconstructionSettings settings = small_settings_with_reflectance();
+        settings.specular = SpecularSettings{.fit = fit};
+        settings.network = random_hemi_network(1);
+        Pipeline reconstruction(device(), settings);
+        reconstruction.set_lights(cubes.lights);
+        for (uint32_t i = 0; i < 8; ++i) reconstruction.add(cubes.frame(i));
+        expect_sound(reconstruction, fit ? "a frame with network and fit" : "a frame with a network");
+    }
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular = SpecularSettings{.fit = false};
+    const auto refusal = [](const char* part) { return ::testing::ThrowsMessage<Error>(::testing::HasSubstr(part)); };
+    EXPECT_THAT([&] { Pipeline(device(), settings); }, refusal("by a network, but there is none"));
+    settings.specular = SpecularSettings{};
+    settings.segmentation.reset();
+    EXPECT_THAT([&] { Pipeline(device(), settings); }, refusal("there are no segments"));
+}
+
+TEST_F(PipelineTest, TheNetworkIsNotAskedOfWhatTheFitIsSureOf) {
+    const LabelledCubes cubes(device(), 24);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular.emplace();
+    settings.network = random_hemi_network(1);
+    Pipeline reconstruction(device(), settings);
+    reconstruction.set_lights(cubes.lights);
+    for (uint32_t i = 0; i < 24; ++i) reconstruction.add(cubes.frame(i));
+    graph::FrameGraph frame = reconstruction.runner().begin();
+    const graph::Readback read_fits = frame.read_back(reconstruction.specular()->fits(frame));
+    const graph::Readback read_means = frame.read_back(reconstruction.specular()->means(frame));
+    reconstruction.runner().submit(std::move(frame));
+    reconstruction.runner().wait();
+    const auto fits = read_fits.as<gpu::WardFit>();
+    const auto means = read_means.as<gpu::PerceptualMaterial>();
+    uint32_t spared = 0, asked = 0;
+    for (size_t label = 0; label < fits.size(); ++label) {
+        const auto times = static_cast<uint32_t>(means[label].cgb_d_weight.w);
+        EXPECT_LE(times, fits[label].estimates) << label;
+        if (fits[label].confidence >= gpu::kAskedBelowConfidence && times + 3 < fits[label].estimates) ++spared;
+        if (times > 0) ++asked;
+    }
+    EXPECT_GT(spared, 0u);
+    EXPECT_GT(asked, 2u);
+}
+
+TEST_F(PipelineTest, LabelsOfAnotherSizeAreRefused) {
+    Pipeline reconstruction(device(), small_settings_with_reflectance());
+    RgbdFrame frame = patina::to_rgbd(cubes_.info, cubes_.frames[0]);
+    const std::vector<uint16_t> labels(7);
+    frame.labels = labels;
+    EXPECT_THROW(reconstruction.add(frame), Error);
+}
+
+TEST_F(PipelineTest, AFrameOfAKnownShapeIsNotCompiledAgain) {
+    ReconstructionSettings settings = small_settings();
+    settings.map.capacity_blocks = 32768;  // a pool that grows changes the shape
+    settings.remove_every = 0;
+    Pipeline reconstruction(device(), settings);
+    cubes_.add_to(reconstruction, 0);
+    const uint32_t compilations = reconstruction.runner().compilations();
+    for (uint32_t i = 1; i < 4; ++i) cubes_.add_to(reconstruction, i);
+    EXPECT_EQ(reconstruction.runner().compilations(), compilations);
+}
+
+TEST_F(PipelineTest, OneFrameOfGeometryTakesFewDispatches) {
+    ReconstructionSettings settings = small_settings();
+    settings.remove_every = 1;
+    settings.view_every_frame = true;
+    Pipeline reconstruction(device(), settings);
+    cubes_.add_to(reconstruction, 0);
+    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    const auto dispatches = std::ranges::count_if(compiled.plan.order, [&](uint32_t pass) {
+        return std::ranges::none_of(compiled.description.passes[pass].accesses, [](const graph::Access& access) {
+            return graph::scope_of(access.use).stages == graph::kStageTransfer;
+        });
+    });
+    EXPECT_GT(dispatches, 8);
+    EXPECT_LE(dispatches, 25);
+}
+
+TEST_F(PipelineTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
+    vulkan::DeviceOptions options;
+    options.selector = device().caps().name;
+    options.validation = true;
+    constexpr uint32_t kEnough = 200;
+    uint32_t failures = 0;
+    for (bool succeeded = false; !succeeded; ++failures) {
+        ASSERT_LT(failures, kEnough) << "the run never succeeds";
+        options.fail_allocation_at = failures + 1;
+        vulkan::Device failing(options);
+        try {
+            Pipeline reconstruction(failing, small_settings());
+            cubes_.add_to(reconstruction, 0);
+            const ViewReadback view = reconstruction.view(cubes_.info.color, *cubes_.frames[0].world_from_camera);
+            reconstruction.extract_surface();
+            succeeded = true;
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), ::testing::ContainsRegex("out of memory.*'.+'")) << "allocation " << failures + 1;
+        }
+        EXPECT_THAT(failing.validation_messages(), IsEmpty()) << "allocation " << failures + 1;
+        EXPECT_EQ(failing.shared_context().use_count(), 1) << "something outlives allocation " << failures + 1;
+    }
+    EXPECT_GT(failures, 10u);
+}
+
+TEST_F(PipelineTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
+    ReconstructionSettings settings = small_settings();
+    settings.fusion.settled_color_every = 2;
+    Pipeline reconstruction(device(), settings);
+    const Intrinsics camera = cubes_.info.depth;
+    const auto add = [&](uint8_t grey, int count) {
+        RgbdFrame frame = patina::to_rgbd(cubes_.info, cubes_.frames[0]);
+        const Image<glm::u8vec3> picture(frame.color.camera.extent, glm::u8vec3(grey));
+        frame.color.pixels = std::span(picture.pixels());
+        for (int i = 0; i < count; ++i) {
+            frame.held_out = i % 2 == 1;
+            reconstruction.add(frame);
+        }
+        const ViewReadback pending = reconstruction.view(camera, frame.world_from_depth);
+        reconstruction.wait();
+        return pending.get().color;
+    };
+    const Image<glm::vec4> before = add(60, 24), after = add(200, 48);
+    size_t seen = 0, changed = 0;
+    for (size_t i = 0; i < before.pixels().size(); ++i) {
+        if (before.pixels()[i].a == 0) continue;
+        ++seen;
+        changed += after.pixels()[i].r > 4 * before.pixels()[i].r ? 1 : 0;
+    }
+    EXPECT_GT(seen, before.pixels().size() / 3);
+    EXPECT_GT(changed, seen * 97 / 100);
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,143 @@
+#include "reconstruction/stages/segmentation_stage.h"
+
+#include <map>
+#include <set>
+
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/rgbd_frame.h"
+#include "scenes/files/scene_file.h"
+#include "scenes/render/synthetic_source.h"
+#include "tests/gpu/gpu_test.h"
+
+namespace patina {
+namespace {
+
+/// The built-in scene, small, with what each pixel shows.
+struct SmallCubes {
+    SmallCubes(vulkan::Device& device, uint32_t count) {
+        scenes::SyntheticScene scene = scenes::load_scene("cubes");
+        scene.camera = scaled_to(scene.camera, {256, 212});
+        scenes::SyntheticSource source(device, std::move(scene), {.frames = count});
+        info = source.info();
+        while (auto reading = source.next()) {
+            frames.push_back(std::get<Frame>(std::move(*reading)));
+            labels.push_back(source.truth().labels);
+        }
+    }
+
+    RgbdFrame frame(uint32_t index) const {
+        RgbdFrame rgbd = patina::to_rgbd(info, frames[index]);
+        rgbd.labels = labels[index].pixels();
+        return rgbd;
+    }
+
+    SequenceInfo info;
+    std::vector<Frame> frames;
+    std::vector<Image<uint16_t>> labels;
+};
+
+class SegmentationStageTest : public GpuTest {
+  protected:
+    static ReconstructionSettings settings(bool given) {
+        ReconstructionSettings settings;
+        settings.map.voxel_m = 0.01f;
+        settings.map.capacity_blocks = 16384;
+        settings.fusion.truncation_m = 0.03f;
+        settings.segmentation.emplace();
+        settings.segmentation->given = given;
+        return settings;
+    }
+
+    /// The labels of what a frame's depth camera sees.
+    Image<uint32_t> view(Pipeline& reconstruction, uint32_t index) {
+        const ViewReadback pending = reconstruction.view(cubes_.info.depth, *cubes_.frames[index].world_from_camera);
+        reconstruction.wait();
+        return pending.get().label;
+    }
+
+    const SmallCubes cubes_{device(), 2};
+};
+
+TEST_F(SegmentationStageTest, GivenIdsAreTheLabelsOfTheMap) {
+    Pipeline reconstruction(device(), settings(true));
+    for (int i = 0; i < 4; ++i) reconstruction.add(cubes_.frame(0));
+    const Image<uint32_t> seen = view(reconstruction, 0);
+    size_t covered = 0, known = 0, right = 0;
+    for (size_t i = 0; i < seen.pixels().size(); ++i) {
+        if (cubes_.labels[0].pixels()[i] == 0) continue;
+        ++covered;
+        if (seen.pixels()[i] == 0) continue;
+        ++known;
+        right += seen.pixels()[i] == cubes_.labels[0].pixels()[i];
+    }
+    EXPECT_GT(covered, seen.pixels().size() / 4);
+    EXPECT_GT(known, covered * 95 / 100);
+    EXPECT_GT(right, known * 97 / 100) << "but for the voxels between two objects";
+}
+
+TEST_F(SegmentationStageTest, ACameraThatStandsStillSeesTheSameLabelsForGood) {
+    Pipeline reconstruction(device(), settings(false));
+    for (uint32_t i = 0; i < gpu::kUpdateFrames; ++i) reconstruction.add(cubes_.frame(0));
+    const Image<uint32_t> before = view(reconstruction, 0);
+    const uint32_t created = reconstruction.statistics().segments.created;
+    EXPECT_GT(created, 3u);
+    for (uint32_t i = 0; i < 4 * gpu::kUpdateFrames; ++i) reconstruction.add(cubes_.frame(0));
+    const Image<uint32_t> after = view(reconstruction, 0);
+    EXPECT_EQ(reconstruction.statistics().segments.created, created);
+    size_t changed = 0;
+    for (size_t i = 0; i < before.pixels().size(); ++i)
+        changed += before.pixels()[i] != 0 && before.pixels()[i] != after.pixels()[i];
+    EXPECT_LT(changed, before.pixels().size() / 500);
+    const LabelStability stability = reconstruction.statistics().label_stability;
+    EXPECT_GT(stability.voxels, 0u);
+    EXPECT_LT(stability.flips, stability.voxels / 500 + 1);
+    EXPECT_GE(stability.seen, static_cast<double>(stability.voxels)) << "not every block has its turn";
+}
+
+TEST_F(SegmentationStageTest, ASecondPassOverTheSamePathMakesNoLabels) {
+    const SmallCubes path(device(), 24);
+    Pipeline reconstruction(device(), settings(false));
+    const auto pass = [&] {
+        for (uint32_t i = 0; i < 8; ++i) reconstruction.add(path.frame(i));
+        reconstruction.wait();
+        return reconstruction.statistics().segments.created;
+    };
+    const uint32_t created = pass();
+    EXPECT_GT(created, 3u);
+    EXPECT_EQ(pass(), created);
+}
+
+TEST_F(SegmentationStageTest, TheSameInputGivesTheSameLabels) {
+    std::vector<Image<uint32_t>> seen;
+    for (int run = 0; run < 2; ++run) {
+        Pipeline reconstruction(device(), settings(false));
+        for (uint32_t i = 0; i < 6; ++i) reconstruction.add(cubes_.frame(i % 2));
+        seen.push_back(view(reconstruction, 1));
+    }
+    EXPECT_EQ(seen[0].pixels(), seen[1].pixels());
+}
+
+TEST_F(SegmentationStageTest, WithoutDepthThereAreNoSegments) {
+    Pipeline reconstruction(device(), settings(false));
+    RgbdFrame frame = cubes_.frame(0);
+    const std::vector<uint16_t> nothing(frame.depth.camera.extent.area());
+    frame.depth.pixels = std::span<const uint16_t>(nothing);
+    for (int i = 0; i < 3; ++i) reconstruction.add(frame);
+    const std::vector<uint32_t> seen = view(reconstruction, 0).pixels();
+    EXPECT_EQ(std::set<uint32_t>(seen.begin(), seen.end()), std::set<uint32_t>{0});
+    EXPECT_EQ(reconstruction.statistics().segments.created, 0u);
+}
+
+TEST_F(SegmentationStageTest, SegmentationTakesFewDispatches) {
+    Pipeline reconstruction(device(), settings(false));
+    reconstruction.add(cubes_.frame(0));
+    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    size_t dispatches = 0;
+    for (const uint32_t pass : compiled.plan.order)
+        dispatches += compiled.description.passes[pass].name.starts_with("segmentation.") ? 1 : 0;
+    EXPECT_GE(dispatches, 10u);
+    EXPECT_LE(dispatches, 20u);
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,206 @@
+// Records made up from known materials and lights: what comes out is what went in.
+
+#include "tests/reference/reflectance/refine_albedo.h"
+
+#include <random>
+
+#include <glm/gtc/packing.hpp>
+
+#include "tests/gpu/gpu_test.h"
+#include "tests/gpu/reflectance/reflectance_rig.h"
+#include "tools/bench/filled_records.h"
+
+namespace patina {
+namespace {
+
+using reference::ReceivedLight;
+using reference::SurfacePoint;
+using reference::Ward;
+
+constexpr int kViews = 30;
+constexpr double kPacking = 1.0 / 512;  // of colours and of kd: a shared exponent keeps 9 bits
+
+const std::vector<PointLight> kLights = {
+    {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
+
+std::vector<ReceivedLight> received(const Lights& lights) {
+    std::vector<ReceivedLight> result;
+    for (const PointLight& light : lights.point_lights())
+        result.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
+    return result;
+}
+
+glm::dvec3 random_direction(std::mt19937& random, glm::dvec3 normal, double least_cosine) {
+    std::normal_distribution<double> gauss;
+    for (;;) {
+        const glm::dvec3 direction = glm::normalize(glm::dvec3(gauss(random), gauss(random), gauss(random)));
+        if (glm::dot(direction, normal) > least_cosine) return direction;
+    }
+}
+
+class RefineAlbedoTest : public GpuTest {
+  protected:
+    RefineAlbedoTest() {
+        graph::FrameGraph frame = runner().begin();
+        voxel_map_.reset(frame, glm::dvec3(0));
+        map_.reset(frame, glm::dvec3(0));
+        run(std::move(frame));
+        rig_.lights.set(kLights, ambient_);
+    }
+
+    /// The surface point that a record keeps.
+    SurfacePoint kept(const FilledRecord& record) const {
+        return {glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)};
+    }
+
+    /// Looks at a record's surface from random directions.
+    void observe(FilledRecord& record, const Ward& material, int views = kViews) {
+        for (int i = 0; i < views; ++i) {
+            const glm::dvec3 direction = random_direction(random_, glm::dvec3(record.normal), 0.3);
+            const glm::dvec3 rgb =
+                reference::shade(material, kept(record), received(rig_.lights), glm::dvec3(ambient_), direction);
+            record.observations.push_back({glm::vec3(direction), glm::vec3(rgb), {}});
+        }
+    }
+
+    /// A record of a floor or of a sphere about the origin.
+    FilledRecord random_record(uint32_t label) {
+        std::uniform_real_distribution<float> meters(-0.6f, 0.6f);
+        const bool on_floor = random_() % 2 == 0;
+        const glm::vec3 normal =
+            on_floor ? glm::vec3(0, -1, 0) : glm::vec3(random_direction(random_, glm::dvec3(0, -1, 0), 0.2));
+        return {on_floor ? glm::vec3(meters(random_), 0.003f, meters(random_)) : 0.4f * normal, normal, label, {}};
+    }
+
+    std::vector<RefinedRecord> refine(const std::vector<FilledRecord>& records) {
+        ReflectanceSettings settings;
+        settings.shadows = false;
+        settings.first_marched_records = 1u << 20;
+        const auto counts = rig_.update(settings, [&](graph::FrameGraph& frame, ObservationMapIds& ids) {
+            add_fill_records(frame, map_, ids, records);
+            return add_list_records(frame, static_cast<uint32_t>(records.size()));
+        });
+        EXPECT_EQ(counts.refined, records.size());
+        return rig_.records(static_cast<uint32_t>(records.size()));
+    }
+    RefinedRecord refine(const FilledRecord& record) { return refine(std::vector{record}).front(); }
+
+    /// What the reference makes of a record, whose colours it takes as they are stored.
+    reference::RefinedAlbedo expected(const FilledRecord& record, const Ward& material) const {
+        std::vector<reference::SeenColor> observations;
+        for (const FilledObservation& seen : record.observations) {
+            observations.push_back({glm::dvec3(seen.to_viewer),
+                                    glm::dvec3(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(seen.rgb))), seen.clipped});
+        }
+        return reference::refine_albedo(observations, kept(record), received(rig_.lights), glm::dvec3(ambient_),
+                                        material);
+    }
+
+    std::mt19937 random_{1};
+    glm::vec3 ambient_{0.05f, 0.04f, 0.03f};
+    VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
+    // Several chunks of 256 records.
+    ObservationMap map_{device(),
+                        {.capacity_blocks = 64, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
+    ReflectanceRig rig_{device(), runner(), voxel_map_, map_};
+};
+
+double max_of(glm::dvec3 v) { return std::max({v.x, v.y, v.z}); }
+
+TEST_F(RefineAlbedoTest, KdIsWhatTheSurfaceHasUnderManyLightsAndMaterials) {
+    std::uniform_real_distribution<float> share(0, 1);
+    std::vector<FilledRecord> records;
+    std::vector<Ward> materials;
+    for (uint32_t label = 1; label < 40; ++label) {
+        const Ward gloss{{}, glm::dvec3(0.05 + 0.2 * share(random_)), 0.08 + 0.3 * share(random_)};
+        rig_.materials.set(label, glm::vec3(gloss.ks), static_cast<float>(gloss.alpha));
+        for (int i = 0; i < 10; ++i) {
+            materials.push_back({{0.05 + 0.9 * share(random_), 0.05 + 0.9 * share(random_), share(random_)},
+                                 glm::dvec3(glm::vec3(gloss.ks)),
+                                 double{static_cast<float>(gloss.alpha)}});
+            records.push_back(random_record(label));
+            observe(records.back(), materials.back());
+        }
+    }
+    const std::vector<RefinedRecord> refined = refine(records);
+    for (size_t i = 0; i < records.size(); ++i) {
+        const double off = max_of(glm::abs(refined[i].kd - materials[i].kd));
+        EXPECT_LT(off, 1.5 * kPacking) << "record " << i;
+        const reference::RefinedAlbedo reference = expected(records[i], materials[i]);
+        EXPECT_LT(max_of(glm::abs(refined[i].kd - reference.kd)), kPacking) << "record " << i;
+        EXPECT_LT(max_of(glm::abs(refined[i].certainty - reference.certainty)), 0.02) << "record " << i;
+        EXPECT_GT(refined[i].certainty.r, 0.5) << "record " << i;
+    }
+}
+
+TEST_F(RefineAlbedoTest, AMaterialThatIsNotKnownLeavesItsHighlightInKd) {
+    const Ward material{{0.4, 0.3, 0.2}, {0.1, 0.1, 0.1}, 0.2};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 5, {}};
+    const SurfacePoint point = kept(record);
+    const auto lights = received(rig_.lights);
+    const glm::dvec3 ambient(ambient_),
+        direction = glm::reflect(glm::normalize(point.position_m - lights[0].position_m), point.normal);
+    record.observations.push_back(
+        {glm::vec3(direction), glm::vec3(reference::shade(material, point, lights, ambient, direction)), {}});
+    const glm::dvec3 highlight = reference::shade({{}, material.ks, material.alpha}, point, lights, {}, direction);
+    const glm::dvec3 irradiance = reference::shade({glm::dvec3(1), {}, 1}, point, lights, ambient, direction);
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - (material.kd + highlight / irradiance))), kPacking);
+    EXPECT_GT(max_of(highlight / irradiance), 10 * kPacking);
+    // Wrong by half: half of it stays.
+    rig_.materials.set(5, glm::vec3(material.ks) / 2.0f, static_cast<float>(material.alpha));
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - (material.kd + 0.5 * highlight / irradiance))), 1.5 * kPacking);
+}
+
+TEST_F(RefineAlbedoTest, ClippedChannelsCountOnlyWhereThereIsNothingElse) {
+    const Ward material{{0.6, 0.5, 0.4}, {}, 1};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material);
+    const glm::vec3 whole = record.observations[0].rgb;
+    for (size_t k = 0; k < record.observations.size() / 2; ++k) {
+        record.observations[k].rgb.r = 0.6f * whole.r;
+        record.observations[k].clipped = {true, false, false};
+    }
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 1.5 * kPacking);
+
+    for (FilledObservation& seen : record.observations) {
+        seen.rgb.r = 0.6f * whole.r;
+        seen.clipped = {true, false, false};
+    }
+    const RefinedRecord refined = refine(record);
+    EXPECT_LT(max_of(glm::abs(refined.kd - material.kd * glm::dvec3(0.6, 1, 1))), 1.5 * kPacking);
+    EXPECT_LT(refined.certainty.r, 0.3);
+    EXPECT_GT(refined.certainty.g, 0.9);
+}
+
+TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {
+    const Ward material{{0.3, 0.5, 0.2}, {}, 1};
+    for (const float factor : {0.0f, 0.5f, 3.0f, 30.0f}) {
+        FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+        observe(record, material);
+        for (size_t k = 0; k < record.observations.size(); k += 10) record.observations[k].rgb *= factor;
+        EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 1.5 * kPacking) << factor;
+    }
+}
+
+TEST_F(RefineAlbedoTest, WhatReceivesNoLightIsUnknown) {
+    ambient_ = glm::vec3(0.2f, 0, 0);
+    rig_.lights.set(std::vector<PointLight>{{{0, 5, 0}, {9, 9, 9}}}, ambient_);  // below the floor
+    const Ward material{{0.3, 0.5, 0.2}, {}, 1};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material);
+    const RefinedRecord refined = refine(record);
+    EXPECT_NEAR(refined.kd.r, material.kd.r, kPacking);
+    EXPECT_GT(refined.certainty.r, 0.5);
+    EXPECT_EQ(refined.certainty.g, 0);
+    EXPECT_EQ(refined.certainty.b, 0);
+}
+
+TEST_F(RefineAlbedoTest, OneObservationIsEnough) {
+    const Ward material{{0.3, 0.5, 0.2}, {}, 1};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material, 1);
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), kPacking);
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,119 @@
+#include "tests/gpu/reflectance/reflectance_rig.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include <glm/gtc/packing.hpp>
+
+namespace patina {
+
+namespace {
+
+glm::dvec3 unpack_normal(uint32_t word) {
+    const glm::dvec2 at(static_cast<int16_t>(word & 0xffff) / 32767.0, static_cast<int16_t>(word >> 16) / 32767.0);
+    glm::dvec3 normal(at, 1 - std::abs(at.x) - std::abs(at.y));
+    if (normal.z < 0) {
+        normal.x = (1 - std::abs(at.y)) * (at.x >= 0 ? 1 : -1);
+        normal.y = (1 - std::abs(at.x)) * (at.y >= 0 ? 1 : -1);
+    }
+    return glm::normalize(normal);
+}
+
+RefinedRecord unpack(const gpu::VoxelRecord& record, const ObservationMap& map) {
+    const uint32_t shift = map.edge_shift(), mask = (1u << shift) - 1, number = record.state >> 5 & 63;
+    const glm::ivec3 block =
+        glm::ivec3(record.block_key & 2047, record.block_key >> 11 & 1023, record.block_key >> 21) -
+        glm::ivec3(1024, 512, 1024) + glm::ivec3(map.grid().origin_block);
+    RefinedRecord result;
+    result.voxel = block * (1 << shift) + glm::ivec3(number & mask, number >> shift & mask, number >> 2 * shift);
+    result.normal = unpack_normal(record.normal);
+    const double offset = static_cast<int16_t>(record.state >> 16) / 32767.0;
+    result.point_m = (glm::dvec3(result.voxel) + 0.5 + result.normal * offset) * double{map.settings().voxel_m};
+    result.observations = record.state & 31;
+    return result;
+}
+
+glm::dvec3 unpack_certainty(uint32_t word) {
+    return glm::dvec3(word & 1023, word >> 10 & 1023, word >> 20 & 1023) / 1023.0;
+}
+
+}  // namespace
+
+ReflectanceRig::ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
+                               const ObservationMap& observation_map)
+    : materials(device, 64),
+      access(preferred_reflectance_access(device.caps(), voxel_map, observation_map)),
+      runner_(runner),
+      voxel_map_(voxel_map),
+      observation_map_(observation_map),
+      state_(device, observation_map) {
+    graph::FrameGraph frame = runner_.begin();
+    state_.reset(frame);
+    runner_.submit(std::move(frame));
+}
+
+ReflectanceRig::Counts ReflectanceRig::submit(graph::FrameGraph frame, const ObservationMapIds& ids,
+                                              const RefinedReflectance& refined) {
+    ObservationMap::keep(frame, ids);
+    const graph::Readback marched = frame.read_back(refined.marched.list, 0, 4),
+                          albedos = frame.read_back(refined.refined.list, 0, 4);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    return {marched.as<uint32_t>().front(), albedos.as<uint32_t>().front()};
+}
+
+ReflectanceRig::Counts ReflectanceRig::update(const ReflectanceSettings& settings, const Fill& fill) {
+    graph::FrameGraph frame = runner_.begin();
+    ObservationMapIds ids = observation_map_.import(frame);
+    const RecordList changed = fill ? fill(frame, ids) : create_record_list(frame, "none", 1);
+    const RefinedReflectance refined =
+        add_refine_reflectance(frame, models(), voxel_map_.import(frame), ids, changed, access, settings);
+    return submit(std::move(frame), ids, refined);
+}
+
+ReflectanceRig::Counts ReflectanceRig::update_all(const ReflectanceSettings& settings) {
+    graph::FrameGraph frame = runner_.begin();
+    ObservationMapIds ids = observation_map_.import(frame);
+    const RefinedReflectance refined =
+        add_refine_all_reflectance(frame, models(), voxel_map_.import(frame), ids, access, settings);
+    return submit(std::move(frame), ids, refined);
+}
+
+std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
+    graph::FrameGraph frame = runner_.begin();
+    const ObservationMapIds ids = observation_map_.import(frame);
+    const graph::Readback records_read = frame.read_back(ids.records), albedo_read = frame.read_back(ids.albedo),
+                          visibility_read = frame.read_back(ids.visibility),
+                          status_read = frame.read_back(state_.import(frame).status);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    const auto stored = records_read.as<gpu::VoxelRecord>();
+    const auto albedo = albedo_read.as<glm::uvec2>(), visibility = visibility_read.as<glm::uvec2>();
+    const auto status = status_read.as<gpu::RecordStatus>();
+    const auto bits = [](glm::uvec2 words) { return words.x | uint64_t{words.y} << 32; };
+    std::vector<RefinedRecord> records;
+    for (uint32_t i = 0; i < count; ++i) {
+        RefinedRecord record = unpack(stored[i], observation_map_);
+        record.albedo = albedo[i];
+        record.kd = glm::dvec3(glm::unpackF3x9_E1x5(albedo[i].x));
+        record.certainty = unpack_certainty(albedo[i].y);
+        record.visible = bits(visibility[i]);
+        record.uncertain = bits(status[i].uncertain);
+        records.push_back(record);
+    }
+    return records;
+}
+
+std::vector<RefinedRecord> ReflectanceRig::records() {
+    graph::FrameGraph frame = runner_.begin();
+    const graph::Readback counters = frame.read_back(observation_map_.import(frame).record_counters);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    std::vector<RefinedRecord> all = records(counters.as<gpu::MapCounters>().front().high_water);
+    std::sort(all.begin(), all.end(), [](const RefinedRecord& a, const RefinedRecord& b) {
+        return std::tie(a.voxel.x, a.voxel.y, a.voxel.z) < std::tie(b.voxel.x, b.voxel.y, b.voxel.z);
+    });
+    return all;
+}
+
+}  // namespace patina

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/graph/runner.h"
+#include "passes/reflectance/reflectance.h"
+
+namespace patina {
+
+/// A record with what was made of its observations.
+struct RefinedRecord {
+    glm::ivec3 voxel{0};  ///< spans [v, v + 1) times its size from the world's origin
+    glm::dvec3 point_m{0}, normal{0};
+    uint32_t observations = 0;
+    glm::dvec3 kd{0}, certainty{0};
+    uint64_t visible = 0, uncertain = 0;  ///< a bit per light
+    glm::uvec2 albedo{0};                 ///< as stored
+};
+
+/// Lights, materials and the refinement for maps that another rig fills, for tests.
+class ReflectanceRig {
+  public:
+    ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
+                   const ObservationMap& observation_map);
+
+    struct Counts {
+        uint32_t marched = 0, refined = 0;
+    };
+    using Fill = std::function<RecordList(graph::FrameGraph&, ObservationMapIds&)>;
+    /// One frame's update; `fill` makes the list of changed records, none without it.
+    Counts update(const ReflectanceSettings& settings, const Fill& fill = {});
+    Counts update_all(const ReflectanceSettings& settings);
+
+    /// The first `count` records; without it all of the table, by voxel.
+    std::vector<RefinedRecord> records(uint32_t count);
+    std::vector<RefinedRecord> records();
+
+    const ReflectanceState& state() const { return state_; }
+
+    Lights lights;
+    SegmentMaterials materials;
+    ReflectanceAccess access;
+
+  private:
+    ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_}; }
+    Counts submit(graph::FrameGraph frame, const ObservationMapIds& ids, const RefinedReflectance& refined);
+
+    graph::Runner& runner_;
+    const VoxelMap& voxel_map_;
+    const ObservationMap& observation_map_;
+    ReflectanceState state_;
+};
+
+}  // namespace patina

@@ -1,0 +1,119 @@
+#include "tests/reference/reflectance/refine_albedo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace patina::reference {
+
+namespace {
+
+constexpr double kClippedShare = 1e-3;
+
+double mean_of(glm::dvec3 rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
+
+/// An observation without its highlight.
+struct Rest {
+    glm::dvec3 diffuse;
+    glm::dvec3 share;  ///< 1, kClippedShare where clipped
+    double trust = 0;
+    double robust = 1;
+
+    double brightness() const { return mean_of(diffuse); }
+    double whole() const { return std::min({share.r, share.g, share.b}); }
+};
+
+/// Reweights three times, at first about the plain mean with a scale from the plain mean size.
+void reweight(std::vector<Rest>& rests, double noise) {
+    double mean = 0, scale = 0;
+    for (const Rest& rest : rests) {
+        mean += rest.brightness() / static_cast<double>(rests.size());
+        scale += 1.5 * std::abs(rest.brightness()) / static_cast<double>(rests.size());
+    }
+    const auto share = [&](const Rest& rest) {
+        return std::pow(1 + std::pow((rest.brightness() - mean) / (noise + scale), 2), -2);
+    };
+    for (int i = 0; i < 3; ++i) {
+        double weights = 1e-20, sum = 0, spread = 0;
+        for (const Rest& rest : rests) {
+            const double weight = rest.trust * rest.whole() * share(rest);
+            weights += weight;
+            sum += weight * rest.brightness();
+            spread += weight * std::abs(rest.brightness() - mean);
+        }
+        mean = sum / weights;
+        scale = 1.5 * spread / weights;
+    }
+    for (Rest& rest : rests) rest.robust = share(rest);
+}
+
+}  // namespace
+
+glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vector<ReceivedLight>& lights,
+                 glm::dvec3 ambient, glm::dvec3 to_viewer) {
+    glm::dvec3 sum = material.kd * ambient;
+    for (const ReceivedLight& light : lights) {
+        const glm::dvec3 offset = light.position_m - point.position_m;
+        const double cosine = glm::dot(point.normal, glm::normalize(offset));
+        if (!light.reaches || cosine <= 0) continue;
+        sum += ward(material, point.normal, glm::normalize(offset), to_viewer) * light.intensity * cosine /
+               glm::dot(offset, offset);
+    }
+    return sum;
+}
+
+RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
+                            const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material) {
+    const Ward gloss{glm::dvec3(0), material.ks, material.alpha}, white{glm::dvec3(1), glm::dvec3(0), 1};
+    double brightness = 0;
+    std::vector<Rest> rests;
+    std::vector<glm::dvec3> highlights;
+    for (const SeenColor& seen : observations) {
+        highlights.push_back(shade(gloss, point, lights, glm::dvec3(0), seen.to_viewer));
+        Rest rest{seen.rgb - highlights.back(), glm::dvec3(1)};
+        for (int c = 0; c < 3; ++c) rest.share[c] = seen.clipped[static_cast<size_t>(c)] ? kClippedShare : 1;
+        brightness += rest.brightness() / static_cast<double>(observations.size());
+        rests.push_back(rest);
+    }
+    const double noise = 0.002 + 0.02 * std::max(brightness, 0.0);
+    for (size_t k = 0; k < rests.size(); ++k) {
+        const double doubt = 0.5 * mean_of(highlights[k]) / noise;
+        rests[k].trust = glm::dot(observations[k].to_viewer, point.normal) / (1 + doubt * doubt);
+    }
+    reweight(rests, noise);
+    double center = 0, center_weight = 0;
+    for (const Rest& rest : rests) {
+        center += rest.trust * rest.robust * rest.whole() * rest.brightness();
+        center_weight += rest.trust * rest.robust * rest.whole();
+    }
+    center /= center_weight;
+
+    const glm::dvec3 irradiance = shade(white, point, lights, ambient, point.normal);
+    std::vector<ReceivedLight> doubtful;
+    for (ReceivedLight light : lights) {
+        if (!light.uncertain) continue;
+        light.reaches = true;
+        doubtful.push_back(light);
+    }
+    const glm::dvec3 uncertain = shade(white, point, doubtful, glm::dvec3(0), point.normal);
+    RefinedAlbedo result;
+    for (int c = 0; c < 3; ++c) {
+        if (irradiance[c] <= 0.004) continue;
+        double weights = 0, squares = 0, sum = 0, spread = 0, robust_weights = 0;
+        for (const Rest& rest : rests) {
+            const double robust = rest.trust * rest.robust, weight = robust * rest.share[c];
+            weights += weight;
+            squares += weight * weight;
+            sum += weight * rest.diffuse[c];
+            robust_weights += robust;
+            spread += robust * std::pow(rest.brightness() - center, 2);
+        }
+        const double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
+        result.kd[c] = std::max(sum / weights / irradiance[c], 0.0);
+        const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
+        result.certainty[c] = 1 / (1 + (variance / (irradiance[c] * irradiance[c]) + doubt * doubt) / (0.05 * 0.05));
+    }
+    return result;
+}
+
+}  // namespace patina::reference

@@ -1,0 +1,86 @@
+#include "tools/render/orbit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/error.h"
+
+namespace patina::tools {
+
+namespace {
+
+template <class Value>
+Value median(std::vector<Value>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+glm::dvec3 position_of(const RigidTransform& pose) { return glm::dvec3(pose[3]); }
+
+/// The mean of the cameras' up directions, brought across their x axes: cameras are tilted up and down rather than
+/// rolled. Where they all face one way, only that one x axis says so, and the mean stays as it is along the rest.
+glm::dvec3 up_of(std::span<const RigidTransform> cameras) {
+    constexpr double kLevel = 1e-3;  // a mean square of x axes along up that is level enough: 2 degrees
+    const double count = static_cast<double>(cameras.size());
+    glm::dvec3 mean(0);
+    glm::dmat3 squares(kLevel);
+    for (const RigidTransform& pose : cameras) {
+        const glm::dvec3 x(pose[0]), down(pose[1]);
+        mean -= down / count;
+        squares += glm::outerProduct(x, x) / count;
+    }
+    if (glm::length(mean) < 1e-3) {
+        throw Error("an orbit needs to know where up is, but the up directions of ", cameras.size(),
+                    " cameras cancel out");
+    }
+    return glm::normalize(glm::inverse(squares) * mean);
+}
+
+RigidTransform look_at(glm::dvec3 from_m, glm::dvec3 at_m, glm::dvec3 up) {
+    const glm::dvec3 z = glm::normalize(at_m - from_m), x = glm::normalize(glm::cross(-up, z)), y = glm::cross(z, x);
+    return {glm::dvec4(x, 0), glm::dvec4(y, 0), glm::dvec4(z, 0), glm::dvec4(from_m, 1)};
+}
+
+/// A direction across `up`.
+glm::dvec3 across(glm::dvec3 up) {
+    const glm::dvec3 other = std::abs(up.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
+    return glm::normalize(glm::cross(up, other));
+}
+
+}  // namespace
+
+glm::dvec3 median_point(std::span<const glm::vec3> points) {
+    glm::dvec3 middle(0);
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        std::vector<float> values;
+        values.reserve(points.size());
+        for (const glm::vec3& point : points) values.push_back(point[axis]);
+        middle[axis] = double{median(values)};
+    }
+    return middle;
+}
+
+std::vector<RigidTransform> orbit_poses(std::span<const RigidTransform> recorded, glm::dvec3 center_m, uint32_t count) {
+    const glm::dvec3 up = up_of(recorded);
+    std::vector<double> radii, heights;
+    for (const RigidTransform& pose : recorded) {
+        const glm::dvec3 offset = position_of(pose) - center_m;
+        heights.push_back(glm::dot(offset, up));
+        radii.push_back(glm::length(offset - heights.back() * up));
+    }
+    const glm::dvec3 first = position_of(recorded.front()) - center_m, level = first - glm::dot(first, up) * up;
+    const glm::dvec3 ahead = glm::length(level) > 1e-6 ? glm::normalize(level) : across(up);
+    const glm::dvec3 aside = glm::cross(up, ahead);
+    const double radius = std::max(median(radii), kLeastOrbit_m), height = median(heights);
+    std::vector<RigidTransform> poses;
+    for (uint32_t i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * i / count;
+        const glm::dvec3 outwards = std::cos(angle) * ahead + std::sin(angle) * aside;
+        poses.push_back(look_at(center_m + radius * outwards + height * up, center_m, up));
+    }
+    return poses;
+}
+
+}  // namespace patina::tools

@@ -1,0 +1,211 @@
+#include "tools/report/report.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tools/report/html.h"
+
+namespace patina {
+namespace {
+
+std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+
+double fraction(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
+
+/// A bar over a hundred units from 0 to `value` (a fraction), over a paler one from `low` to `high`.
+std::string bar_svg(double low, double value, double high) {
+    return fmt::format(
+        "<svg viewBox='0 0 100 8' preserveAspectRatio='none' aria-hidden='true'>"
+        "<rect x='{:.2f}' y='3' width='{:.2f}' height='2' class='range'/>"
+        "<rect x='0' y='1' width='{:.2f}' height='6' class='value'/></svg>",
+        100 * low, 100 * std::max(0.0, high - low), 100 * value);
+}
+
+std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
+
+std::string facts(const RunRecord& record) {
+    const FrameLedger& frames = record.frames;
+    const VoxelPoolRecord& pool = record.voxel_pool;
+    std::string html = report_fact("Frames used", fmt::format("{} of {}", grouped(frames.used),
+                                                              grouped(record.sequence.frames.value_or(frames.read))));
+    html += report_fact("Frames skipped", grouped(frames.skipped.size()));
+    html +=
+        report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
+    if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));
+    if (const auto& observed = record.observation_pool) {
+        html += report_fact("Observed voxels", fmt::format("{} of {}", grouped(observed->records_used),
+                                                           grouped(observed->records_capacity)));
+        if (observed->records_refused > 0)
+            html += report_fact("Observed voxels refused", grouped(observed->records_refused));
+    }
+    for (const auto& [name, count] : record.totals) html += report_fact(name, grouped(count));
+    for (const auto& [name, seconds] : record.times_s)
+        html += report_fact("Time, " + name, fmt::format("{:.2f} s", seconds));
+    if (record.ambient != glm::dvec3(0)) html += report_fact("Ambient light, RGB", vector_text(record.ambient));
+    if (record.world_offset_m != glm::dvec3(0))
+        html += report_fact("World moved by, m", vector_text(record.world_offset_m));
+    html += report_fact("Device", html_escaped(record.device.name));
+    html += report_fact("Driver", html_escaped(record.device.driver));
+    html += report_fact("Seed", fmt::format("{}", record.seed));
+    return report_facts(html);
+}
+
+std::string pass_row(const PassTime& pass, double longest_ms) {
+    return fmt::format(
+        "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{:.3f}</td><td class='number'>{:.3f}</td>"
+        "<td class='number'>{:.3f}</td><td class='bar'>{}</td></tr>\n",
+        html_escaped(pass.name), grouped(pass.count), pass.min_ms, pass.median_ms, pass.max_ms,
+        bar_svg(fraction(pass.min_ms, longest_ms), fraction(pass.median_ms, longest_ms),
+                fraction(pass.max_ms, longest_ms)));
+}
+
+/// Bars are drawn to twice the longest median, so that one slow first frame does not flatten them all.
+std::string pass_table(const std::vector<PassTime>& passes) {
+    if (passes.empty()) return {};
+    double longest_ms = 0, sum_ms = 0;
+    for (const PassTime& pass : passes) {
+        longest_ms = std::max(longest_ms, 2 * pass.median_ms);
+        sum_ms += pass.median_ms;
+    }
+    std::string rows;
+    for (const PassTime& pass : passes) rows += pass_row(pass, longest_ms);
+    return report_table(
+        "<th>Pass</th><th class='number'>Runs</th><th class='number'>Min, ms</th><th class='number'>Median, ms</th>"
+        "<th class='number'>Max, ms</th><th>Median (bar), min to max (line)</th>",
+        rows,
+        fmt::format(
+            "<tfoot><tr><td>Sum of medians</td><td></td><td></td><td class='number'>{:.3f}</td><td></td><td></td></tr>"
+            "</tfoot>\n",
+            sum_ms));
+}
+
+std::string memory_table(const std::vector<MemoryRecord>& pools) {
+    if (pools.empty()) return {};
+    std::string rows;
+    uint64_t bytes = 0;
+    for (const MemoryRecord& pool : pools) {
+        bytes += pool.bytes;
+        rows += fmt::format(
+            "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
+            "<td class='bar'>{}</td></tr>\n",
+            html_escaped(pool.name), mebibytes(pool.bytes), grouped(pool.used), grouped(pool.capacity),
+            bar_svg(0, fraction(static_cast<double>(pool.used), static_cast<double>(pool.capacity)), 1));
+    }
+    return report_table(
+        "<th>Pool</th><th class='number'>Size</th><th class='number'>Used</th><th class='number'>Capacity</th>"
+        "<th>Filled</th>",
+        rows,
+        fmt::format("<tfoot><tr><td>Sum</td><td class='number'>{}</td><td></td><td></td><td></td></tr></tfoot>\n",
+                    mebibytes(bytes)));
+}
+
+std::string light_table(const std::vector<Light>& lights) {
+    if (lights.empty()) return {};
+    std::string rows;
+    for (const Light& light : lights) {
+        rows += fmt::format("<tr><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td></tr>\n",
+                            vector_text(light.position_m), vector_text(light.intensity),
+                            light.radius_m > 0 ? fmt::format("{:.1f}", 100 * light.radius_m) : "");
+    }
+    return report_table(
+        "<th class='number'>Position, m</th><th class='number'>Intensity, RGB</th><th class='number'>Radius, cm</th>",
+        rows);
+}
+
+std::string segment_row(const SegmentRecord& segment) {
+    const SegmentReflectance& known = segment.reflectance;
+    return fmt::format(
+        "<tr><td class='number'>{}</td><td>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
+        "<td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{:.2f}</td>"
+        "</tr>\n",
+        segment.id, html_escaped(segment.name), known.kd ? vector_text(glm::dvec3(*known.kd)) : "",
+        known.gloss ? vector_text(glm::dvec3(known.gloss->ks)) : "",
+        known.gloss ? fmt::format("{:.3f}", known.gloss->alpha) : "", grouped(known.voxels),
+        grouped(known.observations), known.confidence);
+}
+
+std::string segment_table(const std::vector<SegmentRecord>& segments) {
+    if (segments.empty()) return {};
+    std::string rows;
+    for (const SegmentRecord& segment : segments) rows += segment_row(segment);
+    return report_table(
+        "<th class='number'>Segment</th><th>Name</th><th class='number'>kd</th><th class='number'>ks</th>"
+        "<th class='number'>alpha</th><th class='number'>Voxels</th><th class='number'>Observations</th>"
+        "<th class='number'>Confidence</th>",
+        rows);
+}
+
+std::string materials_missing(const RunRecord& record) {
+    if (record.materials_missing.empty()) return {};
+    return "<p>" + html_escaped(record.materials_missing) + "</p>\n";
+}
+
+/// Why the run ended before its time comes first.
+std::vector<std::string> shortfalls_of(const RunRecord& record) {
+    std::vector<std::string> all = record.shortfalls;
+    if (!record.finished && std::ranges::find(all, record.ended) == all.end()) all.insert(all.begin(), record.ended);
+    return all;
+}
+
+std::string skipped_table(const std::vector<Skipped>& skipped) {
+    if (skipped.empty()) return {};
+    std::string rows;
+    for (const Skipped& frame : skipped) {
+        rows +=
+            fmt::format("<tr><td class='number'>{}</td><td>{}</td></tr>\n", frame.index, html_escaped(frame.reason));
+    }
+    return report_table("<th class='number'>Frame</th><th>Reason</th>", rows);
+}
+
+std::string settings_text(const nlohmann::ordered_json& settings) {
+    if (settings.empty()) return {};
+    const std::string text = settings.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    return "<pre>" + html_escaped(text) + "</pre>";
+}
+
+/// A sentence that says what is shown, above it; nothing where nothing is.
+std::string explained(std::string_view sentence, const std::string& html) {
+    if (html.empty()) return {};
+    return fmt::format("<p class='quiet'>{}</p>\n{}", html_escaped(sentence), html);
+}
+
+}  // namespace
+
+std::string report_html(const RunRecord& record, std::span<const ReportPicture> pictures) {
+    const SequenceInfo& sequence = record.sequence;
+    std::string html = fmt::format(
+        "<h1>{}</h1>\n<p class='quiet'>Reconstructed by Patina {} from {} frames ({}), colour {}&times;{}, depth "
+        "{}&times;{}</p>\n",
+        html_escaped(sequence.name), html_escaped(record.version),
+        grouped(sequence.frames.value_or(record.frames.read)), html_escaped(sequence.format),
+        sequence.color.extent.width, sequence.color.extent.height, sequence.depth.extent.width,
+        sequence.depth.extent.height);
+    html += report_section("Incomplete", report_warnings(shortfalls_of(record)));
+    html += facts(record);
+    html += report_section("Warnings", report_warnings(record.warnings));
+    html +=
+        report_section("Pictures", explained("From where the colour camera was, what stands above each panel. Grey: "
+                                             "the model has no surface there.",
+                                             report_figures(pictures)));
+    html += report_section("Lights", explained("A point at distance r (m) receives intensity / r², in linear pixel "
+                                               "values: 1 is the brightest that 8 bits hold.",
+                                               light_table(record.lamps)));
+    html +=
+        report_section("Materials", materials_missing(record) +
+                                        explained("Of Ward's model, by segment: diffuse albedo kd and specular albedo "
+                                                  "ks (red, green, blue; 0 to 1), roughness alpha. Confidence is that "
+                                                  "of kd, from 0 to 1.",
+                                                  segment_table(record.segments)));
+    html += report_section("Tracking", tracking_table(record.tracking));
+    html += report_section("GPU time per pass", pass_table(record.passes));
+    html += report_section("Device memory", memory_table(record.memory));
+    html += report_section("Skipped frames", skipped_table(record.frames.skipped));
+    html += report_section("Settings", settings_text(record.settings));
+    return report_page(sequence.name, html);
+}
+
+}  // namespace patina

@@ -1,0 +1,135 @@
+#include "tools/report/run_record.h"
+
+#include "engine/core/digest.h"
+
+namespace patina {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json camera_json(const Intrinsics& camera) {
+    return {{"width", camera.extent.width},
+            {"height", camera.extent.height},
+            {"fx", camera.fx},
+            {"fy", camera.fy},
+            {"cx", camera.cx},
+            {"cy", camera.cy},
+            {"distortion", camera.distortion}};
+}
+
+Json sequence_json(const SequenceInfo& sequence) {
+    return {{"name", sequence.name},
+            {"format", sequence.format},
+            {"fps", sequence.fps},
+            {"frames", sequence.frames.value_or(0)},
+            {"color", camera_json(sequence.color)},
+            {"depth", camera_json(sequence.depth)},
+            {"max_metres", sequence.max_metres},
+            {"has_poses", sequence.has_poses}};
+}
+
+Json frames_json(const FrameLedger& frames) {
+    Json skipped = Json::array();
+    for (const Skipped& frame : frames.skipped) skipped.push_back({{"index", frame.index}, {"reason", frame.reason}});
+    return {{"read", frames.read}, {"used", frames.used}, {"skipped", std::move(skipped)}};
+}
+
+Json memory_json(const std::vector<MemoryRecord>& pools) {
+    Json result = Json::object();
+    for (const MemoryRecord& pool : pools) {
+        result[pool.name] = {{"bytes", pool.bytes}, {"used", pool.used}, {"capacity", pool.capacity}};
+    }
+    return result;
+}
+
+Json passes_json(const std::vector<PassTime>& passes) {
+    Json result = Json::object();
+    for (const PassTime& pass : passes) {
+        result[pass.name] = {
+            {"count", pass.count}, {"min_ms", pass.min_ms}, {"median_ms", pass.median_ms}, {"max_ms", pass.max_ms}};
+    }
+    return result;
+}
+
+Json gains_json(const std::vector<ValueRange>& gains) {
+    Json result = Json::object();
+    constexpr const char* kChannels[] = {"red", "green", "blue"};
+    for (size_t i = 0; i < gains.size(); ++i)
+        result[kChannels[i]] = {{"min", gains[i].min}, {"median", gains[i].median}, {"max", gains[i].max}};
+    return result;
+}
+
+Json score_json(const PictureScore& score) {
+    return {
+        {"coverage", score.coverage}, {"psnr_linear_db", score.psnr_linear_db}, {"psnr_srgb_db", score.psnr_srgb_db}};
+}
+
+Json held_out_json(const HeldOutRecord& held_out) {
+    return {{"pictures", held_out.pictures},
+            {"mean_color", score_json(held_out.mean_color)},
+            {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()}};
+}
+
+template <class Value>
+Json object_of(const std::vector<std::pair<std::string, Value>>& pairs, const char* suffix = "") {
+    Json result = Json::object();
+    for (const auto& [key, value] : pairs) result[key + suffix] = value;
+    return result;
+}
+
+std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+Json json_of(const RunRecord& record) {
+    Json run;
+    run["format"] = "patina-run";
+    run["version"] = record.version;
+    run["id"] = record.id;
+    run["finished"] = record.finished;
+    if (!record.finished) run["ended"] = record.ended;
+    run["device"] = {
+        {"name", record.device.name}, {"type", record.device.type}, {"vulkan", record.device.vulkan_version}};
+    run["driver"] = record.device.driver;
+    run["seed"] = record.seed;
+    run["settings"] = record.settings;
+    run["lights"] = record.lights;
+    run["sequence"] = sequence_json(record.sequence);
+    run["frames"] = frames_json(record.frames);
+    run["voxel_pool"] = {{"blocks_used", record.voxel_pool.blocks_used},
+                         {"blocks_capacity", record.voxel_pool.blocks_capacity},
+                         {"blocks_refused", record.voxel_pool.blocks_refused}};
+    if (const auto& pool = record.observation_pool) {
+        run["observation_pool"] = {{"records_used", pool->records_used},
+                                   {"records_capacity", pool->records_capacity},
+                                   {"records_refused", pool->records_refused},
+                                   {"blocks_refused", pool->blocks_refused}};
+    }
+    run["memory"] = memory_json(record.memory);
+    run["totals"] = object_of(record.totals);
+    if (!record.tracking.empty()) run["tracking"] = tracking_json(record.tracking);
+    if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);
+    if (record.held_out) run["held_out"] = held_out_json(*record.held_out);
+    if (record.world_offset_m != glm::dvec3(0))
+        run["world_offset_m"] = {record.world_offset_m.x, record.world_offset_m.y, record.world_offset_m.z};
+    if (!record.materials_missing.empty()) run["materials_missing"] = record.materials_missing;
+    run["shortfalls"] = record.shortfalls;
+    run["warnings"] = record.warnings;
+    run["passes"] = passes_json(record.passes);
+    run["times"] = object_of(record.times_s, "_s");
+    run["files"] = record.files;
+    return run;
+}
+
+}  // namespace
+
+std::string run_json(const RunRecord& record) { return dumped(json_of(record)) + '\n'; }
+
+std::string run_id(const RunRecord& record, uint64_t files_digest) {
+    Json what = json_of(record);
+    for (const char* key : {"id", "passes", "times"}) what.erase(key);
+    Digest digest;
+    digest.add(dumped(what));
+    digest.add(std::to_string(files_digest));
+    return digest.digits();
+}
+
+}  // namespace patina

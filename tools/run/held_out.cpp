@@ -1,0 +1,86 @@
+#include "tools/run/held_out.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "tools/report/drawing.h"
+#include "tools/report/previews.h"
+#include "tools/run/frame_dumps.h"
+
+namespace patina::tools {
+
+namespace {
+
+Image<glm::vec3> linear_of(const ColorImage& color) {
+    if (const auto* linear = std::get_if<Image<glm::vec3>>(&color)) return *linear;
+    const auto& encoded = std::get<Image<SrgbPixel>>(color);
+    Image<glm::vec3> linear(encoded.extent());
+    std::transform(encoded.pixels().begin(), encoded.pixels().end(), linear.pixels().begin(), linear_color);
+    return linear;
+}
+
+/// What a pinhole camera would have seen, each pixel the nearest of the picture's; black beyond its border.
+Image<glm::vec3> undistorted(Image<glm::vec3> picture, const Intrinsics& camera) {
+    if (!camera.distorted()) return picture;
+    Image<glm::vec3> pinhole(picture.extent());
+    for (uint32_t y = 0; y < picture.extent().height; ++y) {
+        for (uint32_t x = 0; x < picture.extent().width; ++x) {
+            const glm::dvec3 ray((x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1);
+            const glm::ivec2 source(glm::floor(project(camera, ray) + 0.5));
+            if (!picture.extent().contains(source.x, source.y)) continue;
+            pinhole.at(x, y) = picture.at(static_cast<uint32_t>(source.x), static_cast<uint32_t>(source.y));
+        }
+    }
+    return pinhole;
+}
+
+/// A model's colours as the camera would have recorded them.
+Image<glm::vec4> at_gain(Image<glm::vec4> colors, glm::vec3 gain) {
+    for (glm::vec4& pixel : colors.pixels()) pixel *= glm::vec4(gain, 1);
+    return colors;
+}
+
+std::string line_of(const PictureScore& score) {
+    return fmt::format(" {:.4f} {:.3f} {:.3f}", score.coverage, score.psnr_linear_db, score.psnr_srgb_db);
+}
+
+}  // namespace
+
+void HeldOut::keep(const Frame& frame, uint32_t order) {
+    if (every_ == 0 || frame.index % every_ != every_ - 1) return;
+    kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
+}
+
+HeldOutRecord HeldOut::compare(Pipeline& reconstruction, const SequenceInfo& info, OutputFolder& folder) const {
+    reconstruction.wait();
+    const std::span<const gpu::ColorGains> gains = reconstruction.gains();
+    std::vector<PictureScore> mean_color, reflectance;
+    std::string lines =
+        "# index, then coverage, PSNR linear and PSNR sRGB in dB of the mean colour, and of the re-rendering\n";
+    for (const Kept& kept : kept_) {
+        const ViewReadback pending =
+            reconstruction.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
+        reconstruction.wait();
+        ModelView view = pending.get();
+        const glm::vec3 gain = gains.empty() ? glm::vec3(1) : glm::vec3(gains[kept.order].gain);
+        const Image<glm::vec3> seen = undistorted(linear_of(kept.color), info.color);
+        view.color = at_gain(std::move(view.color), gain);
+        mean_color.push_back(score_picture(seen, view.color));
+        lines += std::to_string(kept.index) + line_of(mean_color.back());
+        if (view.reflectance) {
+            view.reflectance->rgb = at_gain(std::move(view.reflectance->rgb), gain);
+            reflectance.push_back(score_picture(seen, view.reflectance->rgb));
+            lines += line_of(reflectance.back());
+        }
+        lines += '\n';
+        folder.write(fmt::format("held_out/{:06}.png", kept.index),
+                     preview_png(seen, to_dump(view), {.title = fmt::format("frame {}, held out", kept.index)}));
+    }
+    folder.write("held_out/scores.txt", lines);
+    HeldOutRecord record{kept_.size(), median_of(mean_color), {}};
+    if (!reflectance.empty()) record.reflectance = median_of(reflectance);
+    return record;
+}
+
+}  // namespace patina::tools

@@ -1,0 +1,284 @@
+#include "tools/run/run.h"
+
+#include <chrono>
+#include <exception>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "engine/core/expect_path.h"
+#include "engine/core/printable.h"
+#include "engine/core/version.h"
+#include "engine/graph/plan/plan.h"
+#include "export/trajectory.h"
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/session_core.h"
+#include "reconstruction/session/shortfalls.h"
+#include "sensor/files/text_file.h"
+#include "sensor/output/apart.h"
+#include "sensor/output/output_file.h"
+#include "tools/program/console.h"
+#include "tools/program/inputs.h"
+#include "tools/program/lights_text.h"
+#include "tools/program/standard_streams.h"
+#include "tools/report/report.h"
+#include "tools/report/run_id.h"
+#include "tools/report/run_record.h"
+#include "tools/run/frame_dumps.h"
+#include "tools/run/held_out.h"
+#include "tools/run/make_record.h"
+#include "tools/run/scene_files.h"
+
+namespace patina::tools {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::filesystem::path with_extension(const std::filesystem::path& dump_graph, const char* extension) {
+    return dump_graph.string() + extension;
+}
+
+/// Told before the work starts, although the graph is written at its end. It may go to the results' folder, which need
+/// not exist yet, but not in place of a result.
+void check_dump_graph(const RunOptions& options, const std::vector<std::filesystem::path>& inputs) {
+    if (options.dump_graph.empty()) return;
+    const std::filesystem::path out = sensor::resolved(options.out);
+    for (const char* extension : {".dot", ".json"}) {
+        const std::filesystem::path file = with_extension(options.dump_graph, extension);
+        sensor::expect_apart(file, inputs);
+        const std::filesystem::path place = sensor::resolved(file);
+        const std::filesystem::path name = place.lexically_relative(out);
+        if (is_result_name(ResultKind::kRun, name))
+            throw Error("the graph cannot be written to '", file.string(), "': a result has that name");
+        if (place.parent_path() != out) expect_place_for(file);
+    }
+}
+
+void write_text(const std::filesystem::path& path, const std::string& content) {
+    sensor::OutputFile file(path);
+    sensor::write_bytes(file.partial_path(), content);
+    file.finish();
+}
+
+/// One run from source to folder. What fails after frames were fused costs itself alone: everything else is written
+/// where it still can be, the most valuable first.
+class Run {
+  public:
+    Run(const RunOptions& options, Console& console, OutputFolder& folder)
+        : options_(options),
+          console_(console),
+          folder_(folder),
+          device_(options.device),
+          fusion_(Access::vulkan(device_), options),
+          reconstruction_(fusion_.reconstruction()),
+          dumps_(folder, fusion_.info().frames, options.dump_every),
+          held_out_(options.hold_out) {}
+
+    /// Throws what stopped it before a frame was fused.
+    void fuse_all() {
+        try {
+            while (fusion_.step()) {
+                if (const Frame* frame = fusion_.fused()) after(*frame);
+            }
+            fusion_.end();
+        } catch (const Interrupted& interrupted) {
+            if (fusion_.ledger().used() == 0) throw;
+            console_.end();
+            ended_ = interrupted.what();
+            if (!options_.quiet)
+                print_error("{}: what was fused is being written; an interrupt after a second ends that too\n",
+                            printable(ended_));
+        } catch (const std::exception& error) {
+            if (fusion_.ledger().used() == 0) throw;
+            const std::string of = fusion_.info().frames ? fmt::format(" of {}", *fusion_.info().frames) : "";
+            ended_ = fmt::format("failed after {}{} frames: {}", fusion_.ledger().read(), of, reason_of(error));
+            failure_ = reason_of(error);
+        }
+        console_.end();
+        times_s_.emplace_back("frames", seconds_since(start_));
+    }
+
+    Outcome write_results() {
+        if (ended_.empty()) check_validation();
+        // All of this is on the host.
+        attempt("trajectory.txt", [&] { folder_.write("trajectory.txt", trajectory_text(fusion_.world_poses())); });
+        if (fusion_.settings().gains) attempt("gains.txt", [&] { folder_.write("gains.txt", fusion_.gains_text()); });
+        write_scene();
+        if (scene_) attempt("the last pictures", [&] { dumps_.finish(); });
+        if (options_.hold_out > 0 && ended_.empty()) {
+            if (console_.interrupt().requested()) {
+                problems_.push_back("held-out pictures were not compared: interrupted");
+            } else {
+                attempt("the comparison with held-out pictures", [&] { compare_held_out(); });
+            }
+        }
+        try {
+            write_record();
+        } catch (const std::exception& error) {
+            keep_without_record(reason_of(error));
+        }
+        place_ = folder_.path();
+        if (ended_.empty()) {
+            folder_.commit();
+        } else {
+            place_ = folder_.commit_unfinished();
+        }
+        // It may go to the results' folder.
+        if (!options_.dump_graph.empty()) attempt("the graph", [&] { write_graph(); });
+        const Outcome outcome = outcome_of_run();
+        tell(outcome);
+        if (failure_.empty()) return outcome;
+        throw Error(failure_, "; '", place_.string(), "' holds what could still be written");
+    }
+
+  private:
+    void after(const Frame& frame) {
+        if (!options_.dump_graph.empty()) {
+            const graph::CompiledFrame& compiled = reconstruction_.runner().last_frame();
+            graph_dot_ = graph::to_dot(compiled.description, compiled.plan);
+            graph_json_ = graph::to_json(compiled.description, compiled.plan);
+        }
+        held_out_.keep(frame, reconstruction_.frames() - 1);
+        dumps_.after(reconstruction_, fusion_.info(), frame);
+        if (fusion_.ledger().used() == 1) {
+            reconstruction_.wait();
+            times_s_.emplace_back("first_fused_frame", seconds_since(start_));
+        }
+    }
+
+    /// Does a part of the results; its failure is one of the run's shortfalls.
+    void attempt(const char* what, const std::function<void()>& work) {
+        try {
+            work();
+        } catch (const std::exception& error) {
+            problems_.push_back(fmt::format("{} could not be written: {}", what, reason_of(error)));
+            folder_.discard_staged();
+        }
+    }
+
+    /// The mesh; without it the run has failed, though what else there is is written.
+    void write_scene() {
+        const auto start = Clock::now();
+        try {
+            Scene scene = fusion_.scene_without_reflectance();
+            times_s_.emplace_back("surface", seconds_since(start));
+            attempt("what the surface reflects", [&] { fusion_.add_reflectance(scene); });
+            scene_.emplace(std::move(scene));
+            summary_ = scene_->write(folder_, kVersion);
+        } catch (const std::exception& error) {
+            scene_.reset();
+            folder_.discard_staged();
+            if (ended_.empty()) ended_ = fmt::format("failed after the last frame: {}", reason_of(error));
+            if (failure_.empty()) failure_ = reason_of(error);
+        }
+    }
+
+    void write_graph() const {
+        write_text(with_extension(options_.dump_graph, ".dot"), graph_dot_);
+        write_text(with_extension(options_.dump_graph, ".json"), graph_json_);
+    }
+
+    void compare_held_out() {
+        const auto start = Clock::now();
+        reconstruction_.refine_all();
+        held_out_record_ = held_out_.compare(reconstruction_, fusion_.info(), folder_);
+        times_s_.emplace_back("held_out", seconds_since(start));
+    }
+
+    void check_validation() {
+        if (const auto messages = device_.validation_messages(); !messages.empty()) {
+            throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
+        }
+    }
+
+    Outcome outcome_of_run() {
+        Outcome outcome;
+        for (std::string& shortfall : shortfalls_of(fusion_)) outcome.fall_short(std::move(shortfall));
+        if (!ended_.empty()) outcome.fall_short(ended_);
+        if (scene_ && summary_.triangles == 0)
+            outcome.fall_short("the surface is empty: from none of the frames a triangle was reconstructed");
+        if (!dumps_.problem().empty()) outcome.fall_short(dumps_.problem());
+        for (const std::string& problem : problems_) outcome.fall_short(problem);
+        return outcome;
+    }
+
+    /// report.html and run.json, which comes last.
+    void write_record() {
+        RunRecord record = make_record(options_, fusion_, summary_);
+        attempt("the count of keyframes", [&] { add_keyframes(record, fusion_); });
+        record.finished = ended_.empty();
+        record.ended = ended_;
+        record.held_out = held_out_record_;
+        if (scene_) scene_->add_to(record);
+        times_s_.emplace_back("total", seconds_since(start_));
+        record.times_s = times_s_;
+        record.shortfalls = outcome_of_run().shortfalls();
+        attempt("report.html", [&] { folder_.write("report.html", report_html(record, dumps_.previews())); });
+        record.files = folder_.files();
+        record.files.push_back("run.json");
+        record.id = run_id(record, folder_.digest());
+        attempt("the run's id in its pictures", [&] { dumps_.stamp(record.id); });
+        record.shortfalls = outcome_of_run().shortfalls();
+        folder_.write("run.json", run_json(record));
+        warnings_ = std::move(record.warnings);
+    }
+
+    /// Results without run.json cannot be put in place: they stay under another name.
+    [[noreturn]] void keep_without_record(const std::string& reason) {
+        const std::string why = failure_.empty() ? reason : failure_ + "; " + reason;
+        const std::optional<std::filesystem::path> kept = folder_.keep();
+        if (!kept) throw Error(why);
+        throw Error(why, "; '", kept->string(), "' holds what could still be written");
+    }
+
+    /// The summary; its first lines are what the results fall short of.
+    void tell(const Outcome& outcome) const {
+        if (failure_.empty()) outcome.print(options_.quiet);
+        if (options_.quiet || !failure_.empty()) return;
+        print_out("{} of {} frames, {} triangles in {}\n", fusion_.ledger().used(),
+                  fusion_.info().frames.value_or(fusion_.ledger().read()), summary_.triangles,
+                  printable(place_.string()));
+        const std::string& found_by = fusion_.illumination().found_by;
+        if (found_by != "file" && found_by != "none") print_lights(fusion_.illumination());
+        if (!fusion_.materials_missing().empty()) print_out("{}\n", printable(fusion_.materials_missing()));
+        for (const std::string& warning : warnings_) print_out("warning: {}\n", printable(warning));
+    }
+
+    const RunOptions& options_;
+    Console& console_;
+    OutputFolder& folder_;
+    Clock::time_point start_ = Clock::now();
+    Device device_;
+    SessionCore fusion_;
+    Pipeline& reconstruction_;
+    FrameDumps dumps_;
+    std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
+    GlbSummary summary_;
+    HeldOut held_out_;
+    std::optional<HeldOutRecord> held_out_record_;
+    std::vector<std::pair<std::string, double>> times_s_;
+    std::string graph_dot_, graph_json_;
+    std::string ended_;            ///< why the run ended before its time; empty where it did not
+    std::string failure_;          ///< the error that did it; empty where the user did
+    std::filesystem::path place_;  ///< where the results went
+    std::vector<std::string> problems_, warnings_;
+};
+
+}  // namespace
+
+Outcome run(const RunOptions& given) {
+    Console console(given.quiet);  // from the first file to the last, so that none is left half-written
+    RunOptions options = given;
+    options.callbacks = console.callbacks();
+    const std::vector<std::filesystem::path> inputs = inputs_of(options);
+    OutputFolder folder(options.out, inputs);
+    check_dump_graph(options, inputs);
+    Run job(options, console, folder);
+    job.fuse_all();
+    return job.write_results();
+}
+
+}  // namespace patina::tools

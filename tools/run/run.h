@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "tools/program/outcome.h"
+#include "tools/program/sequence_options.h"
+
+namespace patina::tools {
+
+/// What `patina run` was asked to do.
+struct RunOptions : SequenceOptions {
+    std::filesystem::path out;
+    uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
+    std::filesystem::path
+        dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none
+};
+
+/// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). When the user stops it, or an error does,
+/// what was fused so far is extracted and written, and run.json says how the run ended; of a device that was lost, what
+/// the host has. Such results take the place of no whole ones (OutputFolder::commit_unfinished). Returns what the
+/// results fall short of. Throws Error for whatever stopped the run, Interrupted when the user did before a frame was
+/// fused.
+Outcome run(const RunOptions& options);
+
+}  // namespace patina::tools

@@ -1,0 +1,32 @@
+#include "tools/run/scene_files.h"
+
+#include "export/materials.h"
+#include "export/scene_files.h"
+
+namespace patina::tools {
+
+GlbSummary SceneFiles::write(OutputFolder& folder, const std::string& version) const {
+    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, version);
+    folder.publish("scene.glb");
+    if (!scene_.reflectance.segments.empty())
+        folder.write("materials.json", materials_json(scene_.reflectance.segments, scene_.segment_names));
+    if (const Lighting lighting = in_recorded_world(scene_); !lighting.empty()) {
+        write_lighting(folder.stage("lights.json"), lighting);
+        folder.publish("lights.json");
+    }
+    return summary;
+}
+
+void SceneFiles::add_to(RunRecord& record) const {
+    const Lighting lighting = in_recorded_world(scene_);
+    record.lamps = lighting.lights;
+    record.ambient = lighting.ambient;
+    for (uint32_t label = 1; label < scene_.reflectance.segments.size(); ++label) {
+        const SegmentReflectance& segment = scene_.reflectance.segments[label];
+        if (segment.voxels == 0) continue;
+        const std::string name = label < scene_.segment_names.size() ? scene_.segment_names[label] : "";
+        record.segments.push_back({label, name, segment});
+    }
+}
+
+}  // namespace patina::tools

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "export/write_glb.h"
+#include "patina/scene.h"
+#include "tools/report/output_folder.h"
+#include "tools/report/run_record.h"
+
+namespace patina::tools {
+
+/// A run's scene and its files: scene.glb, and with reflectance materials.json and lights.json. Lights are in the
+/// recording's world in lights.json, in the scene's coordinates in scene.glb.
+class SceneFiles {
+  public:
+    explicit SceneFiles(Scene scene) : scene_(std::move(scene)) {}
+
+    /// Writes the files; `version`: of Patina. Throws Error as write_glb() does.
+    GlbSummary write(OutputFolder& folder, const std::string& version) const;
+
+    /// Adds lights and segments to the run's record.
+    void add_to(RunRecord& record) const;
+
+  private:
+    Scene scene_;
+};
+
+}  // namespace patina::tools

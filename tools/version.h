@@ -1,8 +1,0 @@
-#pragma once
-
-namespace patina::tools {
-
-/// Patina's version, "0.1.0".
-extern const char* const kVersion;
-
-}  // namespace patina::tools
