@@ -10,7 +10,6 @@
 
 #include "engine/core/error.h"
 #include "sensor/output/exr_stream.h"
-#include "tools/report/run_id.h"
 
 namespace patina {
 namespace {

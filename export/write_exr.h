@@ -12,6 +12,10 @@
 
 namespace patina {
 
+/// The string attribute of a run's frames/NNNNNN.exr that holds the id which `run.json` has as "id". A run's id is made
+/// of what it was given and of what it wrote, so that runs that did the same have the same, and others another.
+inline constexpr const char* kRunIdAttribute = "patina.run";
+
 /// One float channel of a picture in memory, which must outlive the list that names it.
 struct ExrChannel {
     std::string name;  ///< as in the file, "rgb.R"

@@ -15,14 +15,14 @@ foreach(WIDTH 256 128)
     # Mesa's shader cache does not tell vector widths apart, so each has its own.
     set(PATINA_ENVIRONMENT_lavapipe${WIDTH}
         VK_DRIVER_FILES=${LAVAPIPE_ICD} VK_ICD_FILENAMES=${LAVAPIPE_ICD} PATINA_DEVICE=cpu
-        LP_NATIVE_VECTOR_WIDTH=${WIDTH} MESA_SHADER_CACHE_DIR=${CMAKE_BINARY_DIR}/mesa-${WIDTH}
-        XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/cache-${WIDTH})
+        LP_NATIVE_VECTOR_WIDTH=${WIDTH} MESA_SHADER_CACHE_DIR=${patina_BINARY_DIR}/mesa-${WIDTH}
+        XDG_CACHE_HOME=${patina_BINARY_DIR}/cache-${WIDTH})
 endforeach()
 if(PATINA_SWIFTSHADER_ICD)
     list(APPEND PATINA_DRIVERS swiftshader)
     set(PATINA_ENVIRONMENT_swiftshader
         VK_DRIVER_FILES=${PATINA_SWIFTSHADER_ICD} VK_ICD_FILENAMES=${PATINA_SWIFTSHADER_ICD} PATINA_DEVICE=cpu
-        XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/cache-swiftshader)
+        XDG_CACHE_HOME=${patina_BINARY_DIR}/cache-swiftshader)
 else()
     add_test(NAME gpu.swiftshader COMMAND ${CMAKE_COMMAND} -E echo "Skipped: PATINA_SWIFTSHADER_ICD is not set")
     set_tests_properties(gpu.swiftshader PROPERTIES SKIP_REGULAR_EXPRESSION "Skipped: ")
@@ -43,7 +43,7 @@ set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRun
 
 # Registers each suite of a GoogleTest program as "PREFIX.Suite", with a label and what follows it as environment.
 function(patina_test_suites TARGET PREFIX LABEL)
-    set(PROGRAM ${CMAKE_BINARY_DIR}/${TARGET})
+    set(PROGRAM ${patina_BINARY_DIR}/${TARGET})
     set(ENVIRONMENT ${ARGN})
     set(LEFT_OUT "^$")
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)

@@ -12,11 +12,11 @@ namespace patina {
 struct DeviceChoice {
     /// An index ("0"), a part of a name ("llvmpipe", any case), or a type ("discrete", "integrated", "virtual", "cpu");
     /// empty takes the fastest real GPU, else a software device.
-    std::string selector;
+    std::string selector{};
     /// Turns on the Khronos validation layer with synchronization validation; every message is kept. Slow.
     bool validation = false;
     /// Folder in which compiled pipelines are kept from run to run; empty keeps none.
-    std::filesystem::path pipeline_cache_folder;
+    std::filesystem::path pipeline_cache_folder{};
     /// Bytes of device memory that pools may grow into, in all; 0: as much as there is.
     uint64_t memory_limit = 0;
 };

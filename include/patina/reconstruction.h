@@ -24,7 +24,7 @@ enum class TrackingState : uint8_t { kTracking, kWeak, kLost };
 struct FrameResult {
     bool fused = false;
     TrackingState state = TrackingState::kTracking;  ///< kTracking where poses are given
-    std::string reason;                              ///< why it was not fused, in a few words; empty where it was
+    std::string reason{};                            ///< why it was not fused, in a few words; empty where it was
     RigidTransform world_from_depth{1.0};            ///< of a lost frame: where it was expected
 };
 

@@ -10,9 +10,9 @@
 
 #include <glm/glm.hpp>
 
-#include "patina/image.h"
+#include "engine/core/srgb.h"
 #include "patina/frame.h"
-#include "tools/report/drawing.h"
+#include "patina/image.h"
 
 namespace patina {
 

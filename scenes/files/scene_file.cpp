@@ -6,17 +6,19 @@
 #include <utility>
 #include <vector>
 
+#include <dlfcn.h>
+
 #include "engine/core/did_you_mean.h"
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
-#include "sensor/files/json_file.h"
+#include "scenes/description/vary.h"
 #include "scenes/files/readers/camera.h"
 #include "scenes/files/readers/environment.h"
 #include "scenes/files/readers/lights.h"
 #include "scenes/files/readers/materials.h"
 #include "scenes/files/readers/objects.h"
 #include "scenes/files/readers/recording.h"
-#include "scenes/description/vary.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 namespace {
@@ -24,6 +26,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".json";
+
+/// The program or library that this code is in; empty where that is not known.
+fs::path this_binary() {
+    Dl_info info{};
+    std::error_code none;
+    if (dladdr(reinterpret_cast<void*>(&assets_folder), &info) != 0 && info.dli_fname) {
+        const fs::path file = fs::canonical(info.dli_fname, none);
+        if (!none && file.extension() != "") return file;  // a library; a program's name may be relative
+    }
+    return fs::read_symlink("/proc/self/exe", none);
+}
 
 fs::path scenes_folder() { return assets_folder() / "scenes"; }
 
@@ -80,7 +93,10 @@ std::optional<std::string> scene_name(const std::string& sequence) {
 
 std::filesystem::path assets_folder() {
     const char* assets = std::getenv("PATINA_ASSETS");
-    return assets ? assets : PATINA_ASSETS_FOLDER;
+    if (assets) return assets;
+    const fs::path installed = this_binary().parent_path().parent_path() / "share/patina/assets";
+    std::error_code none;
+    return fs::is_directory(installed, none) ? installed : fs::path(PATINA_ASSETS_FOLDER);
 }
 
 std::string scene_names() {

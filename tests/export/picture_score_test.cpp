@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "engine/core/srgb.h"
 #include "tools/report/drawing.h"
 
 namespace patina {

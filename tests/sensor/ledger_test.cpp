@@ -59,5 +59,15 @@ TEST(Ledger, NoticesThatOneFrameStandsInForAnother) {
     EXPECT_EQ(ledger.discrepancy(four_frames()), "test: frame 1 was used or skipped 2 times instead of once");
 }
 
+TEST(Ledger, OfASourceWithoutALengthWhatWasReadIsAll) {
+    SequenceInfo live = test_info();
+    live.frames.reset();
+    Ledger ledger = with_frames_0_to(3);
+    for (uint32_t i = 0; i < 3; ++i) ledger.use(i);
+    EXPECT_EQ(ledger.discrepancy(live), std::nullopt);
+    ledger.use(1);
+    EXPECT_NE(ledger.discrepancy(live), std::nullopt);
+}
+
 }  // namespace
 }  // namespace patina::sensor

@@ -19,8 +19,6 @@ uint8_t to_byte(float value) {
 
 SrgbPixel to_pixel(glm::vec3 v) { return {to_byte(v.r), to_byte(v.g), to_byte(v.b)}; }
 
-float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
-
 /// IEC 61966-2-1, 0..1 to 0..1; values beyond are left to to_byte().
 float srgb_from_linear(float v) { return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f; }
 
@@ -49,11 +47,6 @@ cv::Mat mat_of(const Drawing& drawing) {
 
 SrgbPixel color_pixel(glm::vec3 linear) {
     return to_pixel({srgb_from_linear(linear.r), srgb_from_linear(linear.g), srgb_from_linear(linear.b)});
-}
-
-glm::vec3 linear_color(SrgbPixel encoded) {
-    const glm::vec3 v = glm::vec3(encoded) / 255.0f;
-    return {linear_from_srgb(v.r), linear_from_srgb(v.g), linear_from_srgb(v.b)};
 }
 
 SrgbPixel normal_pixel(glm::vec3 normal) { return to_pixel(normal * 0.5f + 0.5f); }

@@ -19,9 +19,6 @@ inline constexpr SrgbPixel kNoValue{56, 56, 56};
 /// Linear radiance or albedo, encoded for sRGB (IEC 61966-2-1); what lies outside 0..1 is clipped, NaN is black.
 SrgbPixel color_pixel(glm::vec3 linear);
 
-/// The linear colour of an sRGB-encoded pixel.
-glm::vec3 linear_color(SrgbPixel encoded);
-
 /// A unit normal as n / 2 + 1/2.
 SrgbPixel normal_pixel(glm::vec3 normal);
 

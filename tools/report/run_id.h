@@ -3,11 +3,9 @@
 #include <filesystem>
 #include <string>
 
-namespace patina {
+#include "export/write_exr.h"
 
-/// The string attribute of a run's frames/NNNNNN.exr that holds the id which `run.json` has as "id". A run's id is made
-/// of what it was given and of what it wrote, so that runs that did the same have the same, and others another.
-inline constexpr const char* kRunIdAttribute = "patina.run";
+namespace patina {
 
 /// Stands in the files of a run until its id is known; as long as one.
 inline const std::string kRunIdPending(16, '0');

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/srgb.h"
 #include "tools/report/drawing.h"
 #include "tools/report/previews.h"
 #include "tools/run/frame_dumps.h"
