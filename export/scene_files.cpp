@@ -49,20 +49,20 @@ void Scene::save_glb(const std::filesystem::path& file) const {
 }
 
 void Scene::save(const std::filesystem::path& folder) const {
-    std::filesystem::create_directories(folder);
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) throw Error("the folder '", folder.string(), "' cannot be made: ", failure.message());
     save_glb(folder / "scene.glb");
     std::vector<TimedPose> poses = trajectory;
     for (TimedPose& pose : poses) pose.world_from_camera[3] += glm::dvec4(world_offset_m, 0);
-    put(folder / "trajectory.txt",
-        [&](const auto& partial) { sensor::write_bytes(partial, trajectory_text(poses)); });
+    put(folder / "trajectory.txt", [&](const auto& partial) { sensor::write_bytes(partial, trajectory_text(poses)); });
     if (!reflectance.segments.empty()) {
         put(folder / "materials.json", [this](const auto& partial) {
             sensor::write_bytes(partial, materials_json(reflectance.segments, segment_names));
         });
     }
     if (!lighting.empty())
-        put(folder / "lights.json",
-            [this](const auto& partial) { write_lighting(partial, in_recorded_world(*this)); });
+        put(folder / "lights.json", [this](const auto& partial) { write_lighting(partial, in_recorded_world(*this)); });
 }
 
 }  // namespace patina

@@ -18,6 +18,13 @@ bool same_place(const PointLight& a, const PointLight& b) {
 
 }  // namespace
 
+std::vector<PointLight> point_lights(std::span<const Light> lights) {
+    std::vector<PointLight> lamps;
+    for (const Light& light : lights)
+        lamps.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
+    return lamps;
+}
+
 void Lights::set(std::span<const PointLight> lights, glm::vec3 ambient) {
     if (lights.size() > gpu::kMaxPointLights) {
         throw Error("there are ", lights.size(), " lights, at most ", gpu::kMaxPointLights, " can be used");

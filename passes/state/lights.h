@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/graph/frame_graph.h"
+#include "patina/lighting.h"
 #include "shared/lighting/lights.h"
 
 namespace patina {
@@ -19,6 +20,9 @@ struct PointLight {
 
     bool operator==(const PointLight&) const = default;
 };
+
+/// Lamps as they are computed with.
+std::vector<PointLight> point_lights(std::span<const Light> lights);
 
 /// The lights of the room: at most gpu::kMaxPointLights point lights and a constant ambient term. What is computed with
 /// them keeps the version it was computed with.

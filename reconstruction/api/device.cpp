@@ -8,11 +8,7 @@ struct Device::State {
     vulkan::Device device;
 };
 
-Device::Device(const DeviceChoice& choice)
-    : state_(new State{vulkan::Device({.selector = choice.selector,
-                                       .validation = choice.validation,
-                                       .pipeline_cache_folder = choice.pipeline_cache_folder,
-                                       .memory_limit = choice.memory_limit})}) {}
+Device::Device(const DeviceChoice& choice) : state_(new State{vulkan::Device(Access::options(choice))}) {}
 
 Device::~Device() = default;
 
@@ -24,6 +20,13 @@ std::vector<std::string> device_names() {
     std::vector<std::string> names;
     for (const vulkan::DeviceReport& device : vulkan::list_devices()) names.push_back(device.caps.name);
     return names;
+}
+
+vulkan::DeviceOptions Access::options(const DeviceChoice& choice) {
+    return {.selector = choice.selector,
+            .validation = choice.validation,
+            .pipeline_cache_folder = choice.pipeline_cache_folder,
+            .memory_limit = choice.memory_limit};
 }
 
 vulkan::Device& Access::vulkan(Device& device) { return device.state_->device; }

@@ -38,14 +38,6 @@ ReconstructionSettings with_light(ReconstructionSettings settings, const Lightin
     return settings;
 }
 
-std::vector<PointLight> lamps_of(const Lighting& lighting) {
-    std::vector<PointLight> lamps;
-    for (const Light& light : lighting.lights)
-        lamps.push_back(
-            {glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
-    return lamps;
-}
-
 }  // namespace
 
 struct Reconstruction::State {
@@ -55,9 +47,9 @@ struct Reconstruction::State {
 };
 
 Reconstruction::Reconstruction(Device& device, const Settings& settings, const Lighting& lighting)
-    : state_(new State{
-          Pipeline(Access::vulkan(device), with_light(Access::values(settings), lighting)), lighting, {}}) {
-    state_->pipeline.set_lights(lamps_of(lighting), glm::vec3(lighting.ambient));
+    : state_(
+          new State{Pipeline(Access::vulkan(device), with_light(Access::values(settings), lighting)), lighting, {}}) {
+    state_->pipeline.set_lights(point_lights(lighting.lights), glm::vec3(lighting.ambient));
 }
 
 Reconstruction::~Reconstruction() = default;

@@ -25,11 +25,7 @@ bool Session::step() { return state_->core.step(); }
 const std::optional<FrameResult>& Session::last() const { return state_->core.last(); }
 const SequenceInfo& Session::info() const { return state_->core.info(); }
 
-Lighting Session::lighting() const {
-    Lighting lighting = lighting_of(state_->core.illumination());
-    for (Light& light : lighting.lights) light.position_m -= state_->core.world_offset_m();
-    return lighting;
-}
+Lighting Session::lighting() const { return state_->core.lighting(); }
 
 PendingView Session::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
     return Access::pending(state_->core.reconstruction().view(camera, world_from_camera));

@@ -57,10 +57,9 @@ void check_light(const SessionOptions& options, const SessionLight& light) {
         fail_without_lights(options, fmt::format("{}", fmt::join(light.shortfalls, "; ")));
 }
 
-}  // namespace
-
-ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info,
-                                   const Illumination& light,
+/// With light, reflectance is estimated; without, there is nothing to estimate it from. Ambient light alone shows
+/// nothing of gloss.
+ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info, const Illumination& light,
                                    std::optional<NetworkDescription> network) {
     ReconstructionSettings settings = Access::values(options.settings);
     if (options.seed) settings.seed = *options.seed;
@@ -93,6 +92,8 @@ ReconstructionSettings settings_of(const SessionOptions& options, const Sequence
     }
     return settings;
 }
+
+}  // namespace
 
 std::string full_pool_warning(const PoolState& pool) {
     const char* reason = "";
@@ -129,8 +130,8 @@ void SessionCore::open(std::unique_ptr<Source> given) {
     } else {
         auto recording = sensor::open_sequence(options_.sequence, options_.format);
         expect_poses(options_, *recording);
-        auto ahead = std::make_unique<sensor::LookAheadSource>(
-            std::make_unique<sensor::PrefetchSource>(std::move(recording)));
+        auto ahead =
+            std::make_unique<sensor::LookAheadSource>(std::make_unique<sensor::PrefetchSource>(std::move(recording)));
         const Preflight seen = look_ahead(*ahead, options_);
         world_offset_m_ = seen.world_offset_m;
         for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
@@ -178,21 +179,22 @@ bool SessionCore::step() {
     } else {
         fuse(std::get<Frame>(*std::move(reading)));
     }
-    report_full_pools();
-    report(options_.callbacks, {.task = "frames",
-                                .done = ledger_.read(),
-                                .total = info_.frames,
-                                .detail = fmt::format("{} blocks", blocks_used())});
+    report_progress();
     return true;
 }
 
-void SessionCore::report_full_pools() {
+void SessionCore::report_progress() {
     const Statistics statistics = reconstruction_->statistics();
     for (const PoolState& pool : statistics.pools) {
         if (!pool.is_full() || pool.limit == PoolLimit::kNone || !full_pools_.insert(pool.name).second) continue;
         report(options_.callbacks,
                "warning: " + full_pool_warning(pool) + "; what does not fit is left out from here on");
     }
+    report(options_.callbacks,
+           {.task = "frames",
+            .done = ledger_.read(),
+            .total = info_.frames,
+            .detail = fmt::format("{} blocks", statistics.map.capacity - statistics.map.free_blocks)});
 }
 
 void SessionCore::end() {
@@ -204,9 +206,8 @@ void SessionCore::end() {
 void SessionCore::expect_frames() const {
     if (ledger_.used() > 0) return;
     throw Error("no frame of '", options_.sequence.empty() ? info_.name : options_.sequence, "' could be used; ",
-                ledger_.skipped().empty()
-                    ? "the source ended before its first one"
-                    : "the first was skipped because: " + ledger_.skipped().front().reason);
+                ledger_.skipped().empty() ? "the source ended before its first one"
+                                          : "the first was skipped because: " + ledger_.skipped().front().reason);
 }
 
 void SessionCore::skip(uint32_t index, std::string reason) {
@@ -215,7 +216,8 @@ void SessionCore::skip(uint32_t index, std::string reason) {
 }
 
 void SessionCore::fuse(Frame frame) {
-    if (!frame.world_from_camera && !tracks()) return skip(frame.index, fmt::format("frame {} has no pose", frame.index));
+    if (!frame.world_from_camera && !tracks())
+        return skip(frame.index, fmt::format("frame {} has no pose", frame.index));
     RgbdFrame rgbd = to_rgbd(info_, frame);
     Image<uint16_t> labels;
     if (options_.labels == Labels::kTruth) {
@@ -304,17 +306,17 @@ std::vector<PoolState> SessionCore::pools() {
     return reconstruction_->statistics().pools;
 }
 
-uint32_t SessionCore::blocks_used() {
-    const gpu::MapCounters counters = reconstruction_->statistics().map;
-    return counters.capacity - counters.free_blocks;
+Lighting SessionCore::lighting() const {
+    Lighting lighting = lighting_of(illumination_);
+    for (Light& light : lighting.lights) light.position_m -= world_offset_m_;
+    return lighting;
 }
 
 Scene SessionCore::scene_without_reflectance() {
     Scene scene;
     scene.name = info_.name;
     scene.mesh = reconstruction_->extract_surface();
-    scene.lighting = lighting_of(illumination_);
-    for (Light& light : scene.lighting.lights) light.position_m -= world_offset_m_;
+    scene.lighting = lighting();
     scene.trajectory = poses_;
     scene.world_offset_m = world_offset_m_;
     return scene;

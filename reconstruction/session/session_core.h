@@ -32,8 +32,8 @@ class SessionCore {
     /// caller stops it. The device must outlive this.
     SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source = nullptr);
 
-    /// Takes one reading from the source: fuses it, or notes why not. False at the source's end. Throws Interrupted when
-    /// the caller stops it; the device has finished then.
+    /// Takes one reading from the source: fuses it, or notes why not. False at the source's end. Throws Interrupted
+    /// when the caller stops it; the device has finished then.
     bool step();
 
     /// Waits for the device. Throws Error when no frame could be used, or the source yielded another number of frames
@@ -57,6 +57,7 @@ class SessionCore {
     const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
     const std::vector<PointLight>& lights() const { return lights_; }
     const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
+    Lighting lighting() const;                                          ///< the same, in the scene's world
     /// Why materials are not all that they could be, and what to give; empty where nothing is missing.
     const std::string& materials_missing() const { return materials_missing_; }
     /// What the search for lights, or what was asked of materials without any, fell short of.
@@ -71,7 +72,6 @@ class SessionCore {
     std::vector<TimedPose> world_poses() const;                     ///< the same in the recording's world
     /// The colour gains of the frames that were fused, as lines "index red green blue"; complete after end().
     std::string gains_text();
-    uint32_t blocks_used();
     /// How full the pools are, and what keeps them from growing; waits. Of a device that was lost what the host knows.
     std::vector<PoolState> pools();
     /// Says that surfaces are left out that fusion.max_depth_m and the sequence would have, where that is so.
@@ -93,7 +93,7 @@ class SessionCore {
     void fuse(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);
-    void report_full_pools();
+    void report_progress();
 
     vulkan::Device& device_;  // outlives the source, which may compute on it
     SessionOptions options_;
@@ -116,10 +116,5 @@ class SessionCore {
     std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
     std::set<std::string> full_pools_;           ///< those that were reported
 };
-
-/// The settings of a pipeline for these options: with light, reflectance is estimated; without, there is nothing to
-/// estimate it from. Ambient light alone shows nothing of gloss.
-ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info, const Illumination& light,
-                                   std::optional<NetworkDescription> network);
 
 }  // namespace patina

@@ -54,14 +54,9 @@ ReconstructionSettings all_stages() {
 }
 
 Work prepare(const Options& options, const Conditions& conditions) {
-    Work work{load({"synthetic:" + options.scene, {}, conditions.extent, conditions.warmup + conditions.frames},
-                   conditions.device),
-              {},
-              all_stages()};
-    for (const auto& light : scenes::load_scene(options.scene).lights)
-        work.lights.push_back(
-            {glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
-    return work;
+    return {load({"synthetic:" + options.scene, {}, conditions.extent, conditions.warmup + conditions.frames},
+                 conditions.device),
+            point_lights(scenes::load_scene(options.scene).lights), all_stages()};
 }
 
 float sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0f); }

@@ -1,11 +1,11 @@
-#include <cstdio>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "sensor/files/text_file.h"
+#include "sensor/output/output_file.h"
 #include "tools/bench/subjects.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
@@ -75,13 +75,18 @@ std::string help_on_defaults(const bench::Defaults& defaults) {
     return list.empty() ? shared : shared + " Defaults here: " + CLI::detail::join(list, ", ") + ".";
 }
 
-void write(const bench::Report& report, const std::string& json) {
+/// Measures and prints. A file that cannot be written is an error before the work.
+void measure(const AddedSubject& chosen, const BenchArguments& arguments) {
+    const bench::Conditions conditions = arguments.conditions(chosen.subject);
+    const bool to_file = !arguments.json.empty() && arguments.json != kStandardOutput;
+    std::optional<sensor::OutputFile> out;
+    if (to_file) out.emplace(arguments.json);
+    const bench::Report report = chosen.measure(conditions);
     const std::string figures = report.json.dump(2) + '\n';
-    std::fputs(json == kStandardOutput ? figures.c_str() : report.text.c_str(), stdout);
-    if (json.empty() || json == kStandardOutput) return;
-    std::ofstream out(json);
-    out << figures;
-    if (!out.flush()) throw Error("the file '", json, "' cannot be written");
+    print_out("{}", arguments.json == kStandardOutput ? figures : report.text);
+    if (!out) return;
+    sensor::write_bytes(out->partial_path(), figures);
+    out->finish();
 }
 
 }  // namespace
@@ -111,8 +116,7 @@ void add_bench(CLI::App& app) {
             *chosen = added;
         });
     }
-    command->callback(
-        [arguments, chosen] { write(chosen->measure(arguments->conditions(chosen->subject)), arguments->json); });
+    command->callback([arguments, chosen] { measure(*chosen, *arguments); });
 }
 
 }  // namespace patina::tools

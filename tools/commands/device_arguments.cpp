@@ -1,5 +1,6 @@
 #include <cstdlib>
 
+#include "reconstruction/api/access.h"
 #include "tools/commands/commands.h"
 
 namespace patina::tools {
@@ -34,14 +35,6 @@ DeviceChoice DeviceArguments::choice() const {
             .memory_limit = memory_mib << 20};
 }
 
-vulkan::DeviceOptions DeviceArguments::options() const {
-    const DeviceChoice chosen = choice();
-    vulkan::DeviceOptions options;
-    options.selector = chosen.selector;
-    options.validation = chosen.validation;
-    options.memory_limit = chosen.memory_limit;
-    options.pipeline_cache_folder = chosen.pipeline_cache_folder;
-    return options;
-}
+vulkan::DeviceOptions DeviceArguments::options() const { return Access::options(choice()); }
 
 }  // namespace patina::tools

@@ -30,8 +30,8 @@ std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}
 std::string facts(const RunRecord& record) {
     const FrameLedger& frames = record.frames;
     const VoxelPoolRecord& pool = record.voxel_pool;
-    std::string html = report_fact("Frames used", fmt::format("{} of {}", grouped(frames.used),
-                                                              grouped(record.sequence.frames.value_or(frames.read))));
+    std::string html = report_fact(
+        "Frames used", fmt::format("{} of {}", grouped(frames.used), grouped(record.sequence.frames.value_or(0))));
     html += report_fact("Frames skipped", grouped(frames.skipped.size()));
     html +=
         report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
@@ -180,10 +180,9 @@ std::string report_html(const RunRecord& record, std::span<const ReportPicture> 
     std::string html = fmt::format(
         "<h1>{}</h1>\n<p class='quiet'>Reconstructed by Patina {} from {} frames ({}), colour {}&times;{}, depth "
         "{}&times;{}</p>\n",
-        html_escaped(sequence.name), html_escaped(record.version),
-        grouped(sequence.frames.value_or(record.frames.read)), html_escaped(sequence.format),
-        sequence.color.extent.width, sequence.color.extent.height, sequence.depth.extent.width,
-        sequence.depth.extent.height);
+        html_escaped(sequence.name), html_escaped(record.version), grouped(sequence.frames.value_or(0)),
+        html_escaped(sequence.format), sequence.color.extent.width, sequence.color.extent.height,
+        sequence.depth.extent.width, sequence.depth.extent.height);
     html += report_section("Incomplete", report_warnings(shortfalls_of(record)));
     html += facts(record);
     html += report_section("Warnings", report_warnings(record.warnings));

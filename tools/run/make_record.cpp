@@ -103,6 +103,7 @@ RunRecord make_record(const RunOptions& options, SessionCore& fusion, const GlbS
     record.settings = settings_of(options, fusion.settings());
     record.lights = lights_json(fusion.illumination());
     record.sequence = fusion.info();
+    if (!record.sequence.frames) record.sequence.frames = fusion.ledger().read();
     record.frames = {fusion.ledger().read(), fusion.ledger().used(), fusion.ledger().skipped()};
     record.world_offset_m = fusion.world_offset_m();
     add_pools(record, fusion);

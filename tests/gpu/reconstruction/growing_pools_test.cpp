@@ -23,8 +23,7 @@ struct SmallCubes {
         scenes::SyntheticSource source(device, std::move(scene), {.frames = count});
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
-        for (const Light& light : source.scene().lights)
-            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), float(light.radius_m)});
+        lights = point_lights(source.scene().lights);
     }
 
     SequenceInfo info;

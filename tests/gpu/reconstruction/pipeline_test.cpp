@@ -80,8 +80,7 @@ struct LabelledCubes {
             labels.push_back(source.truth().labels);
             if (source.truth().seen) seen = *source.truth().seen;  // of the last frame in the end
         }
-        for (const Light& light : source.scene().lights)
-            lights.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), float(light.radius_m)});
+        lights = point_lights(source.scene().lights);
         materials = scenes::materials_of(source.scene());
     }
 

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "sensor/pose.h"
+#include "tests/export/temporary_folder.h"
+
 namespace patina {
 namespace {
 
@@ -95,6 +98,25 @@ TEST_F(SessionTest, GivenLightMakesMaterials) {
     EXPECT_NEAR(view.position_m.at(32, 24).w, 1, 0.003f);
     // What the camera saw is what the model reflects.
     EXPECT_NEAR(view.reflectance->rgb.at(32, 24).g, 0.2159f, 0.02f);
+}
+
+TEST_F(SessionTest, ASceneIsSavedWithAllItsFiles) {
+    const test::TemporaryFolder folder;
+    SessionOptions options;
+    options.lighting =
+        Lighting{.lights = {{glm::dvec3(0, 0, 0.25), glm::dvec3(2), 0.0625}}, .ambient = glm::dvec3(0.5)};
+    Session session(device_, std::make_unique<LiveWall>(), options);
+    while (session.step()) continue;
+    const Scene scene = session.finish();
+    scene.save(folder / "new/scene");
+    const Lighting saved = read_lighting(folder / "new/scene/lights.json");
+    EXPECT_EQ(saved.lights, scene.lighting.lights);
+    EXPECT_EQ(saved.ambient, scene.lighting.ambient);
+    EXPECT_EQ(sensor::read_trajectory(folder / "new/scene/trajectory.txt").size(), 4u);
+    EXPECT_TRUE(std::filesystem::exists(folder / "new/scene/materials.json"));
+    EXPECT_EQ(test::bytes_of(folder / "new/scene/scene.glb").substr(0, 4), "glTF");
+    EXPECT_THAT([&] { scene.save(folder / "new/scene/scene.glb/inside"); },
+                ThrowsMessage<Error>(HasSubstr("cannot be made")));
 }
 
 TEST_F(SessionTest, WhoeverStopsItKeepsWhatWasFused) {
