@@ -1,5 +1,7 @@
 #include "reconstruction/frame_context.h"
 
+#include <cmath>
+
 #include "engine/core/error.h"
 #include "engine/core/shader_camera.h"
 #include "passes/input/convert_color.h"
@@ -60,6 +62,16 @@ void check_frame(const RgbdFrame& frame, uint32_t number) {
     // Readers orthonormalise poses; what is left is rounding.
     const double defect = rotation_defect(frame.world_from_depth);
     if (!(defect < 1e-3)) throw Error("the pose of frame ", number, " is not rigid: its rotation is off by ", defect);
+}
+
+void check_view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    const bool finite = std::isfinite(camera.fx + camera.fy + camera.cx + camera.cy);
+    if (camera.extent.area() == 0 || !finite || camera.fx <= 0 || camera.fy <= 0) {
+        throw Error("the view's camera is not usable: ", camera.extent, " pixels, fx ", camera.fx, ", fy ", camera.fy,
+                    ", cx ", camera.cx, ", cy ", camera.cy);
+    }
+    const double defect = rotation_defect(world_from_camera);
+    if (!(defect < 1e-3)) throw Error("the view's pose is not rigid: its rotation is off by ", defect);
 }
 
 }  // namespace patina

@@ -60,4 +60,8 @@ FrameContext make_frame_context(const RgbdFrame& frame, const FrameHistory& befo
 /// its pose is not rigid.
 void check_frame(const RgbdFrame& frame, uint32_t number);
 
+/// Throws Error when a view's camera has no pixels or no focal length, or its
+/// pose is not rigid.
+void check_view(const Intrinsics& camera, const RigidTransform& world_from_camera);
+
 }  // namespace patina

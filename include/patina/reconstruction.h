@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -88,23 +89,70 @@ class PendingView {
     std::unique_ptr<State> state_;
 };
 
+/// Where segments come from.
+enum class Labels {
+    kGeometry,  ///< found
+    kOff,       ///< there are none
+    kTruth      ///< the sequence's own (truth/labels), or each frame's (RgbdFrame::labels)
+};
+
+/// Where the specular materials of segments come from.
+enum class Materials {
+    kAuto,     ///< kBoth where there is a network and a lamp, else kFit; without a lamp kOff
+    kFit,      ///< Ward's model, fitted to the observations
+    kNetwork,  ///< the network
+    kBoth,     ///< the network where observations do not suffice
+    kOff,      ///< all is diffuse
+    kTruth     ///< truth/materials.json of the sequence, by label; for sessions alone
+};
+
+/// Where the frames' poses come from.
+enum class Poses {
+    kAuto,   ///< given where the source has any, else tracked
+    kGiven,  ///< by the source
+    kTrack,  ///< by tracking; of given ones the first alone is used
+    kPrior   ///< by tracking that starts from the given motion from frame to frame
+};
+
+/// Whether each frame's colours are brought to the first one's exposure and white balance.
+enum class Gains {
+    kAuto,  ///< where the source does not know the exposure
+    kOn,
+    kOff
+};
+
+/// What a reconstruction is made with. The choices are a session's; what is left open is decided once, when it is made.
+struct ReconstructionOptions {
+    Lighting lighting{};                ///< without light there are geometry, colours and segments, but no materials
+    Labels labels = Labels::kGeometry;  ///< kOff saves the time of segments; materials are diffuse alone then
+    Materials materials = Materials::kAuto;
+    Poses poses = Poses::kAuto;       ///< kAuto: given by each frame, unless a setting of tracking is set
+    Gains gains = Gains::kAuto;       ///< kAuto: colours are taken as they are, unless a setting of gains is set
+    std::filesystem::path network{};  ///< weights; empty: those that ship with Patina
+    std::optional<uint64_t> seed{};   ///< of everything that is drawn at random; empty: the fixed ones
+    Settings settings{};
+};
+
 /// Fuses RGB-D frames into a volume with materials, and extracts the scene from it. Frames are submitted without waiting
 /// for the device, two in flight. One thread. Whoever has a source rather than frames uses Session.
 class Reconstruction {
   public:
-    /// Poses are tracked where `settings` has any setting of tracking, else each frame brings its own. Without light
-    /// there is no reflectance. Throws Error for settings that cannot be met, or lack of memory. The device must outlive
-    /// this.
-    explicit Reconstruction(Device& device, const Settings& settings = {}, const Lighting& lighting = {});
+    /// With light, segments and their materials are found. Throws Error for choices or settings that cannot be met, a
+    /// network that cannot be read, or lack of memory. The device must outlive this.
+    explicit Reconstruction(Device& device, const ReconstructionOptions& options = {});
     ~Reconstruction();
     Reconstruction(const Reconstruction&) = delete;
     Reconstruction& operator=(const Reconstruction&) = delete;
 
+    /// Whether frames' poses are tracked; else each frame brings its own.
+    bool tracks() const;
+
     /// Fuses a frame; the first one places the volume around its camera. Its pixels are not needed afterwards. Throws
-    /// Error when a picture is not its camera's size, or the device was lost.
+    /// Error when a picture is not its camera's size, a pose is not rigid, or the device was lost.
     FrameResult add(const RgbdFrame& frame);
 
     /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
+    /// Throws Error for a camera without pixels or focal length, or a pose that is not rigid.
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
     /// Fuses what waits to be, and waits for the device.

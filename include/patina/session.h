@@ -40,38 +40,6 @@ struct LightsFromMain {};
 using LightingChoice =
     std::variant<LightsBeside, NoLights, LightsFromFile, LightsFromSequence, LightsFromMain, Lighting>;
 
-/// Where segments come from.
-enum class Labels {
-    kGeometry,  ///< found
-    kOff,       ///< there are none
-    kTruth      ///< the sequence's own (truth/labels)
-};
-
-/// Where the specular materials of segments come from.
-enum class Materials {
-    kAuto,     ///< kBoth where there is a network and a lamp, else kFit; without a lamp kOff
-    kFit,      ///< Ward's model, fitted to the observations
-    kNetwork,  ///< the network
-    kBoth,     ///< the network where observations do not suffice
-    kOff,      ///< all is diffuse
-    kTruth     ///< truth/materials.json of the sequence, by label
-};
-
-/// Where the frames' poses come from.
-enum class Poses {
-    kAuto,   ///< given where the source has any, else tracked
-    kGiven,  ///< by the source
-    kTrack,  ///< by tracking; of given ones the first alone is used
-    kPrior   ///< by tracking that starts from the given motion from frame to frame
-};
-
-/// Whether each frame's colours are brought to the first one's exposure and white balance.
-enum class Gains {
-    kAuto,  ///< where the source does not know the exposure
-    kOn,
-    kOff
-};
-
 /// How far a session is with one of its tasks.
 struct SessionProgress {
     std::string_view task;          ///< "frames", "lamps", "lights"
@@ -130,7 +98,7 @@ class Session {
     const SequenceInfo& info() const;
     Lighting lighting() const;  ///< those in use, in the scene's world
 
-    /// Casts the model into a camera, as Reconstruction::view() does.
+    /// Casts the model into a camera, as Reconstruction::view() does, with the same errors.
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
     void wait();
 

@@ -5,7 +5,9 @@
 
 #include "reconstruction/api/access.h"
 #include "reconstruction/api/statistics.h"
+#include "reconstruction/frame_context.h"
 #include "reconstruction/pipeline.h"
+#include "reconstruction/session/choose_settings.h"
 
 namespace patina {
 
@@ -25,34 +27,20 @@ PendingView Access::pending(ViewReadback view) {
     return PendingView(std::make_unique<PendingView::State>(PendingView::State{std::move(view)}));
 }
 
-namespace {
-
-/// Light is needed for reflectance, and nothing else.
-ReconstructionSettings with_light(ReconstructionSettings settings, const Lighting& lighting) {
-    if (lighting.empty()) {
-        settings.reflectance.reset();
-        settings.specular.reset();
-    } else if (!settings.reflectance) {
-        settings.reflectance.emplace();
-    }
-    return settings;
-}
-
-}  // namespace
-
 struct Reconstruction::State {
     Pipeline pipeline;
     Lighting lighting;
     std::vector<TimedPose> trajectory;
 };
 
-Reconstruction::Reconstruction(Device& device, const Settings& settings, const Lighting& lighting)
-    : state_(
-          new State{Pipeline(Access::vulkan(device), with_light(Access::values(settings), lighting)), lighting, {}}) {
-    state_->pipeline.set_lights(point_lights(lighting.lights), glm::vec3(lighting.ambient));
+Reconstruction::Reconstruction(Device& device, const ReconstructionOptions& options)
+    : state_(new State{Pipeline(Access::vulkan(device), choose_settings(options)), options.lighting, {}}) {
+    state_->pipeline.set_lights(point_lights(options.lighting.lights), glm::vec3(options.lighting.ambient));
 }
 
 Reconstruction::~Reconstruction() = default;
+
+bool Reconstruction::tracks() const { return state_->pipeline.tracking_report() != nullptr; }
 
 FrameResult Reconstruction::add(const RgbdFrame& frame) {
     FrameResult result{.fused = state_->pipeline.add(frame), .reason = "", .world_from_depth = frame.world_from_depth};
@@ -66,6 +54,7 @@ FrameResult Reconstruction::add(const RgbdFrame& frame) {
 }
 
 PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    check_view(camera, world_from_camera);
     return Access::pending(state_->pipeline.view(camera, world_from_camera));
 }
 

@@ -4,6 +4,7 @@
 
 #include "reconstruction/api/access.h"
 #include "reconstruction/api/statistics.h"
+#include "reconstruction/frame_context.h"
 #include "reconstruction/session/session_core.h"
 #include "reconstruction/session/shortfalls.h"
 
@@ -28,6 +29,7 @@ const SequenceInfo& Session::info() const { return state_->core.info(); }
 Lighting Session::lighting() const { return state_->core.lighting(); }
 
 PendingView Session::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    check_view(camera, world_from_camera);
     return Access::pending(state_->core.reconstruction().view(camera, world_from_camera));
 }
 

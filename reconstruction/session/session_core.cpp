@@ -6,6 +6,7 @@
 
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
+#include "reconstruction/session/choose_settings.h"
 #include "reconstruction/session/preflight.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "reconstruction/session/session_lights.h"
@@ -55,42 +56,6 @@ void check_light(const SessionOptions& options, const SessionLight& light) {
     if (!searched) fail_without_lights(options, light.none_because);
     if (!options.reflectance_for.empty())
         fail_without_lights(options, fmt::format("{}", fmt::join(light.shortfalls, "; ")));
-}
-
-/// With light, reflectance is estimated; without, there is nothing to estimate it from. Ambient light alone shows
-/// nothing of gloss.
-ReconstructionSettings settings_of(const SessionOptions& options, const SequenceInfo& info, const Illumination& light,
-                                   std::optional<NetworkDescription> network) {
-    ReconstructionSettings settings = Access::values(options.settings);
-    if (options.seed) settings.seed = *options.seed;
-    const bool drifts = options.gains == Gains::kAuto && !info.exposure_known && settings.fusion.color;
-    if (options.gains == Gains::kOff) settings.gains.reset();
-    if ((drifts || options.gains == Gains::kOn) && !settings.gains) settings.gains.emplace();
-    if (!shines(light)) {
-        settings.reflectance.reset();
-    } else if (!settings.reflectance) {
-        settings.reflectance.emplace();
-    }
-    if (options.labels == Labels::kOff) {
-        settings.segmentation.reset();
-    } else if (!settings.segmentation) {
-        settings.segmentation.emplace();
-    }
-    if (options.poses == Poses::kGiven || (options.poses == Poses::kAuto && info.has_poses)) {
-        settings.tracking.reset();
-        settings.keyframes.reset();
-    } else {
-        if (!settings.tracking) settings.tracking.emplace();
-        if (!settings.keyframes) settings.keyframes.emplace();
-        if (settings.gains) settings.keyframes->tests = KeyframeTests::kDepth;
-    }
-    if (settings.segmentation) settings.segmentation->given = options.labels == Labels::kTruth;
-    set_specular(settings, options, std::move(network));
-    if (light.lights.empty() && options.materials == Materials::kAuto) {
-        settings.specular.reset();
-        settings.network.reset();
-    }
-    return settings;
 }
 
 }  // namespace
@@ -144,7 +109,7 @@ void SessionCore::open(std::unique_ptr<Source> given) {
 }
 
 void SessionCore::start_reconstruction(std::optional<NetworkDescription> network) {
-    reconstruction_.emplace(device_, settings_of(options_, info_, illumination_, std::move(network)));
+    reconstruction_.emplace(device_, choose_settings(options_, info_, illumination_, std::move(network)));
     if (!reconstruction_->reflectance()) return;
     reconstruction_->set_lights(lights_, illumination_.ambient);
     if (options_.materials != Materials::kTruth) return;
