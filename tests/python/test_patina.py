@@ -3,22 +3,7 @@ import numpy as np
 import pytest
 
 import patina
-
-CAMERA = patina.Intrinsics(width=64, height=48, fx=60, fy=60, cx=31.5, cy=23.5)
-DEPTH = np.full((48, 64), 1000, np.uint16)
-COLOR = np.full((48, 64, 3), 128, np.uint8)
-
-
-@pytest.fixture(scope="module")
-def device():
-    return patina.Device()
-
-
-def wall(device, depth=DEPTH, **options):
-    reconstruction = patina.Reconstruction(device, **options)
-    for _ in range(3):
-        assert reconstruction.add(depth, COLOR, CAMERA, np.eye(4)).fused
-    return reconstruction
+from wall import CAMERA, COLOR, DEPTH, LAMP, wall
 
 
 def test_a_wall_is_where_the_depth_says(device):
@@ -44,27 +29,35 @@ def test_a_view_holds_arrays_of_the_cameras_size(device):
     assert np.isclose(view["color"][24, 32, 0], 0.2158, atol=0.01)  # sRGB 128
 
 
-def test_light_gives_albedo(device):
-    scene = wall(device, lights=[patina.Light((0, 0, 0), (1, 1, 1))]).finish()
+def test_light_gives_segments_with_materials(device):
+    scene = wall(device, lights=[LAMP]).finish()
     assert scene.lights[0].intensity == (1, 1, 1)
     assert scene.kd.shape == (len(scene.positions), 4)
+    assert np.count_nonzero(scene.labels) > 0.5 * len(scene.positions)
+    assert scene.segments and all("kd" in segment for segment in scene.segments)
 
 
-def test_arrays_outlive_their_scene(device):
-    positions = wall(device).finish().positions
-    assert np.isfinite(positions).all()
+def test_segments_can_be_left_out(device):
+    scene = wall(device, lights=[LAMP], labels="off").finish()
+    assert scene.kd[:, 3].max() == 1
+    assert not scene.labels.any()
 
 
-def test_wrong_arrays_are_named(device):
-    reconstruction = patina.Reconstruction(device)
-    with pytest.raises(patina.Error, match=r"the depth array is \(2, 3\) uint16, but its camera has 48 x 64 pixels"):
-        reconstruction.add(np.zeros((2, 3), np.uint16), COLOR, CAMERA)
-    with pytest.raises(patina.Error, match=r"depth is uint16 \(units\) or float32 \(metres\)"):
-        reconstruction.add(DEPTH.astype(np.float64), COLOR, CAMERA)
-    with pytest.raises(patina.Error, match="not in C order"):
-        reconstruction.add(np.asfortranarray(DEPTH), COLOR, CAMERA)
-    with pytest.raises(patina.Error, match="no rigid transform"):
-        reconstruction.add(DEPTH, COLOR, CAMERA, 2 * np.eye(4))
+def test_a_frame_without_a_pose_is_tracked_or_an_error(device):
+    with pytest.raises(patina.Error, match="the frame has no pose: give world_from_camera, or .* poses='track'"):
+        patina.Reconstruction(device).add(DEPTH, COLOR, CAMERA)
+    tracker = patina.Reconstruction(device, poses="track")
+    assert tracker.tracks
+    for _ in range(2):
+        result = tracker.add(DEPTH, COLOR, CAMERA)
+    np.testing.assert_allclose(result.world_from_camera[:3, :3], np.eye(3), atol=0.1)
+
+
+def test_wrong_choices_are_sentences(device):
+    with pytest.raises(patina.Error, match="poses is 'x', must be one of: auto, given, track, prior"):
+        patina.Reconstruction(device, poses="x")
+    with pytest.raises(patina.Error, match="materials of the truth belong to a sequence"):
+        patina.Reconstruction(device, materials="truth")
 
 
 def test_settings_are_set_by_key(device):
@@ -75,22 +68,3 @@ def test_settings_are_set_by_key(device):
         settings["map.voxle_m"] = 0.01
     coarse, fine = wall(device, settings=settings).finish(), wall(device).finish()
     assert len(coarse.triangles) < 0.5 * len(fine.triangles)
-
-
-def test_a_session_makes_a_scene(device, tmp_path):
-    session = patina.Session(device, "synthetic:cubes", frames=2, lighting="none")
-    steps = 0
-    while session.step():
-        steps += 1
-        assert session.last.fused
-    assert steps == session.info["frames"] == 2
-    session.finish().save(tmp_path)
-    assert (tmp_path / "scene.glb").stat().st_size > 10000
-    assert (tmp_path / "trajectory.txt").exists()
-
-
-def test_errors_are_sentences(device):
-    with pytest.raises(patina.Error, match="/nowhere does not exist"):
-        patina.Session(device, "/nowhere")
-    with pytest.raises(patina.Error, match="labels is 'x', must be one of: geometry, off, truth"):
-        patina.Session(device, "synthetic:cubes", labels="x")

@@ -1,0 +1,102 @@
+// What a reconstruction of frames does where its options leave it open.
+
+#include "patina/reconstruction.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+namespace patina {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Ne;
+using ::testing::Not;
+using ::testing::ThrowsMessage;
+
+const Intrinsics kCamera{{64, 48}, 60, 60, 31.5, 23.5};
+
+/// A wall one metre ahead.
+struct Wall {
+    std::vector<uint16_t> depth = std::vector<uint16_t>(kCamera.extent.area(), 1000);
+    std::vector<glm::u8vec3> color = std::vector<glm::u8vec3>(kCamera.extent.area(), glm::u8vec3(128));
+
+    RgbdFrame frame() const { return {.depth = {.pixels = depth, .camera = kCamera}, .color = {color, kCamera}}; }
+};
+
+class ReconstructionApiTest : public ::testing::Test {
+  protected:
+    void TearDown() override { EXPECT_THAT(device_.validation_messages(), IsEmpty()); }
+
+    static ReconstructionOptions lit() {
+        ReconstructionOptions options;
+        options.lighting.lights = {{glm::dvec3(0), glm::dvec3(2), 0.05}};
+        return options;
+    }
+
+    Scene scene_of(const ReconstructionOptions& options) {
+        Reconstruction reconstruction(device_, options);
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(reconstruction.add(wall_.frame()).fused);
+        return reconstruction.finish();
+    }
+
+    Wall wall_;
+    Device device_{DeviceChoice{.validation = true}};
+};
+
+TEST_F(ReconstructionApiTest, LightMakesSegmentsWithMaterials) {
+    const Scene scene = scene_of(lit());
+    EXPECT_THAT(scene.reflectance.labels, Contains(Ne(0u)));
+    const auto& segments = scene.reflectance.segments;
+    EXPECT_TRUE(std::ranges::any_of(segments, [](const SegmentReflectance& s) { return s.voxels > 0 && s.kd; }));
+    EXPECT_TRUE(std::ranges::any_of(segments, [](const SegmentReflectance& s) { return s.gloss.has_value(); }));
+}
+
+TEST_F(ReconstructionApiTest, WithoutLabelsAlbedoIsAllThereIs) {
+    ReconstructionOptions options = lit();
+    options.labels = Labels::kOff;
+    const Scene scene = scene_of(options);
+    EXPECT_THAT(scene.reflectance.kd, Contains(::testing::Truly([](glm::vec4 kd) { return kd.a == 1; })));
+    EXPECT_THAT(scene.reflectance.labels, Not(Contains(Ne(0u))));
+}
+
+TEST_F(ReconstructionApiTest, WithoutLightThereAreSegmentsButNoMaterials) {
+    Reconstruction reconstruction(device_);
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(reconstruction.add(wall_.frame()).fused);
+    const PendingView pending = reconstruction.view(kCamera, RigidTransform(1.0));
+    reconstruction.wait();
+    EXPECT_FALSE(pending.get().reflectance);
+    EXPECT_NE(pending.get().label.at(32, 24), 0u);
+    EXPECT_THAT(reconstruction.finish().reflectance.kd, IsEmpty());
+}
+
+TEST_F(ReconstructionApiTest, PosesAreGivenUnlessTrackingIsAskedFor) {
+    EXPECT_FALSE(Reconstruction(device_).tracks());
+    EXPECT_TRUE(Reconstruction(device_, {.poses = Poses::kTrack}).tracks());
+    ReconstructionOptions options;
+    options.settings.set("tracking.levels", "3");
+    EXPECT_TRUE(Reconstruction(device_, options).tracks());
+    options.poses = Poses::kGiven;
+    EXPECT_FALSE(Reconstruction(device_, options).tracks());
+}
+
+TEST_F(ReconstructionApiTest, WhatCannotBeMetIsOneSentence) {
+    ReconstructionOptions options = lit();
+    options.materials = Materials::kTruth;
+    EXPECT_THAT([&] { Reconstruction(device_, options); }, ThrowsMessage<Error>(HasSubstr("belong to a sequence")));
+    options.materials = Materials::kNetwork;
+    options.network = "/nowhere";
+    EXPECT_THAT([&] { Reconstruction(device_, options); }, ThrowsMessage<Error>(HasSubstr("/nowhere")));
+    Reconstruction reconstruction(device_);
+    EXPECT_THAT([&] { reconstruction.view({{0, 0}, 60, 60, 0, 0}, RigidTransform(1.0)); },
+                ThrowsMessage<Error>(HasSubstr("0 x 0")));
+    EXPECT_THAT([&] { reconstruction.view({{64, 48}, 0, 60, 0, 0}, RigidTransform(1.0)); },
+                ThrowsMessage<Error>(HasSubstr("fx 0")));
+    EXPECT_THAT([&] { reconstruction.view(kCamera, RigidTransform(2.0)); },
+                ThrowsMessage<Error>(HasSubstr("not rigid")));
+}
+
+}  // namespace
+}  // namespace patina

@@ -1,0 +1,8 @@
+import pytest
+
+import patina
+
+
+@pytest.fixture(scope="session")
+def device():
+    return patina.Device()
