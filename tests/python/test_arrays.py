@@ -55,9 +55,9 @@ def scaled(value, row, column):
 WRONG_POSES = {
     "not a number": (scaled(np.nan, 0, 0), "holds values that are not finite"),
     "far away": (scaled(np.inf, 0, 3), "holds values that are not finite"),
-    "scaled": (2 * np.eye(4), "no rigid transform: its rotation is off by 3"),
-    "mirrored": (np.diag([1.0, 1, -1, 1]), "no rigid transform"),
-    "projective": (scaled(1, 3, 0), "no rigid transform: its last row is not 0 0 0 1"),
+    "scaled": (2 * np.eye(4), "is no rigid transform: its rotation is off by 3"),
+    "mirrored": (np.diag([1.0, 1, -1, 1]), "is no rigid transform"),
+    "projective": (scaled(1, 3, 0), "is no rigid transform: its last row is not 0 0 0 1"),
     "three rows": (np.eye(4)[:3], r"is a 4 x 4 array, not \(3, 4\) float64"),
     "empty": (np.zeros((0, 4)), r"is a 4 x 4 array, not \(0, 4\) float64"),
 }
