@@ -95,6 +95,9 @@ constexpr double kManyPixels = 1e6;
 /// Up to here every whole number has a double of its own, one more included.
 constexpr double kLargestSeed = 9007199254740991.0;
 constexpr const char* kOneRecording = "Chosen on one recording.";
+constexpr const char* kTriedOnOne = "Tried on one recording.";
+constexpr const char* kOneScene = "Chosen on one synthetic scene.";
+constexpr const char* kTwoScenes = "Chosen on two synthetic scenes.";
 
 using Rec = ReconstructionSettings;
 using Map = VoxelMapSettings;
@@ -164,7 +167,7 @@ constexpr std::array kRows = {
     number<&Frame::min_pixels>("segmentation.min_pixels", "px", 1, kAnyCount,
                                "Smaller connected parts of a frame are no segments."),
     number<&Frame::stride_px>("segmentation.stride_px", "px", 1, 64,
-                              "Segments are found at every N-th pixel in x and y."),
+                              "Segments are found at every N-th pixel in x and y.", kTwoScenes),
     number<&Edge::crease_degrees>("segmentation.crease_degrees", "degrees", 0, 180,
                                   "A concave crease separates segments if it turns the normal by more than this."),
     number<&Edge::crease_sigmas>("segmentation.crease_sigmas", "sigmas", 0, 1000,
@@ -218,7 +221,7 @@ constexpr std::array kRows = {
     number<&Edge::step_m>("segmentation.step_m", "m", 0, 10,
                           "A step between parallel surfaces separates segments if it is higher than this."),
     number<&Edge::step_sigmas>("segmentation.step_sigmas", "sigmas", 0, 1000,
-                               "This many times the depth's noise is added to segmentation.step_m."),
+                               "This many times the depth's noise is added to segmentation.step_m.", kTwoScenes),
     number<&Edge::cut_chroma>("segmentation.cut_chroma", "", 0, 10,
                               "A change of chromaticity separates segments if it is larger than this."),
     number<&Edge::cut_light>("segmentation.cut_light", "", 0, 10,
@@ -236,7 +239,8 @@ constexpr std::array kRows = {
                                  "Parts are joined across a crease only if both colours are farther from grey than "
                                  "this."),
     number<&Fold::same_hue_degrees>("segmentation.same_hue_degrees", "degrees", 0, 90,
-                                    "Parts are joined across a crease only if their hues differ by at most this."),
+                                    "Parts are joined across a crease only if their hues differ by at most this.",
+                                    kOneScene),
     number<&Fold::same_saturation>("segmentation.same_saturation", "", 0, 10,
                                    "Parts are joined across a crease only if their distances from grey differ by at "
                                    "most this."),
@@ -255,11 +259,14 @@ constexpr std::array kRows = {
     number<&Gain::max_angle_degrees>(
         "gains.max_angle_degrees", "degrees", 0, 90,
         "Surface is not compared if its normal is turned away from the camera by more than "
-        "this."),
+        "this.",
+        kTriedOnOne),
     number<&Gain::min_samples>("gains.min_samples", "px", 1, 1e9,
-                               "With fewer pixels to compare, a channel keeps the gain of the frame before."),
+                               "With fewer pixels to compare, a channel keeps the gain of the frame before.",
+                               kTriedOnOne),
     number<&Gain::leak>("gains.leak", "1/frame", 0, 1,
-                        "Part of each gain's logarithm that is lost per frame, so that errors are forgotten."),
+                        "Part of each gain's logarithm that is lost per frame, so that errors are forgotten.",
+                        kTriedOnOne),
     number<&Refl::voxel_m>("reflectance.voxel_m", "m", 2e-4, 4,
                            "Edge of a voxel of reflectance: 4 or 2 times map.voxel_m."),
     number<&Refl::limit_blocks>("reflectance.capacity_blocks", "blocks", 0, kAnyCount,
