@@ -11,10 +11,10 @@
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
-#include "sensor/output/new_file.h"
 #include "export/gltf_arrays.h"
 #include "export/gltf_material.h"
 #include "export/mesh_parts.h"
+#include "sensor/output/new_file.h"
 
 namespace patina {
 namespace {
@@ -280,9 +280,10 @@ class GlbBuilder {
             pbr.baseColorFactor = {shown.base_color.r, shown.base_color.g, shown.base_color.b, 1};
             return;
         }
-        Value::Object specular{{"specularFactor", Value(double{shown.specular})}};
-        if (shown.specular > 0) specular["specularColorFactor"] = array_of(glm::dvec3(shown.specular_color));
-        material.extensions[kSpecular] = Value(std::move(specular));
+        // Black without a highlight: Blender 3.4 reads the colour and not the factor.
+        const glm::dvec3 color(shown.specular > 0 ? shown.specular_color : glm::vec3(0));
+        material.extensions[kSpecular] = Value(
+            Value::Object{{"specularFactor", Value(double{shown.specular})}, {"specularColorFactor", array_of(color)}});
         use_extension(kSpecular);
     }
 

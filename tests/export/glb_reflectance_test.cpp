@@ -136,6 +136,12 @@ TEST(GlbReflectance, KdKsAndAlphaConvertBackFromWhatAnyViewerReads) {
     EXPECT_EQ(ward_of(material_of(material(scene.model, "segment 2"))).ks, glm::vec3(0));
 }
 
+TEST(GlbReflectance, WithoutGlossTheSpecularColourIsBlackToo) {
+    const Scene scene = Sheet().write();
+    EXPECT_EQ(material_of(material(scene.model, "segment 2")).specular_color, glm::vec3(0));
+    EXPECT_NE(material_of(material(scene.model, "floor")).specular_color, glm::vec3(0));
+}
+
 TEST(GlbReflectance, ExactValuesAreInAttributesAndExtras) {
     const Sheet sheet;
     const Scene scene = Sheet(sheet).write();
