@@ -1,0 +1,121 @@
+"""Opens a run's scene.glb in Blender, ready to render with Cycles:
+
+  blender --python tools/blender_import.py -- RUN [--pose N] [--render OUT.png]
+
+Replaces all objects of the open file. Sets what the importer gets wrong: materials, brightness and radius of lamps,
+ambient light, colour management. --pose places the camera at line N of RUN/trajectory.txt. --render writes a picture of
+the size of the recording's; add -b before --python to do without a window. docs/guide/blender.md has the same by hand.
+"""
+import argparse
+import json
+import pathlib
+import sys
+
+import bpy
+import mathutils
+import numpy
+
+POINT_LAMP_RADIUS_M = 0.01  # of lamps whose radius is unknown
+Z_UP_FROM_Y_UP = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
+CAMERA_AXES = mathutils.Matrix.Diagonal((1, -1, -1, 1))  # Blender's cameras look along -z with y up
+
+
+def import_scene(path):
+    """Returns the root object, whose children are in the recording's world."""
+    numpy.bool = bool  # the importer of Debian 12's Blender 3.4 uses this name, which its NumPy 1.24 no longer has
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    for material in list(bpy.data.materials):
+        bpy.data.materials.remove(material)
+    # Unitless: a lamp of intensity I gives a white diffuse surface at distance r the value I / (pi r^2), as in Patina.
+    bpy.ops.import_scene.gltf(filepath=str(path), convert_lighting_mode="COMPAT")
+    return next(thing for thing in bpy.data.objects if thing.parent is None)
+
+
+def node_of(material, kind):
+    return next((node for node in material.node_tree.nodes if node.bl_idname == kind), None)
+
+
+def set_material(material):
+    """Lambert's diffuse reflection plus a GGX lobe without Fresnel's effect, which is what the file means."""
+    principled, extension = (node_of(material, "ShaderNode" + kind) for kind in ("BsdfPrincipled", "Group"))
+    color = node_of(material, "ShaderNodeVertexColor")
+    if not principled or not color:
+        return  # a metal, which the importer sets right
+    new, link = material.node_tree.nodes.new, material.node_tree.links.new
+    surface = node_of(material, "ShaderNodeOutputMaterial").inputs["Surface"]
+    if not extension:  # fused colours, which hold the recording's light
+        link(color.outputs["Color"], surface)
+        return
+    strength = extension.inputs["Specular"].default_value
+    f0 = [min(0.04 * c, 1) * strength for c in extension.inputs["Specular Color"].default_value[:3]]
+    dim, diffuse, glossy, both = (new("ShaderNode" + kind)
+                                  for kind in ("VectorMath", "BsdfDiffuse", "BsdfGlossy", "AddShader"))
+    dim.operation = "SCALE"
+    dim.inputs["Scale"].default_value = 1 - strength
+    glossy.distribution = "GGX"
+    glossy.inputs["Color"].default_value = (*f0, 1)
+    glossy.inputs["Roughness"].default_value = principled.inputs["Roughness"].default_value
+    link(color.outputs["Color"], dim.inputs[0])
+    link(dim.outputs[0], diffuse.inputs["Color"])
+    link(diffuse.outputs[0], both.inputs[0])
+    link(glossy.outputs[0], both.inputs[1])
+    link(both.outputs[0], surface)
+
+
+def set_world(scene, ambient):
+    background = scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (*ambient, 1)
+    background.inputs["Strength"].default_value = 1
+
+
+def add_camera(scene, root, pose, camera):
+    """`pose` is a line of trajectory.txt; `camera` has width, height, fx, cx and cy in pixels."""
+    x, y, z, qx, qy, qz, qw = map(float, pose.split()[1:])
+    world_from_camera = mathutils.Matrix.Translation((x, y, z)) @ mathutils.Quaternion((qw, qx, qy, qz)).to_matrix().to_4x4()
+    data = bpy.data.cameras.new("recorded")
+    size = max(camera["width"], camera["height"])
+    data.lens = data.sensor_width * camera["fx"] / size
+    data.shift_x = ((camera["width"] - 1) / 2 - camera["cx"]) / size
+    data.shift_y = (camera["cy"] - (camera["height"] - 1) / 2) / size
+    thing = bpy.data.objects.new("recorded", data)
+    thing.matrix_world = root.matrix_world @ Z_UP_FROM_Y_UP @ world_from_camera @ CAMERA_AXES
+    scene.collection.objects.link(thing)
+    scene.camera = thing
+    scene.render.resolution_x, scene.render.resolution_y = camera["width"], camera["height"]
+
+
+def set_render(scene):
+    scene.view_settings.view_transform = "Standard"
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 64
+    scene.cycles.use_denoising = False  # Debian builds Blender without OpenImageDenoise
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="blender --python tools/blender_import.py --")
+    parser.add_argument("run", type=pathlib.Path)
+    parser.add_argument("--pose", type=int, default=0)
+    parser.add_argument("--render", type=pathlib.Path)
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+
+
+def main():
+    given = arguments()
+    scene = bpy.context.scene
+    root = import_scene(given.run / "scene.glb")
+    for material in bpy.data.materials:
+        set_material(material)
+    for lamp in bpy.data.lights:
+        lamp.shadow_soft_size = lamp.get("radius_m", POINT_LAMP_RADIUS_M)
+    lights = given.run / "lights.json"
+    set_world(scene, json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0))
+    poses = (given.run / "trajectory.txt").read_text().splitlines()
+    add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["color"])
+    set_render(scene)
+    if given.render:
+        scene.render.filepath = str(given.render.absolute())
+        bpy.ops.render.render(write_still=True)
+
+
+main()
