@@ -3,8 +3,9 @@
   blender --python tools/blender_import.py -- RUN [--pose N] [--render OUT.png]
 
 Replaces all objects of the open file. Sets what the importer gets wrong: materials, brightness and radius of lamps,
-ambient light, colour management. --pose places the camera at line N of RUN/trajectory.txt. --render writes a picture of
-the size of the recording's; add -b before --python to do without a window. docs/guide/blender.md has the same by hand.
+bulbs, ambient light, colour management. --pose places the camera at pose N of RUN/trajectory.txt, from 0. --render
+writes a picture of the recording's size; add -b before --python to do without a window. docs/guide/blender.md has the
+same by hand.
 """
 import argparse
 import json
@@ -63,6 +64,21 @@ def set_material(material):
     link(both.outputs[0], surface)
 
 
+def is_bulb_of(lamp, mesh_object):
+    """Whether the surface of a bulb was recorded, at which its own light would end."""
+    center = mesh_object.matrix_world.inverted() @ lamp.matrix_world.translation
+    vertices = mesh_object.data.vertices
+    near = sum((vertex.co - center).length < 1.5 * lamp.data.shadow_soft_size for vertex in vertices)
+    return near > len(vertices) / 2
+
+
+def set_lamps(things):
+    for lamp in [thing for thing in things if thing.type == "LIGHT"]:
+        lamp.data.shadow_soft_size = lamp.data.get("radius_m", POINT_LAMP_RADIUS_M)
+        for bulb in [thing for thing in things if thing.type == "MESH" and is_bulb_of(lamp, thing)]:
+            bulb.visible_shadow = False
+
+
 def set_world(scene, ambient):
     background = scene.world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (*ambient, 1)
@@ -70,9 +86,10 @@ def set_world(scene, ambient):
 
 
 def add_camera(scene, root, pose, camera):
-    """`pose` is a line of trajectory.txt; `camera` has width, height, fx, cx and cy in pixels."""
+    """`pose` is a pose of trajectory.txt; `camera` has width, height, fx, cx and cy in pixels."""
     x, y, z, qx, qy, qz, qw = map(float, pose.split()[1:])
-    world_from_camera = mathutils.Matrix.Translation((x, y, z)) @ mathutils.Quaternion((qw, qx, qy, qz)).to_matrix().to_4x4()
+    turn = mathutils.Quaternion((qw, qx, qy, qz)).to_matrix().to_4x4()
+    world_from_camera = mathutils.Matrix.Translation((x, y, z)) @ turn
     data = bpy.data.cameras.new("recorded")
     size = max(camera["width"], camera["height"])
     data.lens = data.sensor_width * camera["fx"] / size
@@ -106,11 +123,11 @@ def main():
     root = import_scene(given.run / "scene.glb")
     for material in bpy.data.materials:
         set_material(material)
-    for lamp in bpy.data.lights:
-        lamp.shadow_soft_size = lamp.get("radius_m", POINT_LAMP_RADIUS_M)
+    bpy.context.view_layer.update()  # of matrix_world
+    set_lamps(list(bpy.data.objects))
     lights = given.run / "lights.json"
     set_world(scene, json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0))
-    poses = (given.run / "trajectory.txt").read_text().splitlines()
+    poses = [line for line in (given.run / "trajectory.txt").read_text().splitlines() if not line.startswith("#")]
     add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["color"])
     set_render(scene)
     if given.render:
