@@ -19,7 +19,7 @@ void bind_session(py::module_& m);
 
 /// A view's pictures by name.
 py::dict to_dict(ModelView view);
-py::dict to_dict(const ReconstructionStatistics& statistics);
+py::dict to_dict(const Statistics& statistics);
 
 /// What `from`, a session or a reconstruction, shows to a camera. Waits, without the interpreter.
 template <class From>

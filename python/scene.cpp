@@ -117,7 +117,7 @@ py::dict to_dict(ModelView view) {
     return result;
 }
 
-py::dict to_dict(const ReconstructionStatistics& statistics) {
+py::dict to_dict(const Statistics& statistics) {
     using namespace py::literals;
     py::list pools, passes;
     for (const PoolUse& pool : statistics.pools)

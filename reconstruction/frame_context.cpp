@@ -25,6 +25,15 @@ PosedCamera make_posed_camera(const Intrinsics& intrinsics, const RigidTransform
     return {intrinsics, world_from_camera, make_camera(intrinsics, world_from_camera)};
 }
 
+PosedCamera resized(const PosedCamera& camera, Extent2D extent) {
+    return make_posed_camera(scaled_to(camera.intrinsics, extent), camera.world_from_camera);
+}
+
+FrameCameras make_frame_cameras(const RgbdFrame& frame) {
+    return {make_posed_camera(frame.depth.camera, frame.world_from_depth),
+            make_posed_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth))};
+}
+
 void FrameHistory::note(const FrameContext& frame) {
     world_from_color = frame.color.world_from_camera;
     ++frames;
@@ -36,13 +45,13 @@ FrameContext make_frame_context(const RgbdFrame& frame, const FrameHistory& befo
     FrameContext context;
     context.index = before.frames;
     context.color_index = before.color_frames;
-    context.depth = make_posed_camera(frame.depth.camera, frame.world_from_depth);
-    context.color =
-        make_posed_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
+    const FrameCameras cameras = make_frame_cameras(frame);
+    context.depth = cameras.depth;
+    context.color = cameras.color;
     context.range = range;
     if (before.world_from_color) {
-        context.motion = {make_camera(frame.color.camera, *before.world_from_color).camera_from_world,
-                          frame.shutter_share};
+        const PosedCamera last = make_posed_camera(frame.color.camera, *before.world_from_color);
+        context.motion = {last.gpu.camera_from_world, frame.shutter_share};
     }
     context.fuses_color = fuses_color && !frame.held_out;
     context.held_out = frame.held_out;

@@ -19,6 +19,16 @@ struct PosedCamera {
 
 PosedCamera make_posed_camera(const Intrinsics& intrinsics, const RigidTransform& world_from_camera);
 
+/// The same view in pictures of another extent.
+PosedCamera resized(const PosedCamera& camera, Extent2D extent);
+
+/// Both cameras of a frame at its pose.
+struct FrameCameras {
+    PosedCamera depth, color;
+};
+
+FrameCameras make_frame_cameras(const RgbdFrame& frame);
+
 /// Which depths count, metres along a camera's optical axis.
 struct DepthRange {
     float near_m = 0;   ///< no nearer surface is seen

@@ -11,7 +11,7 @@ Pipeline::Pipeline(vulkan::Device& device, const ReconstructionSettings& setting
     if (stages_.tracking) tracked_.emplace(runner_, stages_, fusion_);
 }
 
-void Pipeline::set_lights(std::span<const PointLight> lights, glm::vec3 ambient) {
+void Pipeline::set_lights(std::span<const Light> lights, glm::dvec3 ambient) {
     if (stages_.reflectance) stages_.reflectance->set_lights(lights, ambient);
 }
 
@@ -69,7 +69,7 @@ void Pipeline::refine_all() {
     runner_.submit(std::move(graph));
 }
 
-void Pipeline::relight(std::span<const PointLight> lights, glm::vec3 ambient) {
+void Pipeline::relight(std::span<const Light> lights, glm::dvec3 ambient) {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     refine_all();
     graph::FrameGraph graph = runner_.begin();
@@ -97,10 +97,10 @@ void Pipeline::add_confidence(MeshReflectance& sampled) {
     }
 }
 
-Statistics Pipeline::statistics() {
-    Statistics statistics = fusion_.statistics();
-    if (const TrackingReport* report = tracking_report()) statistics.tracking = *report;
-    return statistics;
+PipelineCounters Pipeline::counters() {
+    PipelineCounters counters = fusion_.counters();
+    if (const TrackingReport* report = tracking_report()) counters.tracking = *report;
+    return counters;
 }
 
 gpu::KeyframeCounters Pipeline::keyframe_counters() {

@@ -8,10 +8,10 @@
 #include "patina/frame.h"
 #include "patina/lighting.h"
 #include "patina/scene.h"
+#include "reconstruction/pipeline_counters.h"
 #include "reconstruction/posed_fusion.h"
 #include "reconstruction/reconstruction_settings.h"
 #include "reconstruction/stages/stages.h"
-#include "reconstruction/statistics.h"
 #include "reconstruction/tracked_fusion.h"
 #include "reconstruction/view_readback.h"
 
@@ -30,7 +30,7 @@ class Pipeline {
     /// Replaces all lights of the reflectance; at any time. `ambient` is
     /// irradiance over pi, linear pixel value. Without reflectance nothing
     /// changes. Throws Error as Lights::set does.
-    void set_lights(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    void set_lights(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
     /// Sets the specular material of a label (SegmentMaterials::set); at any
     /// time. Without reflectance nothing changes.
     void set_material(uint32_t label, glm::vec3 ks, float alpha);
@@ -83,18 +83,18 @@ class Pipeline {
     /// alone: no frame may be added after that. Brings the reflectance up to date
     /// first. Without reflectance nothing changes. Throws Error as Lights::set
     /// does.
-    void relight(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    void relight(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
 
     /// Counters as of at most two frames ago; exact after wait(). Does not wait.
     /// With tracking, the last frame is counted only after wait();
     /// runner().wait() does not fuse it.
-    Statistics statistics();
+    PipelineCounters counters();
 
     /// The keyframes' counters; waits. Zero without keyframes.
     gpu::KeyframeCounters keyframe_counters();
 
     /// The colour gains of the frames so far (ColorCorrection::gains), with the
-    /// delay of statistics(); empty where the settings estimate none.
+    /// delay of counters(); empty where the settings estimate none.
     std::span<const gpu::ColorGains> gains();
 
     uint32_t frames() const;  ///< fused, or about to be

@@ -84,12 +84,12 @@ void PosedFusion::take_counters() {
     }
 }
 
-Statistics PosedFusion::statistics() {
+PipelineCounters PosedFusion::counters() {
     take_counters();
-    Statistics statistics = counted_;
-    statistics.frames = history_.frames;
-    statistics.pools = pools_.states();
-    return statistics;
+    PipelineCounters counters = counted_;
+    counters.frames = history_.frames;
+    counters.pools = pools_.states();
+    return counters;
 }
 
 }  // namespace patina

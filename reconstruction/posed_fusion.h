@@ -7,8 +7,8 @@
 #include "reconstruction/frame_context.h"
 #include "reconstruction/frame_graph.h"
 #include "reconstruction/growing_pools.h"
+#include "reconstruction/pipeline_counters.h"
 #include "reconstruction/stages/stages.h"
-#include "reconstruction/statistics.h"
 
 namespace patina {
 
@@ -39,7 +39,7 @@ class PosedFusion {
     uint32_t frames() const { return history_.frames; }  ///< fused so far
 
     /// Of the frames that the device has finished; without tracking.
-    Statistics statistics();
+    PipelineCounters counters();
 
   private:
     void add_first(const RgbdFrame& frame);
@@ -53,7 +53,7 @@ class PosedFusion {
     GrowingPools pools_;
     FrameHistory history_;
     std::deque<FrameReadbacks> pending_;  ///< of frames that the device may work on
-    Statistics counted_;                  ///< but for pools
+    PipelineCounters counted_;            ///< but for pools
 };
 
 }  // namespace patina

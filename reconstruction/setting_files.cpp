@@ -1,4 +1,4 @@
-// Settings in files and on the command line.
+// Settings in files and in assignments.
 
 #include <array>
 #include <charconv>
@@ -50,10 +50,10 @@ void load_settings(ReconstructionSettings& settings, const std::filesystem::path
     }
 }
 
-void apply_setting(ReconstructionSettings& settings, const std::string& assignment) {
+void apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where) {
     const size_t equals = assignment.find('=');
-    if (equals == std::string::npos) throw Error("--set ", assignment, " has no '=' between key and value");
-    set_setting(settings, assignment.substr(0, equals), assignment.substr(equals + 1), "--set");
+    if (equals == std::string::npos) throw Error(where, ": '", assignment, "' has no '=' between key and value");
+    set_setting(settings, assignment.substr(0, equals), assignment.substr(equals + 1), where);
 }
 
 nlohmann::ordered_json settings_json(const ReconstructionSettings& settings) {

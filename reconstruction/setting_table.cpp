@@ -87,10 +87,12 @@ std::string instead_of(const std::string& key) {
     return list;
 }
 
+std::string beginning(const std::string& where) { return where.empty() ? "" : where + ": "; }
+
 size_t index_of(const std::string& key, const std::string& where) {
     const auto rows = setting_rows();
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const SettingRow& r) { return key == r.key; });
-    if (row == rows.end()) throw Error(where, ": there is no setting '", key, "'", instead_of(key));
+    if (row == rows.end()) throw Error(beginning(where), "there is no setting '", key, "'", instead_of(key));
     return static_cast<size_t>(row - rows.begin());
 }
 
@@ -149,7 +151,7 @@ void set_setting(ReconstructionSettings& settings, const std::string& key, const
     const std::optional<double> number = parsed(setting, text);
     if (!number) {
         const std::string quote = number_of(text) ? "" : "'";
-        throw Error(where, ": ", key, " is ", quote, text, quote, ", it must be ", allowed_values(setting));
+        throw Error(beginning(where), key, " is ", quote, text, quote, ", it must be ", allowed_values(setting));
     }
     std::visit(StoreValue{*number}, setting_rows()[index].place(settings, true));
 }

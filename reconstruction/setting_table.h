@@ -36,8 +36,8 @@ struct SettingDescriptor {
 std::span<const SettingDescriptor> setting_descriptors();
 
 /// Sets one setting from text, such as "0.005", "true" or "depth". The optional part that it belongs to comes into
-/// being. Throws Error, beginning with `where`, for an unknown key, with the nearest one, and for a value of another
-/// type or out of its range; the settings stay as they are then.
+/// being. Throws Error, beginning with `where` unless it is empty, for an unknown key, with the nearest one, and for a
+/// value of another type or out of its range; the settings stay as they are then.
 void set_setting(ReconstructionSettings& settings, const std::string& key, const std::string& text,
                  const std::string& where);
 
@@ -49,8 +49,8 @@ std::optional<std::string> get_setting(const ReconstructionSettings& settings, c
 /// file, the key, and what is wrong.
 void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file);
 
-/// Overrides one setting from "fusion.max_depth_m=3". Throws Error naming the key or the value.
-void apply_setting(ReconstructionSettings& settings, const std::string& assignment);
+/// Overrides one setting from "fusion.max_depth_m=3". Throws Error as set_setting() does.
+void apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where);
 
 /// The settings of all parts that are on by their keys, in the order of setting_descriptors().
 nlohmann::ordered_json settings_json(const ReconstructionSettings& settings);

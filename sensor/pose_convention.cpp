@@ -135,11 +135,10 @@ std::optional<std::string> PoseConventionCheck::complaint() const {
     const auto best_count = std::ranges::max_element(counts_, {}, [](const Count& count) { return count.share(); });
     const double best = best_count->share(), given = counts_.front().share();
     if (best < kLeastShare || best < given + kLeastGain) return std::nullopt;
-    return text("the poses look ", name_of(static_cast<size_t>(best_count - counts_.begin())), ": then ",
-                fixed(100 * best, 0), " % of the depth readings agree from frame to frame, as they are ",
-                fixed(100 * given, 0),
-                " %; give camera-to-world poses with axes x right, y down, z forward, or track the camera with --poses "
-                "track");
+    return text(
+        "the poses look ", name_of(static_cast<size_t>(best_count - counts_.begin())), ": then ", fixed(100 * best, 0),
+        " % of the depth readings agree from frame to frame, as they are ", fixed(100 * given, 0),
+        " %; give camera-to-world poses with axes x right, y down, z forward, or track the camera without them");
 }
 
 }  // namespace patina::sensor

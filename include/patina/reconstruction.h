@@ -63,7 +63,7 @@ struct PassTime {
 };
 
 /// How a reconstruction is doing.
-struct ReconstructionStatistics {
+struct Statistics {
     uint32_t frames = 0;  ///< that were fused
     uint32_t visible_blocks = 0;
     uint32_t segments = 0;
@@ -159,7 +159,7 @@ class Reconstruction {
     void wait();
 
     /// Counters as of at most two frames ago; exact after wait(). Does not wait.
-    ReconstructionStatistics statistics();
+    Statistics statistics();
 
     /// The scene of what was fused so far: surface, materials, lights; waits. Frames may be added after it.
     Scene finish();

@@ -55,6 +55,13 @@ struct SessionCallbacks {
     std::function<bool()> stop;                       ///< whether to stop: the session throws Interrupted then
 };
 
+/// A program's own options for what sentences of a session ask for, such as "--lights FILE": they follow in brackets.
+struct SessionHints {
+    std::string lights;   ///< to give lights, or have them looked for
+    std::string network;  ///< to give the network's weights
+    std::string track;    ///< to have the camera tracked
+};
+
 /// What a session is made with. Whatever is left open is decided once, when it is made.
 struct SessionOptions {
     std::string sequence;  ///< folder of a recording, or "synthetic:SCENE"; empty where a source is given
@@ -69,8 +76,9 @@ struct SessionOptions {
     /// Of everything that is drawn at random, of a synthetic scene noise and samples too; empty: the fixed ones.
     std::optional<uint64_t> seed;
     uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
-    /// What needs reflectance, such as "--show kd": without light that is an error that names it. Empty: nothing does.
+    /// What needs reflectance, such as "the viewer": without light that is an error that names it. Empty: nothing does.
     std::string reflectance_for;
+    SessionHints hints;
     Settings settings;
     SessionCallbacks callbacks;
 };
@@ -102,7 +110,7 @@ class Session {
     PendingView view(const Intrinsics& camera, const RigidTransform& world_from_camera);
     void wait();
 
-    ReconstructionStatistics statistics();
+    Statistics statistics();
 
     /// What the result falls short of so far: pools that are full, lights that were not found, frames that were not
     /// used; a sentence each.

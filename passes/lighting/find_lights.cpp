@@ -125,7 +125,7 @@ void add_find_lights(graph::FrameGraph& frame, LightTrackIds& tracks, const Find
 graph::BufferId add_settle_lights(graph::FrameGraph& frame, const LightTrackIds& tracks) {
     auto pass = frame.compute("lighting.settle_lights", spirv::settle_lights);
     pass.read("Tracks", tracks.tracks).read("History", tracks.history);
-    const graph::BufferId found = pass.create("Found", gpu::kMaxLights * sizeof(gpu::FoundLightWords));
+    const graph::BufferId found = pass.create("Found", gpu::kMaxLights * sizeof(gpu::FoundLight));
     pass.dispatch(gpu::kMaxLights);
     return found;
 }

@@ -32,7 +32,7 @@ void add_find_lights(graph::FrameGraph& frame, LightTrackIds& tracks, const Find
                      const FindLightsSettings& settings);
 
 /// Medians over all sightings; for lamps without depth the point nearest to their bearings. Returns
-/// gpu::FoundLightWords[kMaxLights]; sightings 0 where there is no light, or bearings too much alike to tell where.
+/// gpu::FoundLight[kMaxLights]; sightings 0 where there is no light, or bearings too much alike to tell where.
 graph::BufferId add_settle_lights(graph::FrameGraph& frame, const LightTrackIds& tracks);
 
 }  // namespace patina

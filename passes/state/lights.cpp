@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/core/shader_light.h"
 
 namespace patina {
 
@@ -12,34 +13,37 @@ namespace {
 bool finite(glm::vec3 v) { return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v)); }
 bool a_power(glm::vec3 v) { return finite(v) && glm::all(glm::greaterThanEqual(v, glm::vec3(0))); }
 
-bool same_place(const PointLight& a, const PointLight& b) {
-    return a.position_m == b.position_m && a.radius_m == b.radius_m;
+bool is_sound(const gpu::PointLight& light) {
+    return finite(glm::vec3(light.position_m)) && a_power(glm::vec3(light.intensity)) &&
+           a_power(glm::vec3(light.position_m.w));
+}
+
+bool same_place(const gpu::PointLight& a, const gpu::PointLight& b) { return a.position_m == b.position_m; }
+bool same_light(const gpu::PointLight& a, const gpu::PointLight& b) {
+    return same_place(a, b) && a.intensity == b.intensity;
 }
 
 }  // namespace
 
-std::vector<PointLight> point_lights(std::span<const Light> lights) {
-    std::vector<PointLight> lamps;
-    for (const Light& light : lights)
-        lamps.push_back({glm::vec3(light.position_m), glm::vec3(light.intensity), static_cast<float>(light.radius_m)});
-    return lamps;
-}
-
-void Lights::set(std::span<const PointLight> lights, glm::vec3 ambient) {
+void Lights::set(std::span<const Light> lights, glm::dvec3 ambient_term) {
+    const glm::vec3 ambient(ambient_term);
     if (lights.size() > gpu::kMaxPointLights) {
         throw Error("there are ", lights.size(), " lights, at most ", gpu::kMaxPointLights, " can be used");
     }
     if (!a_power(ambient)) throw Error("the ambient light is negative or not finite");
-    for (size_t i = 0; i < lights.size(); ++i) {
-        if (!finite(lights[i].position_m) || !a_power(lights[i].intensity) || !a_power(glm::vec3(lights[i].radius_m))) {
-            throw Error("light ", i, " has a position, an intensity or a radius that is negative or not finite");
+    std::vector<gpu::PointLight> now;
+    for (const Light& light : lights) {
+        now.push_back(make_point_light(light));
+        if (!is_sound(now.back())) {
+            throw Error("light ", now.size() - 1,
+                        " has a position, an intensity or a radius that is negative or not finite");
         }
     }
-    const bool same_places = std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end(), same_place);
-    const bool same = ambient == ambient_ && std::equal(lights.begin(), lights.end(), lights_.begin(), lights_.end());
+    const bool same_places = std::ranges::equal(now, lights_, same_place);
+    const bool same = ambient == ambient_ && std::ranges::equal(now, lights_, same_light);
     if (!same_places) ++position_version_;
     if (!same) ++version_;
-    lights_.assign(lights.begin(), lights.end());
+    lights_ = std::move(now);
     ambient_ = ambient;
 }
 
@@ -52,9 +56,7 @@ graph::BufferId Lights::upload(graph::FrameGraph& frame) const {
     content.header.count = static_cast<uint32_t>(lights_.size());
     content.header.version = version_;
     content.header.position_version = position_version_;
-    for (size_t i = 0; i < lights_.size(); ++i) {
-        content.lights[i] = {glm::vec4(lights_[i].position_m, lights_[i].radius_m), glm::vec4(lights_[i].intensity, 0)};
-    }
+    std::ranges::copy(lights_, content.lights);
     return frame.upload<Content>("lights", std::span(&content, 1));
 }
 

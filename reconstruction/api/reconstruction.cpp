@@ -35,7 +35,7 @@ struct Reconstruction::State {
 
 Reconstruction::Reconstruction(Device& device, const ReconstructionOptions& options)
     : state_(new State{Pipeline(Access::vulkan(device), choose_settings(options)), options.lighting, {}}) {
-    state_->pipeline.set_lights(point_lights(options.lighting.lights), glm::vec3(options.lighting.ambient));
+    state_->pipeline.set_lights(options.lighting.lights, options.lighting.ambient);
 }
 
 Reconstruction::~Reconstruction() = default;
@@ -59,7 +59,7 @@ PendingView Reconstruction::view(const Intrinsics& camera, const RigidTransform&
 }
 
 void Reconstruction::wait() { state_->pipeline.wait(); }
-ReconstructionStatistics Reconstruction::statistics() { return statistics_of(state_->pipeline); }
+Statistics Reconstruction::statistics() { return statistics_of(state_->pipeline); }
 
 Scene Reconstruction::finish() {
     Scene scene;

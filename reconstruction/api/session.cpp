@@ -30,11 +30,11 @@ Lighting Session::lighting() const { return state_->core.lighting(); }
 
 PendingView Session::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
     check_view(camera, world_from_camera);
-    return Access::pending(state_->core.reconstruction().view(camera, world_from_camera));
+    return Access::pending(state_->core.pipeline().view(camera, world_from_camera));
 }
 
-void Session::wait() { state_->core.reconstruction().wait(); }
-ReconstructionStatistics Session::statistics() { return statistics_of(state_->core.reconstruction()); }
+void Session::wait() { state_->core.pipeline().wait(); }
+Statistics Session::statistics() { return statistics_of(state_->core.pipeline()); }
 std::vector<std::string> Session::shortfalls() { return shortfalls_of(state_->core); }
 
 Scene Session::finish() {

@@ -18,9 +18,7 @@ Settings& Settings::operator=(const Settings& other) {
     return *this;
 }
 
-void Settings::set(const std::string& key, const std::string& value) {
-    apply_setting(state_->values, key + "=" + value);
-}
+void Settings::set(const std::string& key, const std::string& value) { set_setting(state_->values, key, value, ""); }
 
 void Settings::load(const std::filesystem::path& file) { load_settings(state_->values, file); }
 

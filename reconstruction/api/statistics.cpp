@@ -10,10 +10,10 @@ PassTime summarised(const graph::Timing& timing) {
     return {timing.name, sorted.size(), sorted.front(), sorted[sorted.size() / 2], sorted.back()};
 }
 
-ReconstructionStatistics statistics_of(Pipeline& pipeline) {
-    ReconstructionStatistics statistics;
+Statistics statistics_of(Pipeline& pipeline) {
+    Statistics statistics;
     statistics.frames = pipeline.frames();
-    const Statistics counted = pipeline.statistics();
+    const PipelineCounters counted = pipeline.counters();
     statistics.visible_blocks = counted.visible_blocks;
     statistics.segments = counted.segments.live;
     for (const PoolState& pool : counted.pools)

@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "engine/core/shader_camera.h"
+#include "engine/core/shader_light.h"
 #include "passes/input/convert_color.h"
 #include "passes/input/convert_depth.h"
+#include "reconstruction/frame_context.h"
 
 namespace patina {
 namespace {
@@ -22,19 +23,25 @@ const LightEstimationSettings& checked(const LightEstimationSettings& settings) 
     return settings;
 }
 
-FoundLight to_host(const gpu::FoundLightWords& words) {
-    return {.position_m = glm::vec3(words.position_radius),
-            .intensity = glm::vec3(words.intensity),
-            .radius_m = words.position_radius.w,
-            .spread_m = words.spread_m,
-            .sightings = words.sightings,
-            .clipped = words.clipped,
-            .has_depth = words.has_depth != 0};
+FoundLight to_host(const gpu::FoundLight& found) {
+    return {light_of(found.light),
+            {.spread_m = found.spread_m,
+             .sightings = found.sightings,
+             .clipped = found.clipped,
+             .has_depth = found.has_depth != 0}};
 }
 
-float total(const FoundLight& light) { return light.intensity.r + light.intensity.g + light.intensity.b; }
+float total_intensity(const FoundLight& found) {
+    const glm::vec3 intensity(found.light.intensity);
+    return intensity.r + intensity.g + intensity.b;
+}
 
 }  // namespace
+
+void sort_brightest_first(std::vector<FoundLight>& lights) {
+    std::stable_sort(lights.begin(), lights.end(),
+                     [](const FoundLight& a, const FoundLight& b) { return total_intensity(a) > total_intensity(b); });
+}
 
 LightEstimation::LightEstimation(vulkan::Device& device, const LightEstimationSettings& settings)
     : settings_(checked(settings)), runner_(device), tracks_(device) {
@@ -48,10 +55,10 @@ void LightEstimation::add(const RgbdFrame& frame, float radiance_scale) {
     LightTrackIds tracks = tracks_.import(graph);
     FindLightsInputs inputs;
     inputs.depth_m = add_convert_depth(graph, frame.depth);
-    inputs.depth_camera = make_camera(frame.depth.camera, frame.world_from_depth);
+    const FrameCameras cameras = make_frame_cameras(frame);
+    inputs.depth_camera = cameras.depth.gpu;
     inputs.color = add_convert_color(graph, frame.color);
-    inputs.color_camera =
-        make_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth));
+    inputs.color_camera = cameras.color.gpu;
     inputs.radiance_scale = radiance_scale;
     add_find_lights(graph, tracks, inputs, settings_.find);
     LightTracks::keep(graph, tracks);
@@ -64,10 +71,9 @@ std::vector<FoundLight> LightEstimation::found() {
     runner_.submit(std::move(frame));
     runner_.wait();
     std::vector<FoundLight> lights;
-    for (const gpu::FoundLightWords& words : settled.as<gpu::FoundLightWords>())
-        if (words.sightings >= std::max(settings_.min_sightings, 1u)) lights.push_back(to_host(words));
-    std::stable_sort(lights.begin(), lights.end(),
-                     [](const FoundLight& a, const FoundLight& b) { return total(a) > total(b); });
+    for (const gpu::FoundLight& found : settled.as<gpu::FoundLight>())
+        if (found.sightings >= std::max(settings_.min_sightings, 1u)) lights.push_back(to_host(found));
+    sort_brightest_first(lights);
     return lights;
 }
 

@@ -17,16 +17,22 @@ struct LightEstimationSettings {
     uint32_t min_sightings = 5;  ///< a lamp seen in fewer frames is left out
 };
 
-/// A lamp and how sure it is.
-struct FoundLight {
-    glm::vec3 position_m{0};  ///< its centre, world
-    glm::vec3 intensity{0};   ///< RGB: radiance at distance r is intensity / r^2, in the reflectance sequence's values
-    float radius_m = 0;       ///< of a sphere that looks like it
-    float spread_m = 0;       ///< median distance of the sightings from the position
-    uint32_t sightings = 0;   ///< frames that showed it whole
-    uint32_t clipped = 0;     ///< sightings with clipped pixels, which make its intensity a lower bound
-    bool has_depth = true;    ///< false: triangulated from bearings
+/// What speaks for a lamp that was found.
+struct LightEvidence {
+    float spread_m = 0;      ///< median distance of the sightings from the position
+    uint32_t sightings = 0;  ///< frames that showed it whole
+    uint32_t clipped = 0;    ///< sightings with clipped pixels, which make its intensity a lower bound
+    bool has_depth = true;   ///< false: triangulated from bearings
 };
+
+/// A lamp and how sure it is. Its values are those of floats.
+struct FoundLight {
+    Light light;  ///< in the reflectance sequence's pixel values; the radius is that of a sphere that looks like it
+    LightEvidence evidence{};
+};
+
+/// Orders lamps by the sum of their intensities; equal ones keep their order.
+void sort_brightest_first(std::vector<FoundLight>& lights);
 
 /// Finds the lamps of a room from a sequence recorded at low exposure, a graph of its own (paper, Section 3.2). One
 /// device, one thread.

@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/seed.h"
+#include "engine/core/shader_light.h"
 #include "passes/lighting/sample_surface.h"
 
 namespace patina {
@@ -14,16 +15,16 @@ constexpr uint32_t kFinalSteps = 10;
 constexpr float kBrightAlbedo = 0.8f, kBrightQuantile = 0.95f;
 constexpr float kExplained = 0.5f;  // a highlight, by a lamp
 
-std::vector<gpu::LightSample> draw_samples(Pipeline& reconstruction) {
-    const ReflectanceStage* reflectance = reconstruction.reflectance();
+std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
+    const ReflectanceStage* reflectance = pipeline.reflectance();
     if (!reflectance) throw Error("lights cannot be found in a reconstruction without reflectance");
-    reconstruction.wait();  // so that all frames are fused
-    graph::FrameGraph frame = reconstruction.runner().begin();
+    pipeline.wait();  // so that all frames are fused
+    graph::FrameGraph frame = pipeline.runner().begin();
     const ObservationMap& map = reflectance->observations();
-    const uint32_t seed = seed_of_draw(0, reconstruction.settings().seed);
+    const uint32_t seed = seed_of_draw(0, pipeline.settings().seed);
     const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame), seed));
-    reconstruction.runner().submit(std::move(frame));
-    reconstruction.wait();
+    pipeline.runner().submit(std::move(frame));
+    pipeline.wait();
     return samples.as<gpu::LightSample>();
 }
 
@@ -38,11 +39,8 @@ std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& hig
 /// that does not reach it.
 class TryInVolume {
   public:
-    TryInVolume(Pipeline& reconstruction, std::span<const gpu::LightSample> drawn, const LitSurface& surface)
-        : reconstruction_(reconstruction),
-          drawn_(drawn),
-          surface_(surface),
-          highlights_(in_groups(surface.highlights())) {}
+    TryInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, const LitSurface& surface)
+        : pipeline_(pipeline), drawn_(drawn), surface_(surface), highlights_(in_groups(surface.highlights())) {}
 
     std::vector<TrialLamp> operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
         std::vector<TrialLamp> lamps;
@@ -67,17 +65,17 @@ class TryInVolume {
   private:
     std::vector<float> try_batch(std::span<const gpu::LightSample> lit, std::span<const glm::vec3> places_m,
                                  uint32_t count) const {
-        graph::FrameGraph frame = reconstruction_.runner().begin();
+        graph::FrameGraph frame = pipeline_.runner().begin();
         const auto samples = frame.upload<gpu::LightSample>("lighting.samples", lit);
-        const VoxelMap& map = reconstruction_.map();
+        const VoxelMap& map = pipeline_.map();
         const graph::Readback received =
             frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m, count));
-        reconstruction_.runner().submit(std::move(frame));
-        reconstruction_.wait();
+        pipeline_.runner().submit(std::move(frame));
+        pipeline_.wait();
         return received.as<float>();
     }
 
-    Pipeline& reconstruction_;
+    Pipeline& pipeline_;
     std::span<const gpu::LightSample> drawn_;
     const LitSurface& surface_;
     std::vector<gpu::LightSample> highlights_;
@@ -97,7 +95,7 @@ double brightest_albedo(const std::array<FittedIntensities, 3>& channels) {
 }
 
 /// Sightings are the highlights that no other lamp explains better, spread the median distance of their mirrored rays.
-void measure_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps, size_t index, FoundLight& found) {
+LightEvidence measure_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps, size_t index) {
     std::vector<float> off_m;
     for (size_t i = 0; i < surface.highlights().size(); ++i) {
         const float own = lamps[index].unexplained[i];
@@ -107,16 +105,17 @@ void measure_highlights(const LitSurface& surface, std::span<const TrialLamp> la
         const gpu::LightSample& sample = surface.highlights()[i];
         const glm::vec3 normal(sample.normal), viewer(sample.highlight);
         const glm::vec3 mirrored = 2 * glm::dot(viewer, normal) * normal - viewer;
-        off_m.push_back(glm::length(glm::cross(found.position_m - glm::vec3(sample.point_m), mirrored)));
+        off_m.push_back(glm::length(glm::cross(lamps[index].place_m - glm::vec3(sample.point_m), mirrored)));
     }
-    found.sightings = static_cast<uint32_t>(off_m.size());
-    if (off_m.empty()) return;
+    LightEvidence evidence{.sightings = static_cast<uint32_t>(off_m.size())};
+    if (off_m.empty()) return evidence;
     const auto middle = off_m.begin() + static_cast<ptrdiff_t>(off_m.size() / 2);
     std::nth_element(off_m.begin(), middle, off_m.end());
-    found.spread_m = *middle;
+    evidence.spread_m = *middle;
+    return evidence;
 }
 
-FittedLights told(const LitSurface& surface, std::span<const TrialLamp> lamps) {
+FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lamps) {
     std::vector<ReceivedLight> received;
     for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
     std::array<FittedIntensities, 3> channels;
@@ -125,16 +124,12 @@ FittedLights told(const LitSurface& surface, std::span<const TrialLamp> lamps) {
     const double scale = brightest_albedo(channels) / kBrightAlbedo;
     FittedLights fitted;
     for (size_t l = 0; l < lamps.size(); ++l) {
-        FoundLight lamp;
-        lamp.position_m = lamps[l].place_m;
-        for (int c = 0; c < 3; ++c) lamp.intensity[c] = static_cast<float>(scale * channels[c].intensities[l]);
-        measure_highlights(surface, lamps, l, lamp);
-        fitted.lamps.push_back(lamp);
+        Light lamp{.position_m = glm::dvec3(lamps[l].place_m)};
+        for (int c = 0; c < 3; ++c) lamp.intensity[c] = scale * channels[c].intensities[l];
+        fitted.lamps.push_back({rounded_to_float(lamp), measure_highlights(surface, lamps, l)});
     }
     for (int c = 0; c < 3; ++c) fitted.ambient[c] = static_cast<float>(scale * channels[c].intensities.back());
-    const auto total = [](const FoundLight& l) { return l.intensity.r + l.intensity.g + l.intensity.b; };
-    std::stable_sort(fitted.lamps.begin(), fitted.lamps.end(),
-                     [&](const FoundLight& a, const FoundLight& b) { return total(a) > total(b); });
+    sort_brightest_first(fitted.lamps);
     const FittedIntensities all = surface.fit(received, kFinalSteps, surface.size());
     fitted.misfit = static_cast<float>(all.misfit);
     fitted.unexplained = static_cast<float>(unexplained_highlights(surface, lamps, all.intensities));
@@ -143,13 +138,12 @@ FittedLights told(const LitSurface& surface, std::span<const TrialLamp> lamps) {
 
 }  // namespace
 
-FittedLights fit_lights(Pipeline& reconstruction, std::span<const glm::vec3> seen_m,
-                        const LightFittingSettings& settings) {
-    const std::vector<gpu::LightSample> drawn = draw_samples(reconstruction);
+FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, const LightFittingSettings& settings) {
+    const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
     const LitSurface surface(drawn, settings.cell_m);
     if (surface.size() == 0) return {};
-    const TryInVolume try_lamps(reconstruction, drawn, surface);
-    return told(surface, search_lights(surface, try_lamps, seen_m, settings.search));
+    const TryInVolume try_lamps(pipeline, drawn, surface);
+    return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search));
 }
 
 }  // namespace patina

@@ -29,7 +29,6 @@ struct FittedLights {
 /// `seen`; all are moved whenever there is a new one. Intensities and albedo are known up to one factor, and up to the
 /// mean colour of the light, which is taken for white: the brightest albedo becomes 0.8. Waits for the device. Throws
 /// Error when the reconstruction has no reflectance.
-FittedLights fit_lights(Pipeline& reconstruction, std::span<const glm::vec3> seen_m,
-                        const LightFittingSettings& settings);
+FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, const LightFittingSettings& settings);
 
 }  // namespace patina

@@ -48,6 +48,16 @@ std::string name_of(Materials materials) {
 
 bool uses_given_poses(const SessionOptions& options) { return options.poses != Poses::kTrack; }
 
+std::string hinted(const std::string& sentence, const std::string& hint) {
+    return hint.empty() ? sentence : sentence + " (" + hint + ")";
+}
+
+std::string give_lights(const SessionOptions& options) {
+    return hinted(
+        "give lights or a lighting sequence (recorded at low exposure), or have lights looked for in the recording",
+        options.hints.lights);
+}
+
 void report(const SessionCallbacks& callbacks, const SessionProgress& progress) {
     if (callbacks.progress) callbacks.progress(progress);
 }

@@ -18,6 +18,12 @@ std::string name_of(Materials materials);  ///< "" where it is open
 /// Whether poses of the source are used for more than the first frame's.
 bool uses_given_poses(const SessionOptions& options);
 
+/// A sentence that asks for something, with a hint of SessionHints in brackets, if there is one.
+std::string hinted(const std::string& sentence, const std::string& hint);
+
+/// The end of a sentence that asks for lights.
+std::string give_lights(const SessionOptions& options);
+
 /// Calls what the caller gave, if anything.
 void report(const SessionCallbacks& callbacks, const SessionProgress& progress);
 void report(const SessionCallbacks& callbacks, const std::string& message);

@@ -170,7 +170,7 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device, glm::dvec
     const std::unique_ptr<Source> source = open_main(options, device, offset_m);
     const SequenceInfo& info = source->info();
     const bool tracks = !info.has_poses || options.track;
-    Pipeline reconstruction(device, settings_of_fit(options, tracks));
+    Pipeline pipeline(device, settings_of_fit(options, tracks));
     LightEstimation estimation(device, clipped_lamps(options.settings));
     BrightSurfaces bright;
     std::optional<RigidTransform> first_given;
@@ -179,21 +179,21 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device, glm::dvec
         RgbdFrame rgbd = to_rgbd(info, frame);
         if (!first_given) first_given = rgbd.world_from_depth;
         if (tracks) rgbd.world_from_depth = *first_given;
-        if (!reconstruction.add(rgbd)) {
-            const TrackingReport* report = reconstruction.tracking_report();
+        if (!pipeline.add(rgbd)) {
+            const TrackingReport* report = pipeline.tracking_report();
             return text("frame ", frame.index, " was not fused", report ? ": " + report->reason : "");
         }
-        if (tracks) rgbd.world_from_depth = reconstruction.tracking_report()->world_from_depth;
+        if (tracks) rgbd.world_from_depth = pipeline.tracking_report()->world_from_depth;
         estimation.add(rgbd, 1);
         bright.add(frame.color);
         return {};
     });
     std::vector<glm::vec3> seen_m;
-    for (const FoundLight& lamp : estimation.found()) seen_m.push_back(lamp.position_m);
-    const FittedLights fitted = fit_lights(reconstruction, seen_m, options.fitting);
+    for (const FoundLight& lamp : estimation.found()) seen_m.emplace_back(lamp.light.position_m);
+    const FittedLights fitted = fit_lights(pipeline, seen_m, options.fitting);
     // Without a lamp all pixels tell the ambient light; the fit knows a part of the surface alone, if any.
     const glm::vec3 ambient = fitted.lamps.empty() ? bright.ambient() : fitted.ambient;
-    return {"main sequence", fitted.lamps, offset_m, ambient, fitted.misfit, fitted.unexplained};
+    return {"main sequence", fitted.lamps, offset_m, glm::dvec3(ambient), fitted.misfit, fitted.unexplained};
 }
 
 std::string main_of(const LightsOptions& options, const Folders& folders) {
@@ -255,21 +255,26 @@ Illumination find_at_low_exposure(const LightsOptions& options, const Folders& f
 }  // namespace
 
 bool shines(const Illumination& illumination) {
-    return !illumination.lights.empty() || illumination.ambient != glm::vec3(0);
+    return !illumination.lights.empty() || illumination.ambient != glm::dvec3(0);
 }
 
-glm::dvec3 world_position_m(const Illumination& illumination, const FoundLight& light) {
-    return illumination.world_offset_m + glm::dvec3(light.position_m);
+glm::dvec3 world_position_m(const Illumination& illumination, const Light& light) {
+    return illumination.world_offset_m + light.position_m;
 }
 
 Lighting lighting_of(const Illumination& illumination) {
     Lighting lighting;
     lighting.found_by = illumination.found_by;
-    lighting.ambient = glm::dvec3(illumination.ambient);
-    for (const FoundLight& light : illumination.lights)
-        lighting.lights.push_back(
-            {world_position_m(illumination, light), glm::dvec3(light.intensity), light.radius_m});
+    lighting.ambient = illumination.ambient;
+    lighting.lights = lights_of(illumination);
+    for (Light& light : lighting.lights) light.position_m = world_position_m(illumination, light);
     return lighting;
+}
+
+std::vector<Light> lights_of(const Illumination& illumination) {
+    std::vector<Light> lights;
+    for (const FoundLight& found : illumination.lights) lights.push_back(found.light);
+    return lights;
 }
 
 bool has_lighting_sequence(const std::string& sequence) {

@@ -48,7 +48,7 @@ struct Illumination {
     std::string found_by = "none";   ///< "file", "lighting sequence", "main sequence", "none"
     std::vector<FoundLight> lights;  ///< brightest first; positions less world_offset_m
     glm::dvec3 world_offset_m{0};
-    glm::vec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value
+    glm::dvec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value
     float misfit = 0;      ///< of the main sequence's surface: FittedLights
     float unexplained = 0;
 };
@@ -57,10 +57,13 @@ struct Illumination {
 bool shines(const Illumination& illumination);
 
 /// Where a light is in the recording's world.
-glm::dvec3 world_position_m(const Illumination& illumination, const FoundLight& light);
+glm::dvec3 world_position_m(const Illumination& illumination, const Light& light);
 
 /// The lights in the recording's world, as files hold them.
 Lighting lighting_of(const Illumination& illumination);
+
+/// The lights where the reconstruction has them.
+std::vector<Light> lights_of(const Illumination& illumination);
 
 /// Whether a sequence has a lighting sequence of its own: the folder lighting/, or a scene's.
 bool has_lighting_sequence(const std::string& sequence);

@@ -35,7 +35,7 @@ struct Waiting {
 class Localiser {
   public:
     Localiser(vulkan::Device& device, const LocaliseOptions& options, bool given)
-        : options_(options), given_(given), reconstruction_(device, settings_of(options, given)) {}
+        : options_(options), given_(given), pipeline_(device, settings_of(options, given)) {}
 
     void fuse_main(Source& main) {
         const SequenceInfo& info = main.info();
@@ -46,7 +46,7 @@ class Localiser {
             if (const auto* frame = std::get_if<Frame>(&*reading)) fuse_main(info, *frame);
             report("room", done + 1, frames);
         }
-        if (reconstruction_.frames() == 0) throw Error("no frame of the main sequence could be used");
+        if (pipeline_.frames() == 0) throw Error("no frame of the main sequence could be used");
     }
 
     FoundPoses locate(Source& sequence) {
@@ -74,9 +74,9 @@ class Localiser {
         if (given_ && !frame.world_from_camera) return;
         const RgbdFrame rgbd = to_rgbd(info, frame);
         if (given_) {
-            reconstruction_.add_posed(rgbd);
+            pipeline_.add_posed(rgbd);
         } else {
-            reconstruction_.add(rgbd);
+            pipeline_.add(rgbd);
         }
     }
 
@@ -93,9 +93,9 @@ class Localiser {
         std::visit([&](const auto& image) { rgbd.depth.pixels = std::span(image.pixels()); }, waiting.depth);
         rgbd.color.pixels = std::span<const glm::vec3>(no_color_.pixels());
         rgbd.held_out = true;  // there are no colours to fuse
-        const bool found = reconstruction_.add(rgbd);
+        const bool found = pipeline_.add(rgbd);
         if (found) {
-            poses_.at(waiting.index) = reconstruction_.tracking_report()->world_from_depth;
+            poses_.at(waiting.index) = pipeline_.tracking_report()->world_from_depth;
             ++found_;
         }
         report("lighting", found_, total_);
@@ -108,7 +108,7 @@ class Localiser {
 
     const LocaliseOptions& options_;
     bool given_;
-    Pipeline reconstruction_;
+    Pipeline pipeline_;
     SequenceInfo info_;
     Image<glm::vec3> no_color_;
     FoundPoses poses_;

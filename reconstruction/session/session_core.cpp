@@ -22,12 +22,18 @@ namespace patina {
 
 namespace {
 
+std::string sequence_name(const SessionOptions& options, const SequenceInfo& info) {
+    return options.sequence.empty() ? info.name : options.sequence;
+}
+
 void expect_poses(const SessionOptions& options, const Source& source) {
-    const bool needs_poses = options.poses == Poses::kGiven || options.poses == Poses::kPrior;
-    if (needs_poses && !source.info().has_poses) {
-        throw Error("the sequence '", options.sequence, "' has no poses, but --poses ", name_of(options.poses),
-                    " needs them");
-    }
+    if (source.info().has_poses) return;
+    const bool prior = options.poses == Poses::kPrior;
+    if (!prior && options.poses != Poses::kGiven) return;
+    throw Error(hinted(text("'", sequence_name(options, source.info()), "' has no poses, but ",
+                            prior ? "tracking was to start from them" : "they were to be used as given",
+                            "; track the camera without them"),
+                       options.hints.track));
 }
 
 std::unique_ptr<scenes::SyntheticSource> open_scene(const SessionOptions& options, vulkan::Device& device) {
@@ -44,8 +50,7 @@ bool needs_reflectance(const SessionOptions& options) {
 
 [[noreturn]] void fail_without_lights(const SessionOptions& options, const std::string& because = "") {
     throw Error(options.reflectance_for.empty() ? "reflectance" : options.reflectance_for,
-                " needs lights: give --lights FILE or --lighting SEQUENCE or --lighting self",
-                because.empty() ? "" : "; ", because);
+                " needs lights: ", give_lights(options), because.empty() ? "" : "; ", because);
 }
 
 /// Throws Error where there is no light for what was asked. After a search that failed a run goes on without, but not
@@ -79,7 +84,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     if (needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone) fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(light_of(device_, options_, world_offset_m_));
-    start_reconstruction(std::move(network));
+    start_pipeline(std::move(network));
     if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
 }
 
@@ -108,23 +113,22 @@ void SessionCore::open(std::unique_ptr<Source> given) {
     if (!scene) inspector_.emplace(info_, convention_check(options_));
 }
 
-void SessionCore::start_reconstruction(std::optional<NetworkDescription> network) {
-    reconstruction_.emplace(device_, choose_settings(options_, info_, illumination_, std::move(network)));
-    if (!reconstruction_->reflectance()) return;
-    reconstruction_->set_lights(lights_, illumination_.ambient);
+void SessionCore::start_pipeline(std::optional<NetworkDescription> network) {
+    pipeline_.emplace(device_, choose_settings(options_, info_, illumination_, std::move(network)));
+    if (!pipeline_->reflectance()) return;
+    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
     if (options_.materials != Materials::kTruth) return;
     for (const sensor::Material& m : truth_->materials())
-        reconstruction_->set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
+        pipeline_->set_material(m.id, glm::vec3(m.ks), static_cast<float>(m.alpha));
 }
 
 void SessionCore::take_light(SessionLight light) {
     check_light(options_, light);
     illumination_ = std::move(light.illumination);
-    lights_ = point_lights(illumination_);
     shortfalls_ = std::move(light.shortfalls);
     if (!light.none_because.empty()) {
         materials_missing_ = "no materials, only geometry and colours: " + light.none_because;
-    } else if (lights_.empty()) {
+    } else if (illumination_.lights.empty()) {
         materials_missing_ = "materials hold a diffuse albedo alone: there is ambient light, but no lamp to show gloss";
     }
 }
@@ -149,28 +153,27 @@ bool SessionCore::step() {
 }
 
 void SessionCore::report_progress() {
-    const Statistics statistics = reconstruction_->statistics();
-    for (const PoolState& pool : statistics.pools) {
+    const PipelineCounters counters = pipeline_->counters();
+    for (const PoolState& pool : counters.pools) {
         if (!pool.is_full() || pool.limit == PoolLimit::kNone || !full_pools_.insert(pool.name).second) continue;
         report(options_.callbacks,
                "warning: " + full_pool_warning(pool) + "; what does not fit is left out from here on");
     }
-    report(options_.callbacks,
-           {.task = "frames",
-            .done = ledger_.read(),
-            .total = info_.frames,
-            .detail = fmt::format("{} blocks", statistics.map.capacity - statistics.map.free_blocks)});
+    report(options_.callbacks, {.task = "frames",
+                                .done = ledger_.read(),
+                                .total = info_.frames,
+                                .detail = fmt::format("{} blocks", counters.map.capacity - counters.map.free_blocks)});
 }
 
 void SessionCore::end() {
-    reconstruction_->wait();
+    pipeline_->wait();
     if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
     expect_frames();
 }
 
 void SessionCore::expect_frames() const {
     if (ledger_.used() > 0) return;
-    throw Error("no frame of '", options_.sequence.empty() ? info_.name : options_.sequence, "' could be used; ",
+    throw Error("no frame of '", sequence_name(options_, info_), "' could be used; ",
                 ledger_.skipped().empty() ? "the source ended before its first one"
                                           : "the first was skipped because: " + ledger_.skipped().front().reason);
 }
@@ -205,12 +208,12 @@ void SessionCore::fuse(Frame frame) {
 
 /// Sets the frame's pose where it is tracked.
 bool SessionCore::add(RgbdFrame& rgbd, Frame& frame) {
-    if (!tracks()) return reconstruction_->add(rgbd);
+    if (!tracks()) return pipeline_->add(rgbd);
     if (!first_given_) first_given_ = frame.world_from_camera;
     rgbd.world_from_depth = first_given_.value_or(RigidTransform(1.0));
     if (options_.poses == Poses::kPrior) rgbd.time.prior = frame.world_from_camera;
-    const bool fused = reconstruction_->add(rgbd);
-    const TrackingReport& report = *reconstruction_->tracking_report();
+    const bool fused = pipeline_->add(rgbd);
+    const TrackingReport& report = *pipeline_->tracking_report();
     tracked_.push_back({frame.index, report});
     frame.world_from_camera = report.world_from_depth;
     if (!fused) {
@@ -223,13 +226,13 @@ bool SessionCore::add(RgbdFrame& rgbd, Frame& frame) {
 
 void SessionCore::stop_if_interrupted() {
     if (!stop_requested(options_.callbacks)) return;
-    reconstruction_->wait();
+    pipeline_->wait();
     throw Interrupted("interrupted after ", ledger_.read(), info_.frames ? text(" of ", *info_.frames) : "", " frames");
 }
 
 std::string SessionCore::gains_text() {
     std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
-    const auto gains = reconstruction_->gains();
+    const auto gains = pipeline_->gains();
     for (size_t i = 0; i < gains.size(); ++i) {
         const glm::vec4 gain = gains[i].gain;
         lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
@@ -238,7 +241,7 @@ std::string SessionCore::gains_text() {
 }
 
 std::optional<std::string> SessionCore::reach_warning() const {
-    const float reach_m = reconstruction_->reach_m(info_.depth);
+    const float reach_m = pipeline_->reach_m(info_.depth);
     const double wanted_m = std::min<double>(settings().fusion.max_depth_m, info_.max_metres);
     if (reach_m >= wanted_m) return std::nullopt;
     return fmt::format(
@@ -264,11 +267,11 @@ std::vector<TimedPose> SessionCore::world_poses() const {
 
 std::vector<PoolState> SessionCore::pools() {
     try {
-        reconstruction_->wait();
+        pipeline_->wait();
     } catch (const std::exception&) {
         // Of a device that was lost the host knows what it knew before.
     }
-    return reconstruction_->statistics().pools;
+    return pipeline_->counters().pools;
 }
 
 Lighting SessionCore::lighting() const {
@@ -280,7 +283,7 @@ Lighting SessionCore::lighting() const {
 Scene SessionCore::scene_without_reflectance() {
     Scene scene;
     scene.name = info_.name;
-    scene.mesh = reconstruction_->extract_surface();
+    scene.mesh = pipeline_->extract_surface();
     scene.lighting = lighting();
     scene.trajectory = poses_;
     scene.world_offset_m = world_offset_m_;
@@ -288,7 +291,7 @@ Scene SessionCore::scene_without_reflectance() {
 }
 
 void SessionCore::add_reflectance(Scene& scene) {
-    scene.reflectance = reconstruction_->sample_reflectance(scene.mesh);
+    scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
     if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
 }
 

@@ -50,12 +50,11 @@ class SessionCore {
     /// Throws Interrupted when the caller stops it; the device has finished then.
     void stop_if_interrupted();
 
-    Pipeline& reconstruction() { return *reconstruction_; }
+    Pipeline& pipeline() { return *pipeline_; }
     vulkan::Device& device() { return device_; }
     const SessionOptions& options() const { return options_; }
     const SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
-    const ReconstructionSettings& settings() const { return reconstruction_->settings(); }
-    const std::vector<PointLight>& lights() const { return lights_; }
+    const ReconstructionSettings& settings() const { return pipeline_->settings(); }
     const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
     Lighting lighting() const;                                          ///< the same, in the scene's world
     /// Why materials are not all that they could be, and what to give; empty where nothing is missing.
@@ -64,7 +63,7 @@ class SessionCore {
     const std::vector<std::string>& shortfalls() const { return shortfalls_; }
     /// What is implausible about the frames that were read (sensor::inspect), and what the settings leave out of them.
     std::vector<std::string> warnings() const;
-    /// What was taken from all positions, metres: those of poses(), lights() and the reconstruction lack it.
+    /// What was taken from all positions, metres: those of poses(), illumination() and the reconstruction lack it.
     glm::dvec3 world_offset_m() const { return world_offset_m_; }
     const SequenceTruth& truth() const { return *truth_; }
     const sensor::Ledger& ledger() const { return ledger_; }
@@ -89,7 +88,7 @@ class SessionCore {
     bool tracks() const { return settings().tracking.has_value(); }
     void open(std::unique_ptr<Source> given);
     void take_light(SessionLight light);
-    void start_reconstruction(std::optional<NetworkDescription> network);
+    void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);
@@ -102,11 +101,10 @@ class SessionCore {
     SequenceInfo info_;
     glm::dvec3 world_offset_m_{0};
     Illumination illumination_;
-    std::vector<PointLight> lights_;
     std::string materials_missing_;
     std::vector<std::string> shortfalls_;
     std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene
-    std::optional<Pipeline> reconstruction_;
+    std::optional<Pipeline> pipeline_;
     sensor::Ledger ledger_;
     std::optional<Frame> fused_;
     std::optional<FrameResult> last_;

@@ -1,16 +1,14 @@
 #include "reconstruction/session/session_lights.h"
 
-#include "sensor/open.h"
-#include "scenes/files/scene_file.h"
-#include "sensor/truth.h"
+#include "engine/core/shader_light.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
+#include "scenes/files/scene_file.h"
+#include "sensor/open.h"
+#include "sensor/truth.h"
 
 namespace patina {
 namespace {
-
-constexpr const char* kWhatToGive =
-    "give --lights FILE, --lighting SEQUENCE (recorded at low exposure) or --lighting self";
 
 nlohmann::ordered_json to_json(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 
@@ -59,14 +57,11 @@ Illumination illumination_of(const Lighting& lighting, glm::dvec3 world_offset_m
     Illumination given;
     given.found_by = lighting.found_by;
     given.world_offset_m = world_offset_m;
-    for (const Light& light : lighting.lights) {
-        FoundLight known;
-        known.position_m = glm::vec3(light.position_m - world_offset_m);
-        known.intensity = glm::vec3(light.intensity);
-        known.radius_m = static_cast<float>(light.radius_m);
-        given.lights.push_back(known);
+    for (Light light : lighting.lights) {
+        light.position_m -= world_offset_m;
+        given.lights.push_back({rounded_to_float(light)});
     }
-    given.ambient = glm::vec3(lighting.ambient);
+    given.ambient = glm::dvec3(glm::vec3(lighting.ambient));  // as lamps are rounded
     return given;
 }
 
@@ -137,44 +132,37 @@ SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm
     if (source == LightsSource::kGiven) return given_light(options, world_offset_m);
     if (source == LightsSource::kNone) {
         light.none_because = std::holds_alternative<NoLights>(options.lighting)
-                                 ? "--lighting none asks for none"
-                                 : text("no lights were given or found; ", kWhatToGive);
+                                 ? "no lights were asked for"
+                                 : "no lights were given or found; " + give_lights(options);
         return light;
     }
     auto found = source == LightsSource::kMainSequence ? searched_in_main(device, options, world_offset_m, light)
                                                        : searched(device, options, world_offset_m, light);
     if (!found) {
-        light.none_because = text("no light was found; ", kWhatToGive);
+        light.none_because = "no light was found; " + give_lights(options);
         return light;
     }
     light.illumination = *std::move(found);
     return light;
 }
 
-std::vector<PointLight> point_lights(const Illumination& illumination) {
-    std::vector<PointLight> lights;
-    for (const FoundLight& light : illumination.lights)
-        lights.push_back({light.position_m, light.intensity, light.radius_m});
-    return lights;
-}
-
 nlohmann::ordered_json lights_json(const Illumination& illumination) {
     nlohmann::ordered_json json{{"found_by", illumination.found_by}};
     const bool found = illumination.found_by != "file";
     auto& list = json["lamps"] = nlohmann::ordered_json::array();
-    for (const FoundLight& light : illumination.lights) {
+    for (const auto& [light, evidence] : illumination.lights) {
         nlohmann::ordered_json lamp{{"position_m", to_json(world_position_m(illumination, light))},
-                                    {"intensity", to_json(glm::dvec3(light.intensity))}};
+                                    {"intensity", to_json(light.intensity)}};
         if (found) {
             lamp["radius_m"] = light.radius_m;
-            lamp["spread_m"] = light.spread_m;
-            lamp["sightings"] = light.sightings;
-            lamp["clipped_sightings"] = light.clipped;
-            lamp["triangulated"] = !light.has_depth;
+            lamp["spread_m"] = evidence.spread_m;
+            lamp["sightings"] = evidence.sightings;
+            lamp["clipped_sightings"] = evidence.clipped;
+            lamp["triangulated"] = !evidence.has_depth;
         }
         list.push_back(std::move(lamp));
     }
-    json["ambient"] = to_json(glm::dvec3(illumination.ambient));
+    json["ambient"] = to_json(illumination.ambient);
     if (illumination.found_by == "main sequence") {
         json["misfit"] = illumination.misfit;
         json["unexplained_highlights"] = illumination.unexplained;

@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "passes/state/lights.h"
 #include "reconstruction/session/find_lights.h"
 
 namespace patina {
@@ -43,8 +42,6 @@ LightsSource lights_source(const SessionOptions& options);
 /// the light, not the run. Throws Error when the file that is given cannot be read, or the sequence that is named
 /// cannot be opened; Interrupted when the user stops it.
 SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m);
-
-std::vector<PointLight> point_lights(const Illumination& illumination);
 
 /// For run.json: the lights, how they were found, and how sure that is.
 nlohmann::ordered_json lights_json(const Illumination& illumination);

@@ -24,7 +24,8 @@ std::optional<NetworkDescription> read_network(const SessionOptions& options) {
     const std::filesystem::path file = network_file(options);
     if (!file.empty()) return read_network_file(file);
     if (asked == Materials::kAuto) return {};
-    throw Error("--specular ", name_of(asked), " needs a network: give --network FILE");
+    throw Error(hinted("materials by the network need its weights, which are not installed: give their file",
+                       options.hints.network));
 }
 
 void set_specular(ReconstructionSettings& settings, const SessionOptions& options,

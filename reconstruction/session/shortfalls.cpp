@@ -31,15 +31,15 @@ std::string lost_for_good(const std::vector<TrackedFrame>& tracked) {
                        first.report.reason, count == 1 ? "frame is" : fmt::format("{} frames are", count));
 }
 
-std::vector<std::string> refusals(SessionCore& fusion) {
+std::vector<std::string> refusals(SessionCore& session) {
     std::vector<std::string> list;
-    Pipeline& reconstruction = fusion.reconstruction();
-    for (const PoolState& pool : fusion.pools()) {
+    Pipeline& pipeline = session.pipeline();
+    for (const PoolState& pool : session.pools()) {
         if (!pool.is_full()) continue;
         list.push_back(full_pool_warning(pool) +
                        (pool.limit == PoolLimit::kSetting ? fmt::format("; raise {}", pool.setting) : ""));
     }
-    if (const uint32_t refused = reconstruction.statistics().map.refused_samples; refused > 0)
+    if (const uint32_t refused = pipeline.counters().map.refused_samples; refused > 0)
         list.push_back(fmt::format("the voxel table was full: {} ray samples were left out", refused));
     return list;
 }
@@ -52,9 +52,9 @@ std::vector<std::string> shortfalls_of(SessionCore& session) {
     return list;
 }
 
-std::vector<std::string> warnings(SessionCore& fusion) {
-    std::vector<std::string> list = fusion.warnings();
-    const gpu::MapCounters counters = fusion.reconstruction().statistics().map;
+std::vector<std::string> warnings(SessionCore& session) {
+    std::vector<std::string> list = session.warnings();
+    const gpu::MapCounters counters = session.pipeline().counters().map;
     if (counters.outside_samples > 0) {
         list.push_back(
             fmt::format("{} ray samples lay outside the volume that block keys can express around the first camera",

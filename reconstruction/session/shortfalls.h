@@ -12,10 +12,10 @@ namespace patina {
 std::vector<std::string> shortfalls_of(SessionCore& session);
 
 /// What full pools refused, one sentence each; what to raise.
-std::vector<std::string> refusals(SessionCore& fusion);
+std::vector<std::string> refusals(SessionCore& session);
 
 /// What else a user should know of a fused sequence.
-std::vector<std::string> warnings(SessionCore& fusion);
+std::vector<std::string> warnings(SessionCore& session);
 
 /// Says from which frame on tracking was lost for good; empty where the last frames track, or poses are given.
 std::string lost_for_good(const std::vector<TrackedFrame>& tracked);

@@ -1,7 +1,6 @@
 #include "reconstruction/stages/color_correction.h"
 
 #include "engine/core/error.h"
-#include "engine/core/shader_camera.h"
 #include "passes/fusion/shade_color.h"
 
 namespace patina {
@@ -37,11 +36,10 @@ void ColorCorrection::reset(graph::FrameGraph& graph) {
 
 graph::ImageId ColorCorrection::add(graph::FrameGraph& graph, const VoxelMapIds& ids, graph::ImageId color_linear,
                                     const FrameContext& frame) {
-    const Intrinsics& camera = frame.color.intrinsics;
-    const Intrinsics coarse = scaled_to(camera, reduced(camera.extent, settings_.reduction));
-    const gpu::Camera coarse_camera = make_camera(coarse, frame.color.world_from_camera);
+    const Extent2D coarse = reduced(frame.color.intrinsics.extent, settings_.reduction);
+    const PosedCamera camera = resized(frame.color, coarse);
     const VisibleBlocks visible =
-        add_visible_blocks(graph, map_, ids, coarse_camera, frame.range.near_m, frame.range.far_m);
+        add_visible_blocks(graph, map_, ids, camera.gpu, frame.range.near_m, frame.range.far_m);
     const RaycastImages model = add_raycast(graph, map_, ids, visible, access_);
     GainInputs inputs;
     inputs.position_m = model.position_m;

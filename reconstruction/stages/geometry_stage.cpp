@@ -1,7 +1,6 @@
 #include "reconstruction/stages/geometry_stage.h"
 
 #include "engine/core/error.h"
-#include "engine/core/shader_camera.h"
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/sharpen_normals.h"
@@ -37,7 +36,8 @@ float GeometryStage::far_m() const {
 
 DepthRange GeometryStage::range(const Intrinsics& camera) const {
     DepthRange range{settings_.near_m, far_m(), settings_.fusion.max_depth_m};
-    const float seen_m = view_reach_m(make_camera(camera, RigidTransform(1)), settings_.map.voxel_m, range.far_m);
+    const PosedCamera posed = make_posed_camera(camera, RigidTransform(1));
+    const float seen_m = view_reach_m(posed.gpu, settings_.map.voxel_m, range.far_m);
     if (seen_m >= range.far_m) return range;
     // Behind a surface there is room for its truncation band.
     const float truncation_m = least_truncation_m(settings_.fusion, settings_.map.voxel_m);

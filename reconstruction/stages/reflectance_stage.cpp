@@ -28,9 +28,7 @@ ReflectanceStage::ReflectanceStage(vulkan::Device& device, const VoxelMap& map,
       state_(device, observations_),
       access_(preferred_reflectance_access(device.caps(), map, observations_)) {}
 
-void ReflectanceStage::set_lights(std::span<const PointLight> lights, glm::vec3 ambient) {
-    lights_.set(lights, ambient);
-}
+void ReflectanceStage::set_lights(std::span<const Light> lights, glm::dvec3 ambient) { lights_.set(lights, ambient); }
 
 void ReflectanceStage::set_material(uint32_t label, glm::vec3 ks, float alpha) { materials_.set(label, ks, alpha); }
 
@@ -72,8 +70,8 @@ void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& v
     ObservationMap::keep(graph, records);
 }
 
-void ReflectanceStage::relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const PointLight> lights,
-                               glm::vec3 ambient) {
+void ReflectanceStage::relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const Light> lights,
+                               glm::dvec3 ambient) {
     lights_.set(lights, ambient);
     settings_.refine.albedo = false;
     refine_all(graph, voxels);

@@ -61,7 +61,7 @@ class ReflectanceStage {
     ReflectanceStage(vulkan::Device& device, const VoxelMap& map, const ReflectanceStageSettings& settings);
 
     /// Replaces all lights; see Lights::set.
-    void set_lights(std::span<const PointLight> lights, glm::vec3 ambient = glm::vec3(0));
+    void set_lights(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
     /// Sets the specular material of a label; see SegmentMaterials::set.
     void set_material(uint32_t label, glm::vec3 ks, float alpha);
 
@@ -92,8 +92,8 @@ class ReflectanceStage {
 
     /// Puts the model under other lights than those it was observed under: their
     /// visibility is found, kd stays. Nothing may be added or refined after that.
-    void relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const PointLight> lights,
-                 glm::vec3 ambient);
+    void relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const Light> lights,
+                 glm::dvec3 ambient);
 
     /// What a camera sees that was cast into the model.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,

@@ -73,7 +73,7 @@ std::string format_scene_report(const SyntheticScene& scene, uint32_t frames) {
     std::ostringstream out;
     const auto line = [&](const char* label, const std::string& value) { out << label << printable(value) << "\n"; };
     line("sequence      ", text(scene.name, " (synthetic)"));
-    line("frames        ", text(frames, " unless --frames says otherwise"));
+    line("frames        ", text(frames, " by default"));
     line("time          ", text(sensor::fixed((frames - 1) / scene.fps, 2), " s at ", scene.fps, " frames/s"));
     line("colour camera ", sensor::camera_line(color));
     line("              ", sensor::offset_line(offset));

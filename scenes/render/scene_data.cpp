@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "engine/core/shader_light.h"
 #include "scenes/render/bvh.h"
 
 namespace patina::scenes {
@@ -203,8 +204,7 @@ SceneData pack_scene(const SyntheticScene& scene) {
     SceneData data;
     for (const SceneObject& object : scene.objects) data.objects.push_back(to_gpu(object, data.texels));
     for (const Light& light : scene.lights)
-        data.lights.push_back(
-            {vec4(light.position_m, light.radius_m), vec4(light.intensity, 0), vec4(emitted_radiance(light), 0)});
+        data.lights.push_back({make_point_light(light), vec4(emitted_radiance(light), 0)});
     const Primitives all = primitives_of(scene);
     const Bvh parts = build_bvh(all.part_bounds, kPartsPerLeaf);
     const Bvh triangles = build_bvh(all.triangle_bounds, kTrianglesPerLeaf);

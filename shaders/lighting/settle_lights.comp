@@ -7,7 +7,7 @@
 layout(local_size_x = kMaxSightings) in;
 layout(std430, binding = 0) readonly buffer Tracks { LightTrack tracks[]; };
 layout(std430, binding = 1) readonly buffer History { LightSighting history[]; };
-layout(std430, binding = 2) writeonly buffer Found { FoundLightWords found[]; };
+layout(std430, binding = 2) writeonly buffer Found { FoundLight found[]; };
 
 // Bearings closer together than this cannot tell a distance: 3 degrees, where an error of a pixel is some 5 %.
 const float kLeastParallax = 0.05;
@@ -71,6 +71,6 @@ void main() {
         median(has_depth ? distance(s.center_radius.xyz, position_m) : length(cross(off_m, s.bearing.xyz)), count);
     if (lane != 0u) return;
     const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0);
-    found[light] = FoundLightWords(vec4(position_m, radius_m), vec4(intensity, 0.0), spread_m,
-                                   found_one ? track.sightings : 0u, track.has_depth, track.clipped);
+    found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0)), spread_m,
+                              found_one ? track.sightings : 0u, track.has_depth, track.clipped);
 }

@@ -79,7 +79,7 @@ float bounce_density(Vertex v, vec3 to_light) {
 }
 
 // To a lamp, in a direction drawn from the cone under which it is seen; from inside, the half space around its centre.
-Way way_to_lamp(Vertex v, SceneLight lamp, vec2 u) {
+Way way_to_lamp(Vertex v, PointLight lamp, vec2 u) {
     const vec3 to_center_m = lamp.position_m.xyz - v.surface.point_m;
     const float distance2 = max(dot(to_center_m, to_center_m), 1e-20);
     const float radius2 = lamp.position_m.w * lamp.position_m.w;
@@ -95,7 +95,7 @@ Way way_to_lamp(Vertex v, SceneLight lamp, vec2 u) {
 }
 
 // The largest irradiance that a lamp may cause, but for a factor.
-float strength(SceneLight lamp, vec3 point_m) {
+float strength(PointLight lamp, vec3 point_m) {
     const vec3 offset_m = lamp.position_m.xyz - point_m;
     return mean(lamp.intensity.rgb) / max(dot(offset_m, offset_m), max(lamp.position_m.w * lamp.position_m.w, 1e-12));
 }
@@ -103,17 +103,17 @@ float strength(SceneLight lamp, vec3 point_m) {
 // To one lamp for all, picked in proportion to its strength.
 Way way_to_any_lamp(Vertex v, vec3 u) {
     float total = 0.0;
-    for (uint i = 0u; i < scene.light_count; ++i) total += strength(lights[i], v.surface.point_m);
+    for (uint i = 0u; i < scene.light_count; ++i) total += strength(lights[i].light, v.surface.point_m);
     uint picked = 0u;
     float picked_strength = 0.0, left = u.z * total;
     for (uint i = 0u; i < scene.light_count; ++i) {
-        const float own = strength(lights[i], v.surface.point_m);
+        const float own = strength(lights[i].light, v.surface.point_m);
         const bool reached = left >= 0.0 && own > 0.0;
         picked = reached ? i : picked;
         picked_strength = reached ? own : picked_strength;
         left -= own;
     }
-    Way way = way_to_lamp(v, lights[picked], u.xy);
+    Way way = way_to_lamp(v, lights[picked].light, u.xy);
     way.light *= picked_strength > 0.0 ? total / picked_strength : 0.0;
     return way;
 }
@@ -139,7 +139,7 @@ void add_light(Vertex vertices[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], uint in
             if (i == lamp_ways)
                 ways[k] = way_to_far_light(vertices[k], words);
             else if (depth == 0u)
-                ways[k] = way_to_lamp(vertices[k], lights[i], u.xy);
+                ways[k] = way_to_lamp(vertices[k], lights[i].light, u.xy);
             else
                 ways[k] = way_to_any_lamp(vertices[k], u.xyz);
             rays[k] = Ray(vertices[k].surface.lifted_m, ways[k].end_m - vertices[k].surface.lifted_m);

@@ -198,7 +198,7 @@ void hit_lamps(Ray rays[BUNDLE_RAYS], inout Hit hits[BUNDLE_RAYS], out uint lamp
     EACH_RAY lamps[k] = kNothingHit;
     const uint end = scene.has_lamps != 0u ? scene.light_count : 0u;
     for (uint i = 0u; i < end; ++i) {
-        const vec4 sphere = lights[i].position_m;
+        const vec4 sphere = lights[i].light.position_m;
         EACH_RAY {
             const float length2 = dot(rays[k].direction, rays[k].direction);
             const vec3 to_center = sphere.xyz - rays[k].origin_m;

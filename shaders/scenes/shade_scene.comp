@@ -36,7 +36,7 @@ Seen load(ivec2 pixel, vec3 center_m) {
                 texelFetch(ks_alpha, pixel, 0), texelFetch(object_id, pixel, 0).x != 0u);
 }
 
-void add_light(SceneLight light, Seen seen[kBundleRays], inout vec3 sums[kBundleRays]) {
+void add_light(PointLight light, Seen seen[kBundleRays], inout vec3 sums[kBundleRays]) {
     Ray rays[kBundleRays];
     bool blocked[kBundleRays];
     // From the light, so that the rays of a bundle start in one point.
@@ -64,7 +64,7 @@ void main() {
         sums[k] = vec3(0.0);
     }
     const uint light_count = scene.light_count;
-    for (uint i = 0u; i < light_count; ++i) add_light(lights[i], seen, sums);
+    for (uint i = 0u; i < light_count; ++i) add_light(lights[i].light, seen, sums);
     EACH_RAY {
         const ivec2 pixel = ivec2(first + uvec2(0u, k));
         if (uint(pixel.y) < params.camera.extent.y)

@@ -28,7 +28,7 @@ void store(ivec2 pixel, Ray ray, Hit hit, uint lamp, Surface surface) {
         reflects ? vec4(surface.lifted_m, 0.0) : vec4(0.0);
     vec3 facing = surface.normal, emitted = vec3(0.0);
     if (lamp != kNothingHit) {
-        facing = normalize(ray.origin_m + hit.t * ray.direction - lights[lamp].position_m.xyz);
+        facing = normalize(ray.origin_m + hit.t * ray.direction - lights[lamp].light.position_m.xyz);
         emitted = lights[lamp].emitted.rgb;
     }
     imageStore(normal, pixel, seen ? vec4(facing, 0.0) : vec4(0.0));

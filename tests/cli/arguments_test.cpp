@@ -147,16 +147,16 @@ TEST_F(Arguments, BadSettingsFilesAreNamed) {
 TEST_F(Arguments, SettingsAreEchoed) {
     const fs::path file = beside("settings.toml");
     write_text(file, "[map]\nvoxel_m = 0.02\ncapacity_blocks = 1000\n[fusion]\nmax_depth_m = 3\n");
-    const nlohmann::json record = run_quietly(
+    const nlohmann::json summary = run_quietly(
         sequence(), {"--settings", file, "--set", "map.capacity_blocks=2000", "--frames", "2", "--seed", "7"});
-    const nlohmann::json& settings = record["settings"];
+    const nlohmann::json& settings = summary["settings"];
     EXPECT_EQ(settings["map.voxel_m"], 0.02);
     EXPECT_EQ(settings["map.capacity_blocks"], 2000) << "the command line wins over the file";
     EXPECT_EQ(settings["fusion.max_depth_m"], 3);
     EXPECT_EQ(settings["fusion.max_weight"], 6) << "defaults are echoed too";
     EXPECT_EQ(settings["frames"], 2);
-    EXPECT_EQ(record["seed"], 7);
-    EXPECT_EQ(record["frames"]["used"], 2);
+    EXPECT_EQ(summary["seed"], 7);
+    EXPECT_EQ(summary["frames"]["used"], 2);
 }
 
 }  // namespace

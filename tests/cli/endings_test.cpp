@@ -33,7 +33,7 @@ class Endings : public RunFolderTest {
         EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
         const std::string line = outcome.out.substr(0, outcome.out.find('\n'));
         EXPECT_THAT(line, AllOf(StartsWith("incomplete: "), HasSubstr(part)));
-        EXPECT_THAT(record_of(out())["shortfalls"].dump(), HasSubstr(part));
+        EXPECT_THAT(summary_of(out())["shortfalls"].dump(), HasSubstr(part));
         EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("Incomplete"));
     }
 
@@ -57,8 +57,8 @@ class Endings : public RunFolderTest {
 TEST_F(Endings, WithoutLightsTheSummarySaysWhatToGive) {
     const Outcome outcome = run(sequence());
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("no materials"), HasSubstr("give --lights FILE")));
-    EXPECT_THAT(record_of(out()).value("materials_missing", ""), HasSubstr("--lighting self"));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("no materials"), HasSubstr("(--lights FILE, ")));
+    EXPECT_THAT(summary_of(out()).value("materials_missing", ""), HasSubstr("--lighting self"));
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no materials"));
 }
 
@@ -66,12 +66,12 @@ TEST_F(Endings, WithoutALampThereIsAmbientLight) {
     const Outcome outcome = run(sequence(), {"--lighting", "self"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("materials hold a diffuse albedo alone"));
-    const nlohmann::json record = record_of(out());
-    EXPECT_TRUE(record["lights"]["lamps"].empty());
-    EXPECT_GT(record["lights"]["ambient"][0], 0);
-    EXPECT_EQ(record["settings"]["specular"], "off");
+    const nlohmann::json summary = summary_of(out());
+    EXPECT_TRUE(summary["lights"]["lamps"].empty());
+    EXPECT_GT(summary["lights"]["ambient"][0], 0);
+    EXPECT_EQ(summary["settings"]["specular"], "off");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
-    EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, record["lights"]["ambient"][0], 1e-6);
+    EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, summary["lights"]["ambient"][0], 1e-6);
     EXPECT_THAT(read_text(out() / "scene.glb"), HasSubstr("_KD"));
 }
 
@@ -167,9 +167,9 @@ TEST_F(Endings, AReportThatCannotBeWrittenCostsTheReportAlone) {
     EXPECT_EQ(shell("ulimit -f " + limit + "; exec \"$PATINA\" run '" + sequence().string() + "' --out '" +
                     out().string() + "' --set map.voxel_m=0.04 --set fusion.truncation_m=0.16 >/dev/null 2>&1"),
               3);
-    const nlohmann::json record = record_of(out());
-    EXPECT_EQ(record["finished"], true);
-    EXPECT_THAT(record["shortfalls"].dump(), HasSubstr("report.html could not be written: "));
+    const nlohmann::json summary = summary_of(out());
+    EXPECT_EQ(summary["finished"], true);
+    EXPECT_THAT(summary["shortfalls"].dump(), HasSubstr("report.html could not be written: "));
     EXPECT_EQ(read_text(out() / "scene.glb").substr(0, 4), "glTF");
     EXPECT_FALSE(fs::exists(out() / "report.html"));
 }
@@ -201,7 +201,7 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
         const Outcome eval = patina({"eval", recording, to, "--seen", "1", "--quiet"});
         ASSERT_EQ(eval.exit_code, 0) << eval.err;
     }
-    const nlohmann::json moved = record_of(beside("far-run")), stayed = record_of(beside("cubes-run"));
+    const nlohmann::json moved = summary_of(beside("far-run")), stayed = summary_of(beside("cubes-run"));
     EXPECT_FALSE(stayed.contains("world_offset_m"));
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(moved["world_offset_m"][axis], offset_m[axis], 5);

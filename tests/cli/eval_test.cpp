@@ -151,11 +151,11 @@ TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
     const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "3", "--extent", "192x160",
                                   "--quiet", "--out", recording});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    const auto record = run_quietly(recording, {"--labels", "truth", "--materials", "truth", "--dump-every", "3",
-                                                "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
-    EXPECT_EQ(record["lights"]["found_by"], "lighting sequence");
-    ASSERT_EQ(record["lights"]["lamps"].size(), 3u);
-    for (const auto& lamp : record["lights"]["lamps"]) {
+    const auto summary = run_quietly(recording, {"--labels", "truth", "--materials", "truth", "--dump-every", "3",
+                                                 "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
+    EXPECT_EQ(summary["lights"]["found_by"], "lighting sequence");
+    ASSERT_EQ(summary["lights"]["lamps"].size(), 3u);
+    for (const auto& lamp : summary["lights"]["lamps"]) {
         EXPECT_GE(lamp["sightings"], 5);
         EXPECT_LT(lamp["spread_m"], 0.02);
     }

@@ -73,9 +73,9 @@ class Golden : public RunFolderTest {
 };
 
 /// run.json without what may differ between two runs.
-std::string without_times(nlohmann::json record) {
-    for (const char* key : {"times", "passes"}) EXPECT_EQ(record.erase(key), 1u) << key;
-    return record.dump(1);
+std::string without_times(nlohmann::json summary) {
+    for (const char* key : {"times", "passes"}) EXPECT_EQ(summary.erase(key), 1u) << key;
+    return summary.dump(1);
 }
 
 std::set<std::string> names(const std::map<std::string, std::string>& files) {
@@ -97,7 +97,7 @@ TEST_F(Golden, TwoRunsGiveTheSameBytes) {
         if (name == "run.json" || name == "report.html") continue;  // hold times
         EXPECT_TRUE(content == second.at(name)) << name << " differs";
     }
-    EXPECT_EQ(without_times(record_of(beside("first"))), without_times(record_of(beside("second"))));
+    EXPECT_EQ(without_times(summary_of(beside("first"))), without_times(summary_of(beside("second"))));
 }
 
 TEST_F(Golden, TwoTrackedRunsGiveTheSameBytes) {
@@ -109,11 +109,11 @@ TEST_F(Golden, TwoTrackedRunsGiveTheSameBytes) {
     };
     const auto first = tracked("first"), second = tracked("second");
     for (const char* name : {"scene.glb", "trajectory.txt"}) EXPECT_TRUE(first.at(name) == second.at(name)) << name;
-    const nlohmann::json record = record_of(beside("first"));
-    EXPECT_EQ(without_times(record), without_times(record_of(beside("second"))));
-    EXPECT_EQ(record["tracking"]["tracking"], 4);
-    EXPECT_EQ(record["tracking"]["frames"].size(), 4u);
-    EXPECT_EQ(record["tracking"]["frames"][3]["state"], "tracking");
+    const nlohmann::json summary = summary_of(beside("first"));
+    EXPECT_EQ(without_times(summary), without_times(summary_of(beside("second"))));
+    EXPECT_EQ(summary["tracking"]["tracking"], 4);
+    EXPECT_EQ(summary["tracking"]["frames"].size(), 4u);
+    EXPECT_EQ(summary["tracking"]["frames"][3]["state"], "tracking");
     EXPECT_THAT(first.at("report.html"), ::testing::HasSubstr("Tracking"));
 }
 
@@ -144,10 +144,10 @@ TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
     const std::string scene = read_text(beside("live") / "scene.glb");
     EXPECT_TRUE(scene == read_text(beside("from_files") / "scene.glb"));
 
-    const nlohmann::json record = record_of(beside("from_files"));
-    EXPECT_EQ(record["frames"], nlohmann::json({{"read", 12}, {"used", 12}, {"skipped", nlohmann::json::array()}}));
-    EXPECT_GT(record["totals"]["triangles"], 10000);
-    EXPECT_TRUE(record["warnings"].empty()) << record["warnings"];
+    const nlohmann::json summary = summary_of(beside("from_files"));
+    EXPECT_EQ(summary["frames"], nlohmann::json({{"read", 12}, {"used", 12}, {"skipped", nlohmann::json::array()}}));
+    EXPECT_GT(summary["totals"]["triangles"], 10000);
+    EXPECT_TRUE(summary["warnings"].empty()) << summary["warnings"];
     for (const char* frame : {"000004", "000008"}) {
         const Image<float> view_m =
             sensor::read_exr_depth(beside("from_files") / "frames" / (std::string(frame) + ".exr"));

@@ -52,15 +52,15 @@ class Interrupt : public RunFolderTest {
         EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
         EXPECT_THAT(outcome.out, StartsWith("incomplete: interrupted after "));
         EXPECT_THAT(outcome.out, HasSubstr("of 100000 frames"));
-        const nlohmann::json record = record_of(results);
-        EXPECT_EQ(record["finished"], false);
-        EXPECT_THAT(record.value("ended", ""), AllOf(StartsWith("interrupted after "), HasSubstr("of 100000 frames")));
-        EXPECT_EQ(record["shortfalls"][0], record["ended"]);
-        EXPECT_GT(record["totals"]["triangles"], 10000);
+        const nlohmann::json summary = summary_of(results);
+        EXPECT_EQ(summary["finished"], false);
+        EXPECT_THAT(summary.value("ended", ""), AllOf(StartsWith("interrupted after "), HasSubstr("of 100000 frames")));
+        EXPECT_EQ(summary["shortfalls"][0], summary["ended"]);
+        EXPECT_GT(summary["totals"]["triangles"], 10000);
         EXPECT_EQ(read_text(results / "scene.glb").substr(0, 4), "glTF");
         EXPECT_THAT(read_text(results / "report.html"), HasSubstr("interrupted after "));
         const std::string trajectory = read_text(results / "trajectory.txt");
-        EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 1 + record["frames"]["used"].get<int>());
+        EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 1 + summary["frames"]["used"].get<int>());
     }
 };
 

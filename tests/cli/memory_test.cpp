@@ -29,7 +29,7 @@ TEST_F(FilledMemory, EverySubcommandGivesItsResult) {
     run({"lights", recording, "--out", lights});
     EXPECT_TRUE(fs::exists(lights));
     run({"run", recording, "--lights", lights, "--dump-every", "1", "--out", out()});
-    EXPECT_EQ(record_of(out())["frames"]["used"], 4);
+    EXPECT_EQ(summary_of(out())["frames"]["used"], 4);
     run({"eval", recording, out()});
     EXPECT_TRUE(fs::exists(out() / "eval/eval.json"));
     run({"render", recording, "--lights", lights, "--extent", "64x48", "--out", views});

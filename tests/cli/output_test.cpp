@@ -93,8 +93,8 @@ TEST_F(Output, NothingOfAnEarlierRunStaysAndTheUsersFilesDo) {
     EXPECT_FALSE(fs::exists(out() / "frames"));
     EXPECT_EQ(files.at("notes.txt") + files.at("photos/a.jpg"), "minemine");
     std::set<std::string> listed;
-    const nlohmann::json record = record_of(out());
-    for (const auto& name : record["files"]) listed.insert(name.get<std::string>());
+    const nlohmann::json summary = summary_of(out());
+    for (const auto& name : summary["files"]) listed.insert(name.get<std::string>());
     for (const auto& [name, bytes] : files)
         EXPECT_EQ(listed.contains(name), name != "notes.txt" && name != "photos/a.jpg") << name;
     EXPECT_EQ(std::distance(fs::directory_iterator(out().parent_path()), {}), 2) << "sequence and out";
@@ -175,7 +175,7 @@ TEST_F(Output, EveryPictureHasItsRunsIdAndEvalRefusesAMixture) {
         const Outcome outcome =
             patina({"run", recording, "--dump-every", "1", "--set", voxel, "--quiet", "--out", folder});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return record_of(folder)["id"].get<std::string>();
+        return summary_of(folder)["id"].get<std::string>();
     };
     const std::string id = run(out(), "map.voxel_m=0.04"), other_id = run(other, "map.voxel_m=0.05");
     EXPECT_NE(id, other_id);

@@ -58,17 +58,16 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
     ASSERT_EQ(info.metres_per_unit, 0.001);
 
     vulkan::Device device(device_options());
-    Pipeline reconstruction(device, {});
+    Pipeline pipeline(device, {});
     Comparison comparison;
     const uint32_t count = std::min(*info.frames, frames_to_use());
     for (uint32_t i = 0; i < count; ++i) {
         const auto frame = std::get<Frame>(source.next().value());
-        reconstruction.add(patina::to_rgbd(info, frame));
+        pipeline.add(patina::to_rgbd(info, frame));
         if (i % kViewEvery != kViewEvery - 1) continue;
-        const ViewReadback view = reconstruction.view(info.depth, *frame.world_from_camera);
-        reconstruction.wait();
-        comparison.add(view.get(), std::get<Image<uint16_t>>(frame.depth),
-                       reconstruction.settings().fusion.max_depth_m);
+        const ViewReadback view = pipeline.view(info.depth, *frame.world_from_camera);
+        pipeline.wait();
+        comparison.add(view.get(), std::get<Image<uint16_t>>(frame.depth), pipeline.settings().fusion.max_depth_m);
     }
     ASSERT_FALSE(comparison.errors_m.empty());
     const double seen = static_cast<double>(comparison.errors_m.size()) / static_cast<double>(comparison.readings);
@@ -78,7 +77,7 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
     EXPECT_LE(comparison.quantile(0.5), 0.008f);
     EXPECT_LE(comparison.quantile(0.9), 0.02f);
     EXPECT_GT(seen, 0.9) << "share of the readings whose pixel shows the model";
-    EXPECT_EQ(reconstruction.statistics().map.refused_blocks, 0u);
+    EXPECT_EQ(pipeline.counters().map.refused_blocks, 0u);
 }
 
 }  // namespace

@@ -126,7 +126,8 @@ TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
     EXPECT_THAT(complaint({"--out", views, "--extent", "0x3"}, 2), HasSubstr("WIDTHxHEIGHT"));
     EXPECT_THAT(complaint({"--out", views, "--exposure", "-1"}, 2), HasSubstr("--exposure"));
     EXPECT_THAT(complaint({"--out", views, "--show", "beauty"}, 2), HasSubstr("beauty"));
-    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}), HasSubstr("--show kd needs lights: give --lights FILE"));
+    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}),
+                AllOf(HasSubstr("--show kd needs lights: give lights "), HasSubstr("(--lights FILE, ")));
     EXPECT_THAT(expect_failure(patina({"render", beside("nowhere"), "--out", views, "--show", "kd"})),
                 HasSubstr("nowhere does not exist"))
         << "not that lights are missing";

@@ -17,10 +17,10 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
     return files;
 }
 
-nlohmann::json record_of(const fs::path& run_folder) {
-    const auto record = nlohmann::json::parse(read_text(run_folder / "run.json"), nullptr, false);
-    EXPECT_FALSE(record.is_discarded()) << "no run.json in " << run_folder;
-    return record.is_discarded() ? nlohmann::json() : record;
+nlohmann::json summary_of(const fs::path& run_folder) {
+    const auto summary = nlohmann::json::parse(read_text(run_folder / "run.json"), nullptr, false);
+    EXPECT_FALSE(summary.is_discarded()) << "no run.json in " << run_folder;
+    return summary.is_discarded() ? nlohmann::json() : summary;
 }
 
 std::string expect_failure(const Outcome& outcome, int exit_code) {
@@ -51,7 +51,7 @@ nlohmann::json RunFolderTest::run_quietly(const std::string& input, std::vector<
     EXPECT_EQ(outcome.exit_code, 0) << "signal " << outcome.signal;
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err, "");
-    return record_of(out_);
+    return summary_of(out_);
 }
 
 std::string RunFolderTest::failure_of_run(const std::string& input, std::vector<std::string> more,

@@ -17,7 +17,7 @@ namespace patina::testing {
 std::map<std::string, std::string> files_in(const std::filesystem::path& folder);
 
 /// run.json of a finished run; a failure of the test, and null, where there is none.
-nlohmann::json record_of(const std::filesystem::path& run_folder);
+nlohmann::json summary_of(const std::filesystem::path& run_folder);
 
 /// A test with an output folder, and with a recorded sequence of three tiny frames.
 class RunFolderTest : public ::testing::Test {

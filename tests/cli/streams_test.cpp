@@ -23,7 +23,7 @@ class Streams : public RunFolderTest {
     }
 
     void expect_scene() {
-        EXPECT_EQ(record_of(out()).value("frames", nlohmann::json()).value("used", 0), 3);
+        EXPECT_EQ(summary_of(out()).value("frames", nlohmann::json()).value("used", 0), 3);
         EXPECT_EQ(read_text(out() / "scene.glb").substr(0, 4), "glTF");
     }
 };
@@ -33,7 +33,7 @@ TEST_F(Streams, ProgressThatCannotBePrintedLosesNothing) {
     fs::remove(sequence() / "color/000001.png");
     for (const char* redirection : {"2>/dev/full >/dev/null", "2>&- >/dev/null", "2>&1 | head -c 1 >/dev/null"}) {
         run_with(redirection);
-        EXPECT_EQ(record_of(out()).value("frames", nlohmann::json()).value("used", 0), 2) << redirection;
+        EXPECT_EQ(summary_of(out()).value("frames", nlohmann::json()).value("used", 0), 2) << redirection;
         EXPECT_EQ(read_text(out() / "scene.glb").substr(0, 4), "glTF") << redirection;
     }
 }
@@ -76,7 +76,7 @@ TEST_F(Streams, NamesThatAreNotUtf8GetThroughToTheEnd) {
     sensor::testing::write_text(light, R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome = patina({"run", recording, "--out", results, "--lights", light, "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(record_of(results)["sequence"]["name"].get<std::string>(), StartsWith("caf"));
+    EXPECT_THAT(summary_of(results)["sequence"]["name"].get<std::string>(), StartsWith("caf"));
     EXPECT_TRUE(fs::exists(results / "scene.glb"));
 }
 

@@ -65,10 +65,10 @@ TEST_F(VulkanFault, ALostDeviceEndsTheRun) {
 TEST_F(VulkanFault, ALostDeviceLeavesWhatTheHostHas) {
     EXPECT_THAT(expect_failure(run_with("vkQueueSubmit2", 5, kDeviceLost)),
                 AllOf(HasSubstr("the Vulkan device was lost while"), HasSubstr("holds what could still be written")));
-    const nlohmann::json record = record_of(out());
-    EXPECT_EQ(record["finished"], false);
-    EXPECT_THAT(record.value("ended", ""), HasSubstr("the Vulkan device was lost"));
-    EXPECT_GT(record["frames"]["used"], 0);
+    const nlohmann::json summary = summary_of(out());
+    EXPECT_EQ(summary["finished"], false);
+    EXPECT_THAT(summary.value("ended", ""), HasSubstr("the Vulkan device was lost"));
+    EXPECT_GT(summary["frames"]["used"], 0);
     EXPECT_TRUE(std::filesystem::exists(out() / "trajectory.txt"));
     EXPECT_THAT(sensor::testing::read_text(out() / "report.html"), HasSubstr("the Vulkan device was lost"));
 }

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/export/test_record.h"
+#include "tests/export/full_summary.h"
 #include "tools/report/html.h"
 
 namespace patina {
@@ -13,7 +13,7 @@ using testing::Not;
 
 std::string report() {
     const std::vector<ReportPicture> pictures = {{"frame 12 & \"more\"", std::string("\x89PNG\0", 5)}};
-    return report_html(test::full_record(), pictures);
+    return report_html(test::full_summary(), pictures);
 }
 
 size_t count_of(const std::string& text, const std::string& part) {
@@ -58,23 +58,23 @@ TEST(Report, SaysWhatTheRunDid) {
 }
 
 TEST(Report, WhatIsIncompleteComesFirst) {
-    RunRecord record = test::full_record();
-    EXPECT_THAT(report_html(record, {}), Not(HasSubstr("Incomplete")));
-    record.finished = false;
-    record.ended = "interrupted after 12 of 60 frames";
-    record.shortfalls = {"the pool <was> full"};
-    record.materials_missing = "no lights & no lamps";
-    const std::string html = report_html(record, {});
+    RunSummary summary = test::full_summary();
+    EXPECT_THAT(report_html(summary, {}), Not(HasSubstr("Incomplete")));
+    summary.finished = false;
+    summary.ended = "interrupted after 12 of 60 frames";
+    summary.shortfalls = {"the pool <was> full"};
+    summary.materials_missing = "no lights & no lamps";
+    const std::string html = report_html(summary, {});
     EXPECT_LT(html.find("interrupted after 12"), html.find("Frames used"));
     EXPECT_LT(html.find("the pool &lt;was&gt; full"), html.find("Frames used"));
     EXPECT_THAT(html, HasSubstr("no lights &amp; no lamps"));
 }
 
 TEST(Report, ListsLightsAndMaterials) {
-    RunRecord record = test::full_record();
-    record.lamps = {{{1, -2.5, 3}, {4, 5, 6}, 0.05}};
-    record.segments = {{3, "<floor>", {glm::vec3(0.25f), WardGloss{glm::vec3(0.125f), 0.2f}, 1234, 5, 0.5f}}};
-    const std::string html = report_html(record, {});
+    RunSummary summary = test::full_summary();
+    summary.lamps = {{{1, -2.5, 3}, {4, 5, 6}, 0.05}};
+    summary.segments = {{3, "<floor>", {glm::vec3(0.25f), WardGloss{glm::vec3(0.125f), 0.2f}, 1234, 5, 0.5f}}};
+    const std::string html = report_html(summary, {});
     for (const char* part : {"Lights", "1.000 -2.500 3.000", "4.000 5.000 6.000", "5.0</td>", "Materials",
                              "&lt;floor&gt;", "0.250 0.250 0.250", "0.125 0.125 0.125", "0.200", "1&#8239;234"}) {
         EXPECT_THAT(html, HasSubstr(part));

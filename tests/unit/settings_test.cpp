@@ -120,21 +120,21 @@ TEST(Settings, MessagesNameWhereKeyValueAndRange) {
     const auto complaint = [](const std::string& assignment) {
         try {
             ReconstructionSettings settings;
-            apply_setting(settings, assignment);
+            apply_setting(settings, assignment, "here");
         } catch (const Error& error) {
             return std::string(error.what());
         }
         return std::string("no error");
     };
-    EXPECT_EQ(complaint("map.voxel_m=2"), "--set: map.voxel_m is 2, it must be a number from 0.0001 to 1 m");
-    EXPECT_EQ(complaint("map.voxel_m=thick"), "--set: map.voxel_m is 'thick', it must be a number from 0.0001 to 1 m");
+    EXPECT_EQ(complaint("map.voxel_m=2"), "here: map.voxel_m is 2, it must be a number from 0.0001 to 1 m");
+    EXPECT_EQ(complaint("map.voxel_m=thick"), "here: map.voxel_m is 'thick', it must be a number from 0.0001 to 1 m");
     EXPECT_EQ(complaint("observe.stride_px=1.5"),
-              "--set: observe.stride_px is 1.5, it must be a whole number from 1 to 64 px");
-    EXPECT_EQ(complaint("fusion.color=2"), "--set: fusion.color is 2, it must be true or false");
-    EXPECT_EQ(complaint("keyframes.tests=color"), "--set: keyframes.tests is 'color', it must be all or depth");
-    EXPECT_EQ(complaint("map.voxel=1"), "--set: there is no setting 'map.voxel'; did you mean 'map.voxel_m'?");
+              "here: observe.stride_px is 1.5, it must be a whole number from 1 to 64 px");
+    EXPECT_EQ(complaint("fusion.color=2"), "here: fusion.color is 2, it must be true or false");
+    EXPECT_EQ(complaint("keyframes.tests=color"), "here: keyframes.tests is 'color', it must be all or depth");
+    EXPECT_EQ(complaint("map.voxel=1"), "here: there is no setting 'map.voxel'; did you mean 'map.voxel_m'?");
     EXPECT_THAT(complaint("colour=1"), HasSubstr("there is no setting 'colour'; known are map.voxel_m, "));
-    EXPECT_EQ(complaint("map.voxel_m"), "--set map.voxel_m has no '=' between key and value");
+    EXPECT_EQ(complaint("map.voxel_m"), "here: 'map.voxel_m' has no '=' between key and value");
 }
 
 class SettingsFile : public ::testing::Test {

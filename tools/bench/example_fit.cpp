@@ -4,6 +4,7 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "engine/core/shader_light.h"
 #include "passes/specular/fit_ward.h"
 #include "tools/bench/filled_records.h"
 
@@ -14,10 +15,10 @@ namespace {
 constexpr uint32_t kVoxels = gpu::kExampleVoxels;
 
 Lights lights_of(const scenes::ExampleScene& scene, float exposure) {
-    std::vector<PointLight> lamps;
+    std::vector<Light> lamps;
     for (size_t i = 0; i < scene.scene.lamps; ++i) {
-        const gpu::PointLight& lamp = scene.lamps[i];
-        lamps.push_back({glm::vec3(lamp.position_m), glm::vec3(lamp.intensity) * exposure});
+        lamps.push_back(light_of(scene.lamps[i]));
+        lamps.back().intensity *= exposure;
     }
     Lights lights;
     lights.set(lamps);

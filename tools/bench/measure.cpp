@@ -39,7 +39,7 @@ uint64_t peak_resident_bytes() {
 class Bench {
   public:
     Bench(const Recording& recording, const ReconstructionSettings& settings, const vulkan::DeviceOptions& options)
-        : recording_(recording), device_(options), reconstruction_(device_, settings) {
+        : recording_(recording), device_(options), pipeline_(device_, settings) {
         const vulkan::DeviceCaps& caps = device_.caps();
         if (!caps.timestamps)
             throw Error("the device '", caps.name, "' has no timestamps, so its passes cannot be timed");
@@ -63,23 +63,22 @@ class Bench {
     void fuse(const Frame& frame) {
         const RgbdFrame rgbd = patina::to_rgbd(recording_.info, frame);
         const auto start = Clock::now();
-        reconstruction_.add(rgbd);
+        pipeline_.add(rgbd);
         add_ms_.push_back(milliseconds_since(start));
         // On a software device a frame in flight would compete with the host's work on the next one.
-        reconstruction_.wait();
-        if (reconstruction_.frames() == 1) result_.first_frame_s = milliseconds_since(start_) * 1e-3f;
+        pipeline_.wait();
+        if (pipeline_.frames() == 1) result_.first_frame_s = milliseconds_since(start_) * 1e-3f;
     }
 
     void forget_warmup() {
-        reconstruction_.runner().clear_timings();
+        pipeline_.runner().clear_timings();
         add_ms_.clear();
-        compilations_ = reconstruction_.runner().compilations();
+        compilations_ = pipeline_.runner().compilations();
     }
 
     void note_frame() {
-        visible_mvoxel_.push_back(static_cast<float>(reconstruction_.statistics().visible_blocks) * gpu::kBlockVoxels *
-                                  1e-6f);
-        const graph::CompiledFrame& frame = reconstruction_.runner().last_frame();
+        visible_mvoxel_.push_back(static_cast<float>(pipeline_.counters().visible_blocks) * gpu::kBlockVoxels * 1e-6f);
+        const graph::CompiledFrame& frame = pipeline_.runner().last_frame();
         uint32_t dispatches = 0;
         for (const uint32_t pass : frame.plan.order) {
             const graph::Pass& description = frame.description.passes[pass];
@@ -92,7 +91,7 @@ class Bench {
     }
 
     const std::vector<float>& samples(const std::string& pass) {
-        for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
+        for (const graph::Timing& timing : pipeline_.runner().pass_timings()) {
             if (timing.name == pass && timing.samples_ms.size() == result_.frames) return timing.samples_ms;
         }
         throw Error("the pass '", pass, "' was not timed once in each of ", result_.frames, " frames");
@@ -100,14 +99,14 @@ class Bench {
 
     void summarise_frames() {
         result_.frames = static_cast<uint32_t>(visible_mvoxel_.size());
-        for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
+        for (const graph::Timing& timing : pipeline_.runner().pass_timings()) {
             const Distribution ms = distribution(timing.samples_ms);
             result_.passes.push_back({timing.name, ms});
             if (ms.count < result_.frames) continue;
             (compute_[timing.name] ? result_.geometry_ms : result_.transfers_ms) += ms.median;
         }
         std::vector<float> integrate = samples("fusion.integrate");
-        if (reconstruction_.settings().fusion.color) {
+        if (pipeline_.settings().fusion.color) {
             const std::vector<float>& color = samples("fusion.integrate_color");
             std::transform(integrate.begin(), integrate.end(), color.begin(), integrate.begin(), std::plus<>());
         }
@@ -123,22 +122,22 @@ class Bench {
         result_.allocate_ms = distribution(std::move(allocate));
         result_.raycast_ms = distribution(samples("fusion.raycast"));
         result_.visible_mvoxel = distribution(visible_mvoxel_).median;
-        result_.submit_ms = distribution(reconstruction_.runner().host_timing().samples_ms);
+        result_.submit_ms = distribution(pipeline_.runner().host_timing().samples_ms);
         result_.add_ms = distribution(add_ms_);
-        result_.late_compilations = reconstruction_.runner().compilations() - compilations_;
+        result_.late_compilations = pipeline_.runner().compilations() - compilations_;
     }
 
     void extract_surfaces() {
-        const gpu::MapCounters counters = reconstruction_.statistics().map;
+        const gpu::MapCounters counters = pipeline_.counters().map;
         const uint32_t used = counters.capacity - counters.free_blocks;
         result_.allocated_mvoxel = static_cast<float>(used) * gpu::kBlockVoxels * 1e-6f;
         result_.refused_blocks = counters.refused_blocks;
         std::vector<float> gpu_ms, wall_ms;
         std::vector<std::pair<std::string, std::vector<float>>> by_pass;
         for (int i = 0; i <= kExtractions; ++i) {
-            reconstruction_.runner().clear_timings();
+            pipeline_.runner().clear_timings();
             const auto start = Clock::now();
-            result_.triangles = reconstruction_.extract_surface().triangles.size();
+            result_.triangles = pipeline_.extract_surface().triangles.size();
             if (i == 0) continue;
             wall_ms.push_back(milliseconds_since(start));
             gpu_ms.push_back(add_extraction(by_pass));
@@ -151,7 +150,7 @@ class Bench {
     /// Adds each pass's sum over one extraction; returns the sum over all passes. Extractions have the same passes.
     float add_extraction(std::vector<std::pair<std::string, std::vector<float>>>& by_pass) {
         float total_ms = 0;
-        const std::vector<graph::Timing>& timings = reconstruction_.runner().pass_timings();
+        const std::vector<graph::Timing>& timings = pipeline_.runner().pass_timings();
         by_pass.resize(timings.size());
         for (size_t i = 0; i < timings.size(); ++i) {
             float ms = 0;
@@ -164,8 +163,8 @@ class Bench {
     }
 
     void note_memory() {
-        result_.pools = reconstruction_.map().memory();
-        result_.transient_bytes = reconstruction_.runner().transient_bytes();
+        result_.pools = pipeline_.map().memory();
+        result_.transient_bytes = pipeline_.runner().transient_bytes();
         result_.recording_bytes = recording_.bytes();
         result_.peak_resident_bytes = peak_resident_bytes();
     }
@@ -173,7 +172,7 @@ class Bench {
     Clock::time_point start_ = Clock::now();  // first: before the device is opened
     const Recording& recording_;
     vulkan::Device device_;
-    Pipeline reconstruction_;
+    Pipeline pipeline_;
     Measurement result_;
     uint32_t compilations_ = 0;
     std::vector<float> visible_mvoxel_, add_ms_;

@@ -122,7 +122,7 @@ Report run(const Options& options, const Conditions& conditions) {
     ReconstructionSettings settings;
     settings.view_every_frame = true;
     settings.fusion.color = !options.no_color;
-    for (const std::string& assignment : options.assignments) patina::apply_setting(settings, assignment);
+    for (const std::string& assignment : options.assignments) patina::apply_setting(settings, assignment, "--set");
     RecordingOptions wanted = options.recording;
     wanted.extent = conditions.extent;
     wanted.frames = conditions.warmup + conditions.frames;

@@ -32,7 +32,7 @@ struct Options {
 /// Everything that is measured on: frames in memory, the scene's own lights, and all stages.
 struct Work {
     Recording recording;
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
     ReconstructionSettings settings;
 };
 
@@ -56,7 +56,7 @@ ReconstructionSettings all_stages() {
 Work prepare(const Options& options, const Conditions& conditions) {
     return {load({"synthetic:" + options.scene, {}, conditions.extent, conditions.warmup + conditions.frames},
                  conditions.device),
-            point_lights(scenes::load_scene(options.scene).lights), all_stages()};
+            scenes::load_scene(options.scene).lights, all_stages()};
 }
 
 float sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0f); }

@@ -51,12 +51,12 @@ struct Bench {
           materials(device, 2),
           state(device, map),
           runner(device) {
-        std::vector<PointLight> lamps;
+        std::vector<Light> lamps;
         for (uint32_t i = 0; i < options.lights; ++i) {
             const float x = 2.0f * static_cast<float>(i % 8) - 4.0f, z = 2.0f * static_cast<float>(i / 8) - 4.0f;
-            lamps.push_back({{x, -2.2f, z}, glm::vec3(3), 0.05f});
+            lamps.push_back({{x, -2.2f, z}, glm::dvec3(3), 0.05f});
         }
-        lights.set(lamps, glm::vec3(0.02f));
+        lights.set(lamps, glm::dvec3(0.02f));
         if (!options.diffuse) materials.set(1, glm::vec3(0.1f), 0.2f);
         settings.shadows = false;
         settings.first_marched_records = settings.marched_records = UINT32_MAX;

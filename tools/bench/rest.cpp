@@ -57,29 +57,29 @@ ReconstructionSettings settings_of(const Options& options) {
 }
 
 /// Lamps above the recording's first camera.
-void set_lights(Pipeline& reconstruction, const RgbdFrame& frame, uint32_t count) {
-    std::vector<PointLight> lamps;
+void set_lights(Pipeline& pipeline, const RgbdFrame& frame, uint32_t count) {
+    std::vector<Light> lamps;
     for (uint32_t i = 0; i < count; ++i) {
         const auto across = static_cast<float>(i % 4) - 1.5f, along = static_cast<float>(i / 4);
-        lamps.push_back({glm::vec3(frame.world_from_depth * glm::dvec4(1.5f * across, -1.5f, 1.5f * along, 1)),
-                         glm::vec3(3), 0.05f});
+        lamps.push_back({glm::dvec3(frame.world_from_depth * glm::dvec4(1.5f * across, -1.5f, 1.5f * along, 1)),
+                         glm::dvec3(3), 0.05f});
     }
-    reconstruction.set_lights(lamps, glm::vec3(0.02f));
+    pipeline.set_lights(lamps, glm::dvec3(0.02f));
 }
 
 /// Adds the frame again and again to a new reconstruction, each alone on the device.
 std::vector<FrameTimes> rest(vulkan::Device& device, const Options& options, const RgbdFrame& frame, uint32_t frames) {
-    Pipeline reconstruction(device, settings_of(options));
-    set_lights(reconstruction, frame, options.lights);
+    Pipeline pipeline(device, settings_of(options));
+    set_lights(pipeline, frame, options.lights);
     std::vector<FrameTimes> all;
     for (uint32_t i = 0; i < frames; ++i) {
-        reconstruction.runner().clear_timings();
+        pipeline.runner().clear_timings();
         const double start = processor_ms();
-        reconstruction.add(frame);
-        reconstruction.wait();
+        pipeline.add(frame);
+        pipeline.wait();
         FrameTimes& times = all.emplace_back();
         times.processor_ms = (processor_ms() - start) / 2;
-        for (const graph::Timing& timing : reconstruction.runner().pass_timings())
+        for (const graph::Timing& timing : pipeline.runner().pass_timings())
             times.passes_ms[timing.name] = std::accumulate(timing.samples_ms.begin(), timing.samples_ms.end(), 0.0);
     }
     return all;

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/core/error.h"
-#include "engine/core/shader_camera.h"
 #include "reconstruction/pipeline.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "reconstruction/stages/segmentation_stage.h"
@@ -44,16 +43,16 @@ enum class Part { kNone, kFrame, kAll };
 class Bench {
   public:
     explicit Bench(vulkan::Device& device)
-        : reconstruction_(device, {}),
-          access_(preferred_map_access(device.caps(), reconstruction_.map())),
-          segmentation_(device, reconstruction_.map(), {}, access_) {}
+        : pipeline_(device, {}),
+          access_(preferred_map_access(device.caps(), pipeline_.map())),
+          segmentation_(device, pipeline_.map(), {}, access_) {}
 
     void add(const RgbdFrame& rgbd) {
         last_ = rgbd;
-        reconstruction_.add(last_);
+        pipeline_.add(last_);
         graph::FrameGraph frame = runner().begin();
         if (frames_ == 0) segmentation_.reset(frame);
-        segmentation_.clear_new_blocks(frame, reconstruction_.map().import(frame));
+        segmentation_.clear_new_blocks(frame, pipeline_.map().import(frame));
         runner().submit(std::move(frame));
         measure(1, Part::kAll);
     }
@@ -85,7 +84,7 @@ class Bench {
                 frame.keep(out.segments);
                 frame.keep(out.count);
             } else if (part == Part::kAll) {
-                const VoxelMapIds voxels = reconstruction_.map().import(frame);
+                const VoxelMapIds voxels = pipeline_.map().import(frame);
                 frame.keep(segmentation_.add(frame, voxels, inputs, next_context()));
             }
             runner().submit(std::move(frame));
@@ -95,13 +94,11 @@ class Bench {
         return samples;
     }
 
-    graph::Runner& runner() { return reconstruction_.runner(); }
+    graph::Runner& runner() { return pipeline_.runner(); }
 
   private:
-    gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
-    gpu::Camera color_camera() const {
-        return make_camera(last_.color.camera, last_.world_from_depth * rigid_inverse(last_.color_from_depth));
-    }
+    gpu::Camera camera() const { return make_frame_cameras(last_).depth.gpu; }
+    gpu::Camera color_camera() const { return make_frame_cameras(last_).color.gpu; }
 
     FrameSegments divided(graph::FrameGraph& frame, const SegmentationInputs& inputs) const {
         return add_segment_frame(frame, inputs.surface.position_m, inputs.depth_m, camera(),
@@ -116,16 +113,16 @@ class Bench {
 
     /// The model as the depth camera sees it, and the last frame's pictures.
     SegmentationInputs cast(graph::FrameGraph& frame) {
-        const VoxelMap& map = reconstruction_.map();
+        const VoxelMap& map = pipeline_.map();
         const VoxelMapIds voxels = map.import(frame);
-        const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
+        const float far_m = pipeline_.settings().fusion.max_depth_m + 0.1f;
         const VisibleBlocks visible = add_visible_blocks(frame, map, voxels, camera(), 0.1f, far_m);
         const RaycastImages model = add_raycast(frame, map, voxels, visible, access_);
         const InputImages input = add_input(frame, last_.depth, last_.color, camera());
         return {surface_of(visible, model), input.filtered_depth_m, input.color, {}};
     }
 
-    Pipeline reconstruction_;
+    Pipeline pipeline_;
     MapAccess access_;
     SegmentationStage segmentation_;
     RgbdFrame last_;

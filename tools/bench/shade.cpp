@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/core/error.h"
-#include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/fusion/shade_color.h"
 #include "passes/fusion/sharpen_normals.h"
@@ -14,6 +13,7 @@
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "passes/shading/restore_detail.h"
+#include "reconstruction/frame_context.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "tools/bench/processor_time.h"
 #include "tools/bench/recording.h"
@@ -41,7 +41,7 @@ class Bench {
   public:
     Bench(vulkan::Device& device, const Options& options, const Recording& recording)
         : device_(device),
-          reconstruction_(device, {}),
+          pipeline_(device, {}),
           records_(device, map_settings(options.voxel_m)),
           materials_(device, 2),
           state_(device, records_) {
@@ -49,7 +49,7 @@ class Bench {
         materials_.set(1, glm::vec3(0.1f), 0.2f);
         for (const Frame& frame : recording.frames) {
             last_ = patina::to_rgbd(recording.info, frame);
-            reconstruction_.add(last_);
+            pipeline_.add(last_);
             if (&frame == &recording.frames.front()) reset();
             collect();
         }
@@ -78,16 +78,16 @@ class Bench {
         return samples;
     }
 
-    graph::Runner& runner() { return reconstruction_.runner(); }
+    graph::Runner& runner() { return pipeline_.runner(); }
 
   private:
     void set_lights(uint32_t count) {
-        std::vector<PointLight> lamps;
+        std::vector<Light> lamps;
         for (uint32_t i = 0; i < count; ++i) {
             const float x = 2.0f * static_cast<float>(i % 8) - 4.0f, z = 2.0f * static_cast<float>(i / 8) - 4.0f;
-            lamps.push_back({{x, -2.2f, z}, glm::vec3(3), 0.05f});
+            lamps.push_back({{x, -2.2f, z}, glm::dvec3(3), 0.05f});
         }
-        lights_.set(lamps, glm::vec3(0.05f));
+        lights_.set(lamps, glm::dvec3(0.05f));
     }
 
     void reset() {
@@ -97,10 +97,11 @@ class Bench {
         runner().submit(std::move(frame));
     }
 
-    gpu::Camera camera() const { return make_camera(last_.depth.camera, last_.world_from_depth); }
-    const VoxelMap& map() const { return reconstruction_.map(); }
+    gpu::Camera camera() const { return make_frame_cameras(last_).depth.gpu; }
+    gpu::Camera color_camera() const { return make_frame_cameras(last_).color.gpu; }
+    const VoxelMap& map() const { return pipeline_.map(); }
     VisibleBlocks visible(graph::FrameGraph& frame, const VoxelMapIds& voxels) {
-        const float far_m = reconstruction_.settings().fusion.max_depth_m + 0.1f;
+        const float far_m = pipeline_.settings().fusion.max_depth_m + 0.1f;
         return add_visible_blocks(frame, map(), voxels, camera(), 0.1f, far_m);
     }
     MapAccess access() const { return preferred_map_access(device_.caps(), map()); }
@@ -120,11 +121,9 @@ class Bench {
             add_measure_slope(frame, input.filtered_depth_m, last_.depth.camera),
             input.color,
             frame.upload("labels", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(labels)))};
-        const gpu::Camera color_camera =
-            make_camera(last_.color.camera, last_.world_from_depth * rigid_inverse(last_.color_from_depth));
         ObservationSettings settings;
         settings.stride_px = 1;
-        add_collect_observations(frame, records_, ids, inputs, settings, camera(), color_camera, collected_++);
+        add_collect_observations(frame, records_, ids, inputs, settings, camera(), color_camera(), collected_++);
         ObservationMap::keep(frame, ids);
         runner().submit(std::move(frame));
     }
@@ -170,7 +169,7 @@ class Bench {
     }
 
     vulkan::Device& device_;
-    Pipeline reconstruction_;
+    Pipeline pipeline_;
     ObservationMap records_;
     Lights lights_;
     SegmentMaterials materials_;

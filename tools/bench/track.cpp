@@ -32,16 +32,16 @@ constexpr const char* kYardstick = "fusion.raycast";
 class Bench {
   public:
     Bench(const Options& options, uint32_t warmup, const Recording& recording, vulkan::Device& device)
-        : options_(options), warmup_(warmup), recording_(recording), reconstruction_(device, settings()) {}
+        : options_(options), warmup_(warmup), recording_(recording), pipeline_(device, settings()) {}
 
     void run() {
         for (const Frame& frame : recording_.frames) {
-            reconstruction_.runner().clear_timings();
+            pipeline_.runner().clear_timings();
             RgbdFrame rgbd = patina::to_rgbd(recording_.info, frame);
             rgbd.world_from_depth = *recording_.frames.front().world_from_camera;
             const double start = processor_ms();
-            const bool fused = reconstruction_.add(rgbd);
-            reconstruction_.wait();
+            const bool fused = pipeline_.add(rgbd);
+            pipeline_.wait();
             if (!fused) ++lost_;
             if (&frame - recording_.frames.data() >= warmup_) keep(processor_ms() - start);
         }
@@ -75,7 +75,7 @@ class Bench {
 
     void keep(double processor) {
         FrameTimes times;
-        for (const graph::Timing& timing : reconstruction_.runner().pass_timings()) {
+        for (const graph::Timing& timing : pipeline_.runner().pass_timings()) {
             for (const float ms : timing.samples_ms) times[timing.name] += ms;
             if (!timing.samples_ms.empty()) runs_[timing.name] = timing.samples_ms.size();
         }
@@ -92,7 +92,7 @@ class Bench {
     const Options& options_;
     uint32_t warmup_;
     const Recording& recording_;
-    Pipeline reconstruction_;
+    Pipeline pipeline_;
     std::vector<FrameTimes> frames_;
     std::map<std::string, size_t> runs_;  ///< of each pass in a frame
     std::vector<float> processor_ms_;

@@ -36,6 +36,7 @@ void add_run(CLI::App& app, int& exit_code) {
                         "Write PATH.dot and PATH.json of the last frame's last graph");
     command->callback([arguments, &exit_code] {
         arguments->sequence.finish(arguments->run);
+        arguments->run.hints.track = "--poses track";
         exit_code = run(arguments->run).exit_code();
     });
 }

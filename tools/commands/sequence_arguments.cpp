@@ -95,10 +95,12 @@ Materials SequenceArguments::materials_choice() const {
 void SequenceArguments::finish(SequenceOptions& options) const {
     ReconstructionSettings& settings = Access::values(options.settings);
     if (!settings_file.empty()) load_settings(settings, settings_file);
-    for (const std::string& assignment : assignments) apply_setting(settings, assignment);
+    for (const std::string& assignment : assignments) apply_setting(settings, assignment, "--set");
     options.settings_file = settings_file;
     options.lighting = lighting_choice();
     options.materials = materials_choice();
+    options.hints.lights = "--lights FILE, --lighting SEQUENCE, --lighting self";
+    options.hints.network = "--network FILE";
     options.device = device.choice();
 }
 

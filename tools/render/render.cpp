@@ -115,21 +115,21 @@ std::vector<RigidTransform> colour_camera_poses(const SequenceInfo& info,
     return poses;
 }
 
-std::vector<RigidTransform> view_poses(const RenderOptions& options, SessionCore& fusion,
+std::vector<RigidTransform> view_poses(const RenderOptions& options, SessionCore& session,
                                        const std::vector<RigidTransform>& given) {
-    if (!given.empty()) return colour_camera_poses(fusion.info(), given);
+    if (!given.empty()) return colour_camera_poses(session.info(), given);
     std::vector<RigidTransform> recorded;
-    for (const TimedPose& pose : fusion.poses()) recorded.push_back(pose.world_from_camera);
-    recorded = colour_camera_poses(fusion.info(), recorded);
+    for (const TimedPose& pose : session.poses()) recorded.push_back(pose.world_from_camera);
+    recorded = colour_camera_poses(session.info(), recorded);
     if (options.orbit == 0) return recorded;
-    const Mesh mesh = fusion.reconstruction().extract_surface();
+    const Mesh mesh = session.pipeline().extract_surface();
     if (mesh.positions_m.empty()) throw Error("an orbit needs a surface to go around, but none was reconstructed");
     return orbit_poses(recorded, median_point(mesh.positions_m), options.orbit);
 }
 
-void render_views(const RenderOptions& options, SessionCore& fusion, const Intrinsics& camera,
+void render_views(const RenderOptions& options, SessionCore& session, const Intrinsics& camera,
                   const std::vector<RigidTransform>& poses, PictureSink& sink) {
-    Pipeline& reconstruction = fusion.reconstruction();
+    Pipeline& pipeline = session.pipeline();
     Progress progress(static_cast<uint32_t>(poses.size()), options.quiet);
     std::deque<ViewReadback> owed;
     uint32_t done = 0;
@@ -139,11 +139,11 @@ void render_views(const RenderOptions& options, SessionCore& fusion, const Intri
         progress.update(++done, "views");
     };
     for (const RigidTransform& pose : poses) {
-        fusion.stop_if_interrupted();
-        owed.push_back(reconstruction.view(camera, pose));
+        session.stop_if_interrupted();
+        owed.push_back(pipeline.view(camera, pose));
         while (!owed.empty() && owed.front().ready()) write_first();
     }
-    reconstruction.wait();
+    pipeline.wait();
     while (!owed.empty()) write_first();
 }
 
@@ -162,26 +162,26 @@ Outcome render(const RenderOptions& given_options) {
     }
     if (!options.relight.empty()) illumination_from_file(options.relight);  // a wrong one is told at once
     Device device(options.device);
-    SessionCore fusion(Access::vulkan(device), options);
-    for (RigidTransform& pose : given) pose[3] -= glm::dvec4(fusion.world_offset_m(), 0);
+    SessionCore session(Access::vulkan(device), options);
+    for (RigidTransform& pose : given) pose[3] -= glm::dvec4(session.world_offset_m(), 0);
     const Illumination other =
-        options.relight.empty() ? Illumination{} : illumination_from_file(options.relight, fusion.world_offset_m());
-    const Intrinsics& recorded = fusion.info().color;
+        options.relight.empty() ? Illumination{} : illumination_from_file(options.relight, session.world_offset_m());
+    const Intrinsics& recorded = session.info().color;
     const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
-    const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : fusion.info().fps;
+    const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : session.info().fps;
     if (!options.video.empty()) sink.open_video(options.video, camera.extent, fps);
-    while (fusion.step()) continue;
-    fusion.end();
+    while (session.step()) continue;
+    session.end();
     console.end();
-    const std::vector<RigidTransform> poses = view_poses(options, fusion, given);
+    const std::vector<RigidTransform> poses = view_poses(options, session, given);
     if (options.relight.empty())
-        fusion.reconstruction().refine_all();
+        session.pipeline().refine_all();
     else
-        fusion.reconstruction().relight(point_lights(other), other.ambient);
-    render_views(options, fusion, camera, poses, sink);
+        session.pipeline().relight(lights_of(other), other.ambient);
+    render_views(options, session, camera, poses, sink);
     sink.finish();
     Outcome outcome;
-    for (std::string& shortfall : shortfalls_of(fusion)) outcome.fall_short(std::move(shortfall));
+    for (std::string& shortfall : shortfalls_of(session)) outcome.fall_short(std::move(shortfall));
     outcome.print(options.quiet);
     if (!options.quiet) print_out("{} views\n", poses.size());
     return outcome;

@@ -27,30 +27,30 @@ std::string bar_svg(double low, double value, double high) {
 
 std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
 
-std::string facts(const RunRecord& record) {
-    const FrameLedger& frames = record.frames;
-    const VoxelPoolRecord& pool = record.voxel_pool;
+std::string facts(const RunSummary& summary) {
+    const FrameLedger& frames = summary.frames;
+    const VoxelPoolSummary& pool = summary.voxel_pool;
     std::string html = report_fact(
-        "Frames used", fmt::format("{} of {}", grouped(frames.used), grouped(record.sequence.frames.value_or(0))));
+        "Frames used", fmt::format("{} of {}", grouped(frames.used), grouped(summary.sequence.frames.value_or(0))));
     html += report_fact("Frames skipped", grouped(frames.skipped.size()));
     html +=
         report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
     if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));
-    if (const auto& observed = record.observation_pool) {
+    if (const auto& observed = summary.observation_pool) {
         html += report_fact("Observed voxels", fmt::format("{} of {}", grouped(observed->records_used),
                                                            grouped(observed->records_capacity)));
         if (observed->records_refused > 0)
             html += report_fact("Observed voxels refused", grouped(observed->records_refused));
     }
-    for (const auto& [name, count] : record.totals) html += report_fact(name, grouped(count));
-    for (const auto& [name, seconds] : record.times_s)
+    for (const auto& [name, count] : summary.totals) html += report_fact(name, grouped(count));
+    for (const auto& [name, seconds] : summary.times_s)
         html += report_fact("Time, " + name, fmt::format("{:.2f} s", seconds));
-    if (record.ambient != glm::dvec3(0)) html += report_fact("Ambient light, RGB", vector_text(record.ambient));
-    if (record.world_offset_m != glm::dvec3(0))
-        html += report_fact("World moved by, m", vector_text(record.world_offset_m));
-    html += report_fact("Device", html_escaped(record.device.name));
-    html += report_fact("Driver", html_escaped(record.device.driver));
-    html += report_fact("Seed", fmt::format("{}", record.seed));
+    if (summary.ambient != glm::dvec3(0)) html += report_fact("Ambient light, RGB", vector_text(summary.ambient));
+    if (summary.world_offset_m != glm::dvec3(0))
+        html += report_fact("World moved by, m", vector_text(summary.world_offset_m));
+    html += report_fact("Device", html_escaped(summary.device.name));
+    html += report_fact("Driver", html_escaped(summary.device.driver));
+    html += report_fact("Seed", fmt::format("{}", summary.seed));
     return report_facts(html);
 }
 
@@ -83,11 +83,11 @@ std::string pass_table(const std::vector<PassTime>& passes) {
             sum_ms));
 }
 
-std::string memory_table(const std::vector<MemoryRecord>& pools) {
+std::string memory_table(const std::vector<MemorySummary>& pools) {
     if (pools.empty()) return {};
     std::string rows;
     uint64_t bytes = 0;
-    for (const MemoryRecord& pool : pools) {
+    for (const MemorySummary& pool : pools) {
         bytes += pool.bytes;
         rows += fmt::format(
             "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
@@ -116,7 +116,7 @@ std::string light_table(const std::vector<Light>& lights) {
         rows);
 }
 
-std::string segment_row(const SegmentRecord& segment) {
+std::string segment_row(const SegmentSummary& segment) {
     const SegmentReflectance& known = segment.reflectance;
     return fmt::format(
         "<tr><td class='number'>{}</td><td>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
@@ -128,10 +128,10 @@ std::string segment_row(const SegmentRecord& segment) {
         grouped(known.observations), known.confidence);
 }
 
-std::string segment_table(const std::vector<SegmentRecord>& segments) {
+std::string segment_table(const std::vector<SegmentSummary>& segments) {
     if (segments.empty()) return {};
     std::string rows;
-    for (const SegmentRecord& segment : segments) rows += segment_row(segment);
+    for (const SegmentSummary& segment : segments) rows += segment_row(segment);
     return report_table(
         "<th class='number'>Segment</th><th>Name</th><th class='number'>kd</th><th class='number'>ks</th>"
         "<th class='number'>alpha</th><th class='number'>Voxels</th><th class='number'>Observations</th>"
@@ -139,15 +139,15 @@ std::string segment_table(const std::vector<SegmentRecord>& segments) {
         rows);
 }
 
-std::string materials_missing(const RunRecord& record) {
-    if (record.materials_missing.empty()) return {};
-    return "<p>" + html_escaped(record.materials_missing) + "</p>\n";
+std::string materials_missing(const RunSummary& summary) {
+    if (summary.materials_missing.empty()) return {};
+    return "<p>" + html_escaped(summary.materials_missing) + "</p>\n";
 }
 
 /// Why the run ended before its time comes first.
-std::vector<std::string> shortfalls_of(const RunRecord& record) {
-    std::vector<std::string> all = record.shortfalls;
-    if (!record.finished && std::ranges::find(all, record.ended) == all.end()) all.insert(all.begin(), record.ended);
+std::vector<std::string> shortfalls_of(const RunSummary& summary) {
+    std::vector<std::string> all = summary.shortfalls;
+    if (!summary.finished && std::ranges::find(all, summary.ended) == all.end()) all.insert(all.begin(), summary.ended);
     return all;
 }
 
@@ -175,35 +175,35 @@ std::string explained(std::string_view sentence, const std::string& html) {
 
 }  // namespace
 
-std::string report_html(const RunRecord& record, std::span<const ReportPicture> pictures) {
-    const SequenceInfo& sequence = record.sequence;
+std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures) {
+    const SequenceInfo& sequence = summary.sequence;
     std::string html = fmt::format(
         "<h1>{}</h1>\n<p class='quiet'>Reconstructed by Patina {} from {} frames ({}), colour {}&times;{}, depth "
         "{}&times;{}</p>\n",
-        html_escaped(sequence.name), html_escaped(record.version), grouped(sequence.frames.value_or(0)),
+        html_escaped(sequence.name), html_escaped(summary.version), grouped(sequence.frames.value_or(0)),
         html_escaped(sequence.format), sequence.color.extent.width, sequence.color.extent.height,
         sequence.depth.extent.width, sequence.depth.extent.height);
-    html += report_section("Incomplete", report_warnings(shortfalls_of(record)));
-    html += facts(record);
-    html += report_section("Warnings", report_warnings(record.warnings));
+    html += report_section("Incomplete", report_warnings(shortfalls_of(summary)));
+    html += facts(summary);
+    html += report_section("Warnings", report_warnings(summary.warnings));
     html +=
         report_section("Pictures", explained("From where the colour camera was, what stands above each panel. Grey: "
                                              "the model has no surface there.",
                                              report_figures(pictures)));
     html += report_section("Lights", explained("A point at distance r (m) receives intensity / r², in linear pixel "
                                                "values: 1 is the brightest that 8 bits hold.",
-                                               light_table(record.lamps)));
+                                               light_table(summary.lamps)));
     html +=
-        report_section("Materials", materials_missing(record) +
+        report_section("Materials", materials_missing(summary) +
                                         explained("Of Ward's model, by segment: diffuse albedo kd and specular albedo "
                                                   "ks (red, green, blue; 0 to 1), roughness alpha. Confidence is that "
                                                   "of kd, from 0 to 1.",
-                                                  segment_table(record.segments)));
-    html += report_section("Tracking", tracking_table(record.tracking));
-    html += report_section("GPU time per pass", pass_table(record.passes));
-    html += report_section("Device memory", memory_table(record.memory));
-    html += report_section("Skipped frames", skipped_table(record.frames.skipped));
-    html += report_section("Settings", settings_text(record.settings));
+                                                  segment_table(summary.segments)));
+    html += report_section("Tracking", tracking_table(summary.tracking));
+    html += report_section("GPU time per pass", pass_table(summary.passes));
+    html += report_section("Device memory", memory_table(summary.memory));
+    html += report_section("Skipped frames", skipped_table(summary.frames.skipped));
+    html += report_section("Settings", settings_text(summary.settings));
     return report_page(sequence.name, html);
 }
 

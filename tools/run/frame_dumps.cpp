@@ -73,7 +73,7 @@ FrameDumps::FrameDumps(OutputFolder& folder, std::optional<uint32_t> frames, uin
     }
 }
 
-void FrameDumps::after(Pipeline& reconstruction, const SequenceInfo& info, const Frame& frame) {
+void FrameDumps::after(Pipeline& pipeline, const SequenceInfo& info, const Frame& frame) {
     const bool dump = dump_every_ > 0 && frame.index % dump_every_ == 0;
     bool preview = false;
     while (!preview_at_.empty() && preview_at_.front() <= frame.index) {
@@ -82,7 +82,7 @@ void FrameDumps::after(Pipeline& reconstruction, const SequenceInfo& info, const
     }
     if (dump || preview) {
         const RigidTransform world_from_color = *frame.world_from_camera * rigid_inverse(info.color_from_depth);
-        owed_.push_back({frame.index, reconstruction.view(info.color, world_from_color), dump,
+        owed_.push_back({frame.index, pipeline.view(info.color, world_from_color), dump,
                          preview ? std::optional(frame.color) : std::nullopt});
     }
     for (; !owed_.empty() && owed_.front().view.ready(); owed_.pop_front()) write(owed_.front());

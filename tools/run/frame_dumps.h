@@ -26,7 +26,7 @@ class FrameDumps {
     FrameDumps(OutputFolder& folder, std::optional<uint32_t> frames, uint32_t dump_every);
 
     /// To be called after each fused frame: asks for what this frame owes, and writes what has arrived.
-    void after(Pipeline& reconstruction, const SequenceInfo& info, const Frame& frame);
+    void after(Pipeline& pipeline, const SequenceInfo& info, const Frame& frame);
 
     /// Writes the rest; the device must have finished.
     void finish();

@@ -53,16 +53,16 @@ void HeldOut::keep(const Frame& frame, uint32_t order) {
     kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
 }
 
-HeldOutRecord HeldOut::compare(Pipeline& reconstruction, const SequenceInfo& info, OutputFolder& folder) const {
-    reconstruction.wait();
-    const std::span<const gpu::ColorGains> gains = reconstruction.gains();
+HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const {
+    pipeline.wait();
+    const std::span<const gpu::ColorGains> gains = pipeline.gains();
     std::vector<PictureScore> mean_color, reflectance;
     std::string lines =
         "# index, then coverage, PSNR linear and PSNR sRGB in dB of the mean colour, and of the re-rendering\n";
     for (const Kept& kept : kept_) {
         const ViewReadback pending =
-            reconstruction.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
-        reconstruction.wait();
+            pipeline.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
+        pipeline.wait();
         ModelView view = pending.get();
         const glm::vec3 gain = gains.empty() ? glm::vec3(1) : glm::vec3(gains[kept.order].gain);
         const Image<glm::vec3> seen = undistorted(linear_of(kept.color), info.color);
@@ -79,9 +79,9 @@ HeldOutRecord HeldOut::compare(Pipeline& reconstruction, const SequenceInfo& inf
                      preview_png(seen, to_dump(view), {.title = fmt::format("frame {}, held out", kept.index)}));
     }
     folder.write("held_out/scores.txt", lines);
-    HeldOutRecord record{kept_.size(), median_of(mean_color), {}};
-    if (!reflectance.empty()) record.reflectance = median_of(reflectance);
-    return record;
+    HeldOutSummary summary{kept_.size(), median_of(mean_color), {}};
+    if (!reflectance.empty()) summary.reflectance = median_of(reflectance);
+    return summary;
 }
 
 }  // namespace patina::tools

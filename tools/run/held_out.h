@@ -7,7 +7,7 @@
 #include "patina/frame.h"
 #include "reconstruction/pipeline.h"
 #include "tools/report/output_folder.h"
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 
 namespace patina::tools {
 
@@ -23,7 +23,7 @@ class HeldOut {
 
     /// Renders the model from where each picture was taken, at that picture's gains, and scores it. Writes
     /// held_out/NNNNNN.png (picture, rendering, normals) and held_out/scores.txt. Waits for the device.
-    HeldOutRecord compare(Pipeline& reconstruction, const SequenceInfo& info, OutputFolder& folder) const;
+    HeldOutSummary compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const;
 
   private:
     struct Kept {

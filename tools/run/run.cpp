@@ -23,11 +23,11 @@
 #include "tools/program/standard_streams.h"
 #include "tools/report/report.h"
 #include "tools/report/run_id.h"
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 #include "tools/run/frame_dumps.h"
 #include "tools/run/held_out.h"
-#include "tools/run/make_record.h"
 #include "tools/run/scene_files.h"
+#include "tools/run/summarise_run.h"
 
 namespace patina::tools {
 
@@ -41,8 +41,8 @@ std::filesystem::path with_extension(const std::filesystem::path& dump_graph, co
     return dump_graph.string() + extension;
 }
 
-/// Told before the work starts, although the graph is written at its end. It may go to the results' folder, which need
-/// not exist yet, but not in place of a result.
+/// Reported before the work starts, although the graph is written at its end. It may go to the results' folder, which
+/// need not exist yet, but not in place of a result.
 void check_dump_graph(const RunOptions& options, const std::vector<std::filesystem::path>& inputs) {
     if (options.dump_graph.empty()) return;
     const std::filesystem::path out = sensor::resolved(options.out);
@@ -72,29 +72,29 @@ class Run {
           console_(console),
           folder_(folder),
           device_(options.device),
-          fusion_(Access::vulkan(device_), options),
-          reconstruction_(fusion_.reconstruction()),
-          dumps_(folder, fusion_.info().frames, options.dump_every),
+          session_(Access::vulkan(device_), options),
+          pipeline_(session_.pipeline()),
+          dumps_(folder, session_.info().frames, options.dump_every),
           held_out_(options.hold_out) {}
 
     /// Throws what stopped it before a frame was fused.
     void fuse_all() {
         try {
-            while (fusion_.step()) {
-                if (const Frame* frame = fusion_.fused()) after(*frame);
+            while (session_.step()) {
+                if (const Frame* frame = session_.fused()) after(*frame);
             }
-            fusion_.end();
+            session_.end();
         } catch (const Interrupted& interrupted) {
-            if (fusion_.ledger().used() == 0) throw;
+            if (session_.ledger().used() == 0) throw;
             console_.end();
             ended_ = interrupted.what();
             if (!options_.quiet)
                 print_error("{}: what was fused is being written; an interrupt after a second ends that too\n",
                             printable(ended_));
         } catch (const std::exception& error) {
-            if (fusion_.ledger().used() == 0) throw;
-            const std::string of = fusion_.info().frames ? fmt::format(" of {}", *fusion_.info().frames) : "";
-            ended_ = fmt::format("failed after {}{} frames: {}", fusion_.ledger().read(), of, reason_of(error));
+            if (session_.ledger().used() == 0) throw;
+            const std::string of = session_.info().frames ? fmt::format(" of {}", *session_.info().frames) : "";
+            ended_ = fmt::format("failed after {}{} frames: {}", session_.ledger().read(), of, reason_of(error));
             failure_ = reason_of(error);
         }
         console_.end();
@@ -104,8 +104,8 @@ class Run {
     Outcome write_results() {
         if (ended_.empty()) check_validation();
         // All of this is on the host.
-        attempt("trajectory.txt", [&] { folder_.write("trajectory.txt", trajectory_text(fusion_.world_poses())); });
-        if (fusion_.settings().gains) attempt("gains.txt", [&] { folder_.write("gains.txt", fusion_.gains_text()); });
+        attempt("trajectory.txt", [&] { folder_.write("trajectory.txt", trajectory_text(session_.world_poses())); });
+        if (session_.settings().gains) attempt("gains.txt", [&] { folder_.write("gains.txt", session_.gains_text()); });
         write_scene();
         if (scene_) attempt("the last pictures", [&] { dumps_.finish(); });
         if (options_.hold_out > 0 && ended_.empty()) {
@@ -116,9 +116,9 @@ class Run {
             }
         }
         try {
-            write_record();
+            write_summary();
         } catch (const std::exception& error) {
-            keep_without_record(reason_of(error));
+            keep_without_summary(reason_of(error));
         }
         place_ = folder_.path();
         if (ended_.empty()) {
@@ -129,7 +129,7 @@ class Run {
         // It may go to the results' folder.
         if (!options_.dump_graph.empty()) attempt("the graph", [&] { write_graph(); });
         const Outcome outcome = outcome_of_run();
-        tell(outcome);
+        print_outcome(outcome);
         if (failure_.empty()) return outcome;
         throw Error(failure_, "; '", place_.string(), "' holds what could still be written");
     }
@@ -137,14 +137,14 @@ class Run {
   private:
     void after(const Frame& frame) {
         if (!options_.dump_graph.empty()) {
-            const graph::CompiledFrame& compiled = reconstruction_.runner().last_frame();
+            const graph::CompiledFrame& compiled = pipeline_.runner().last_frame();
             graph_dot_ = graph::to_dot(compiled.description, compiled.plan);
             graph_json_ = graph::to_json(compiled.description, compiled.plan);
         }
-        held_out_.keep(frame, reconstruction_.frames() - 1);
-        dumps_.after(reconstruction_, fusion_.info(), frame);
-        if (fusion_.ledger().used() == 1) {
-            reconstruction_.wait();
+        held_out_.keep(frame, pipeline_.frames() - 1);
+        dumps_.after(pipeline_, session_.info(), frame);
+        if (session_.ledger().used() == 1) {
+            pipeline_.wait();
             times_s_.emplace_back("first_fused_frame", seconds_since(start_));
         }
     }
@@ -163,11 +163,11 @@ class Run {
     void write_scene() {
         const auto start = Clock::now();
         try {
-            Scene scene = fusion_.scene_without_reflectance();
+            Scene scene = session_.scene_without_reflectance();
             times_s_.emplace_back("surface", seconds_since(start));
-            attempt("what the surface reflects", [&] { fusion_.add_reflectance(scene); });
+            attempt("what the surface reflects", [&] { session_.add_reflectance(scene); });
             scene_.emplace(std::move(scene));
-            summary_ = scene_->write(folder_, kVersion);
+            glb_ = scene_->write(folder_, kVersion);
         } catch (const std::exception& error) {
             scene_.reset();
             folder_.discard_staged();
@@ -183,8 +183,8 @@ class Run {
 
     void compare_held_out() {
         const auto start = Clock::now();
-        reconstruction_.refine_all();
-        held_out_record_ = held_out_.compare(reconstruction_, fusion_.info(), folder_);
+        pipeline_.refine_all();
+        held_out_summary_ = held_out_.compare(pipeline_, session_.info(), folder_);
         times_s_.emplace_back("held_out", seconds_since(start));
     }
 
@@ -196,9 +196,9 @@ class Run {
 
     Outcome outcome_of_run() {
         Outcome outcome;
-        for (std::string& shortfall : shortfalls_of(fusion_)) outcome.fall_short(std::move(shortfall));
+        for (std::string& shortfall : shortfalls_of(session_)) outcome.fall_short(std::move(shortfall));
         if (!ended_.empty()) outcome.fall_short(ended_);
-        if (scene_ && summary_.triangles == 0)
+        if (scene_ && glb_.triangles == 0)
             outcome.fall_short("the surface is empty: from none of the frames a triangle was reconstructed");
         if (!dumps_.problem().empty()) outcome.fall_short(dumps_.problem());
         for (const std::string& problem : problems_) outcome.fall_short(problem);
@@ -206,44 +206,44 @@ class Run {
     }
 
     /// report.html and run.json, which comes last.
-    void write_record() {
-        RunRecord record = make_record(options_, fusion_, summary_);
-        attempt("the count of keyframes", [&] { add_keyframes(record, fusion_); });
-        record.finished = ended_.empty();
-        record.ended = ended_;
-        record.held_out = held_out_record_;
-        if (scene_) scene_->add_to(record);
+    void write_summary() {
+        RunSummary summary = summarise(options_, session_, glb_);
+        attempt("the count of keyframes", [&] { add_keyframes(summary, session_); });
+        summary.finished = ended_.empty();
+        summary.ended = ended_;
+        summary.held_out = held_out_summary_;
+        if (scene_) scene_->add_to(summary);
         times_s_.emplace_back("total", seconds_since(start_));
-        record.times_s = times_s_;
-        record.shortfalls = outcome_of_run().shortfalls();
-        attempt("report.html", [&] { folder_.write("report.html", report_html(record, dumps_.previews())); });
-        record.files = folder_.files();
-        record.files.push_back("run.json");
-        record.id = run_id(record, folder_.digest());
-        attempt("the run's id in its pictures", [&] { dumps_.stamp(record.id); });
-        record.shortfalls = outcome_of_run().shortfalls();
-        folder_.write("run.json", run_json(record));
-        warnings_ = std::move(record.warnings);
+        summary.times_s = times_s_;
+        summary.shortfalls = outcome_of_run().shortfalls();
+        attempt("report.html", [&] { folder_.write("report.html", report_html(summary, dumps_.previews())); });
+        summary.files = folder_.files();
+        summary.files.push_back("run.json");
+        summary.id = run_id(summary, folder_.digest());
+        attempt("the run's id in its pictures", [&] { dumps_.stamp(summary.id); });
+        summary.shortfalls = outcome_of_run().shortfalls();
+        folder_.write("run.json", run_json(summary));
+        warnings_ = std::move(summary.warnings);
     }
 
     /// Results without run.json cannot be put in place: they stay under another name.
-    [[noreturn]] void keep_without_record(const std::string& reason) {
+    [[noreturn]] void keep_without_summary(const std::string& reason) {
         const std::string why = failure_.empty() ? reason : failure_ + "; " + reason;
         const std::optional<std::filesystem::path> kept = folder_.keep();
         if (!kept) throw Error(why);
         throw Error(why, "; '", kept->string(), "' holds what could still be written");
     }
 
-    /// The summary; its first lines are what the results fall short of.
-    void tell(const Outcome& outcome) const {
+    /// For the user; the first lines are what the results fall short of.
+    void print_outcome(const Outcome& outcome) const {
         if (failure_.empty()) outcome.print(options_.quiet);
         if (options_.quiet || !failure_.empty()) return;
-        print_out("{} of {} frames, {} triangles in {}\n", fusion_.ledger().used(),
-                  fusion_.info().frames.value_or(fusion_.ledger().read()), summary_.triangles,
+        print_out("{} of {} frames, {} triangles in {}\n", session_.ledger().used(),
+                  session_.info().frames.value_or(session_.ledger().read()), glb_.triangles,
                   printable(place_.string()));
-        const std::string& found_by = fusion_.illumination().found_by;
-        if (found_by != "file" && found_by != "none") print_lights(fusion_.illumination());
-        if (!fusion_.materials_missing().empty()) print_out("{}\n", printable(fusion_.materials_missing()));
+        const std::string& found_by = session_.illumination().found_by;
+        if (found_by != "file" && found_by != "none") print_lights(session_.illumination());
+        if (!session_.materials_missing().empty()) print_out("{}\n", printable(session_.materials_missing()));
         for (const std::string& warning : warnings_) print_out("warning: {}\n", printable(warning));
     }
 
@@ -252,13 +252,13 @@ class Run {
     OutputFolder& folder_;
     Clock::time_point start_ = Clock::now();
     Device device_;
-    SessionCore fusion_;
-    Pipeline& reconstruction_;
+    SessionCore session_;
+    Pipeline& pipeline_;
     FrameDumps dumps_;
     std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
-    GlbSummary summary_;
+    GlbSummary glb_;
     HeldOut held_out_;
-    std::optional<HeldOutRecord> held_out_record_;
+    std::optional<HeldOutSummary> held_out_summary_;
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;
     std::string ended_;            ///< why the run ended before its time; empty where it did not

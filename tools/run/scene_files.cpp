@@ -17,15 +17,15 @@ GlbSummary SceneFiles::write(OutputFolder& folder, const std::string& version) c
     return summary;
 }
 
-void SceneFiles::add_to(RunRecord& record) const {
+void SceneFiles::add_to(RunSummary& summary) const {
     const Lighting lighting = in_recorded_world(scene_);
-    record.lamps = lighting.lights;
-    record.ambient = lighting.ambient;
+    summary.lamps = lighting.lights;
+    summary.ambient = lighting.ambient;
     for (uint32_t label = 1; label < scene_.reflectance.segments.size(); ++label) {
         const SegmentReflectance& segment = scene_.reflectance.segments[label];
         if (segment.voxels == 0) continue;
         const std::string name = label < scene_.segment_names.size() ? scene_.segment_names[label] : "";
-        record.segments.push_back({label, name, segment});
+        summary.segments.push_back({label, name, segment});
     }
 }
 

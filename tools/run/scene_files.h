@@ -5,7 +5,7 @@
 #include "export/write_glb.h"
 #include "patina/scene.h"
 #include "tools/report/output_folder.h"
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 
 namespace patina::tools {
 
@@ -18,8 +18,8 @@ class SceneFiles {
     /// Writes the files; `version`: of Patina. Throws Error as write_glb() does.
     GlbSummary write(OutputFolder& folder, const std::string& version) const;
 
-    /// Adds lights and segments to the run's record.
-    void add_to(RunRecord& record) const;
+    /// Adds lights and segments to the run's summary.
+    void add_to(RunSummary& summary) const;
 
   private:
     Scene scene_;

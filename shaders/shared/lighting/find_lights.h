@@ -3,6 +3,7 @@
 #ifndef PATINA_SHARED_FIND_LIGHTS_H
 #define PATINA_SHARED_FIND_LIGHTS_H
 #include "shared/input/camera.h"
+#include "shared/lighting/lights.h"
 INTEROP_BEGIN
 
 INTEROP_CONST uint kEmitterGroup = 256u;       // consecutive pixels that one group looks at
@@ -80,10 +81,9 @@ struct LightTrack {
 };
 
 // The answer.
-struct FoundLightWords {
-    vec4 position_radius;  // m
-    vec4 intensity;        // rgb; w unused
-    float spread_m;        // median distance of the sightings from the position
+struct FoundLight {
+    PointLight light;
+    float spread_m;  // median distance of the sightings from the position
     uint sightings;
     uint has_depth;  // 0: triangulated from bearings
     uint clipped;    // sightings with clipped pixels

@@ -2,7 +2,7 @@
 // list of nodes, the shapes in their leaves, and what surfaces look like.
 #ifndef PATINA_SHARED_SCENE_H
 #define PATINA_SHARED_SCENE_H
-#include "shared/interop.h"
+#include "shared/lighting/lights.h"
 INTEROP_BEGIN
 
 INTEROP_CONST uint kBundleRays = 4u;      // rays that one invocation traces together
@@ -65,9 +65,8 @@ struct SceneObject {
 };
 
 struct SceneLight {
-    vec4 position_m;  // xyz world; w: radius of the lamp, 0 for a point
-    vec4 intensity;   // rgb, linear pixel value * m^2; w unused
-    vec4 emitted;     // rgb, radiance of the lamp; w unused
+    PointLight light;
+    vec4 emitted;  // rgb, radiance of the lamp; w unused
 };
 
 INTEROP_END

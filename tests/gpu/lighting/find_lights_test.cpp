@@ -126,14 +126,15 @@ class FindLights : public GpuTest {
         ASSERT_EQ(found.size(), lamps.size());
         for (const Lamp& lamp : lamps) {
             const auto nearest = std::min_element(found.begin(), found.end(), [&](const auto& a, const auto& b) {
-                return glm::distance(glm::dvec3(a.position_m), lamp.center_m) <
-                       glm::distance(glm::dvec3(b.position_m), lamp.center_m);
+                return glm::distance(a.light.position_m, lamp.center_m) <
+                       glm::distance(b.light.position_m, lamp.center_m);
             });
-            EXPECT_LT(glm::distance(glm::dvec3(nearest->position_m), lamp.center_m), within_m);
+            const auto& [light, evidence] = *nearest;
+            EXPECT_LT(glm::distance(light.position_m, lamp.center_m), within_m);
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(nearest->intensity[c], lamp.intensity[c], relative * lamp.intensity[c]);
-            EXPECT_NEAR(nearest->radius_m, lamp.radius_m, 0.1 * lamp.radius_m + within_m / 4);
-            EXPECT_GE(nearest->sightings, 5u);
+                EXPECT_NEAR(light.intensity[c], lamp.intensity[c], relative * lamp.intensity[c]);
+            EXPECT_NEAR(light.radius_m, lamp.radius_m, 0.1 * lamp.radius_m + within_m / 4);
+            EXPECT_GE(evidence.sightings, 5u);
         }
     }
 };
@@ -178,7 +179,7 @@ TEST_F(FindLights, WithoutDepthTheyAreTriangulated) {
     room.lamps_have_depth = false;
     const auto found = find(room, kCamera, kCamera);
     expect_found(found, room.lamps, 0.02, 0.05);
-    for (const FoundLight& light : found) EXPECT_FALSE(light.has_depth);
+    for (const FoundLight& light : found) EXPECT_FALSE(light.evidence.has_depth);
 }
 
 TEST_F(FindLights, OneFrameMatchesTheReference) {
@@ -264,13 +265,12 @@ TEST_F(FindLights, LampsOfTheOfficeWithTheNoiseOfAKinect) {
     const auto found = estimation.found();
     ASSERT_EQ(found.size(), scene.lights.size());
     for (const Light& lamp : scene.lights) {
-        const auto off_m = [&](const FoundLight& f) {
-            return glm::distance(glm::dvec3(f.position_m), lamp.position_m);
-        };
+        const auto off_m = [&](const FoundLight& f) { return glm::distance(f.light.position_m, lamp.position_m); };
         const auto nearest = std::min_element(found.begin(), found.end(),
                                               [&](const auto& a, const auto& b) { return off_m(a) < off_m(b); });
         EXPECT_LT(off_m(*nearest), 0.04);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(nearest->intensity[c], lamp.intensity[c], 0.1 * lamp.intensity[c]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(nearest->light.intensity[c], lamp.intensity[c], 0.1 * lamp.intensity[c]);
     }
 }
 
@@ -279,9 +279,8 @@ TEST_F(FindLights, SameInputGivesTheSameBytes) {
     const auto first = find(room, kCamera, kCamera), second = find(room, kCamera, kCamera);
     ASSERT_EQ(first.size(), second.size());
     for (size_t i = 0; i < first.size(); ++i) {
-        EXPECT_EQ(first[i].position_m, second[i].position_m);
-        EXPECT_EQ(first[i].intensity, second[i].intensity);
-        EXPECT_EQ(first[i].spread_m, second[i].spread_m);
+        EXPECT_EQ(first[i].light, second[i].light);
+        EXPECT_EQ(first[i].evidence.spread_m, second[i].evidence.spread_m);
     }
 }
 

@@ -77,44 +77,44 @@ class ColorCorrectionTest : public GpuTest {
 };
 
 TEST_F(ColorCorrectionTest, GainsOfASequenceComeBackRelativeToItsFirstFrame) {
-    Pipeline reconstruction(device(), settings());
-    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(picture(i).frame());
-    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    Pipeline pipeline(device(), settings());
+    for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(picture(i).frame());
+    const graph::CompiledFrame& compiled = pipeline.runner().last_frame();
     EXPECT_THAT(graph::check(compiled.description, compiled.plan), ::testing::IsEmpty());
     EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), ::testing::IsEmpty());
-    reconstruction.wait();
-    ASSERT_EQ(reconstruction.gains().size(), kFrames);
-    EXPECT_EQ(glm::vec3(reconstruction.gains()[0].gain), glm::vec3(1));
-    EXPECT_EQ(reconstruction.gains()[0].samples, glm::uvec4(0)) << "nothing was seen before the first frame";
+    pipeline.wait();
+    ASSERT_EQ(pipeline.gains().size(), kFrames);
+    EXPECT_EQ(glm::vec3(pipeline.gains()[0].gain), glm::vec3(1));
+    EXPECT_EQ(pipeline.gains()[0].samples, glm::uvec4(0)) << "nothing was seen before the first frame";
     for (uint32_t i = 1; i < kFrames; ++i) {
-        EXPECT_GT(reconstruction.gains()[i].samples.g, 500u);
-        expect_true(reconstruction.gains()[i], i);
+        EXPECT_GT(pipeline.gains()[i].samples.g, 500u);
+        expect_true(pipeline.gains()[i], i);
     }
 }
 
 TEST_F(ColorCorrectionTest, AHeldOutFrameHasAGainAndLeavesNoColour) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     const Picture picture_0 = picture(0), picture_3 = picture(3);
     RgbdFrame first = picture_0.frame();
-    reconstruction.add(first);
+    pipeline.add(first);
     const auto look = [&] {
-        const ViewReadback pending = reconstruction.view(kCamera, first.world_from_depth);
-        reconstruction.wait();
+        const ViewReadback pending = pipeline.view(kCamera, first.world_from_depth);
+        pipeline.wait();
         return pending.get().color;
     };
     const Image<glm::vec4> before = look();
     const Image<glm::u8vec3> white(kCamera.extent, glm::u8vec3(255));
     first.color.pixels = std::span(white.pixels());
     first.held_out = true;
-    reconstruction.add(first);
+    pipeline.add(first);
     EXPECT_EQ(look().pixels()[before.pixels().size() / 2], before.pixels()[before.pixels().size() / 2]);
     RgbdFrame second = picture_3.frame();
     second.held_out = true;
-    reconstruction.add(second);
-    reconstruction.wait();
-    ASSERT_EQ(reconstruction.gains().size(), 3u);
-    EXPECT_EQ(glm::vec3(reconstruction.gains()[1].gain), glm::vec3(1)) << "all its pixels are clipped";
-    expect_true(reconstruction.gains()[2], 3);
+    pipeline.add(second);
+    pipeline.wait();
+    ASSERT_EQ(pipeline.gains().size(), 3u);
+    EXPECT_EQ(glm::vec3(pipeline.gains()[1].gain), glm::vec3(1)) << "all its pixels are clipped";
+    expect_true(pipeline.gains()[2], 3);
 }
 
 TEST_F(ColorCorrectionTest, GainsWithoutFusedColourAreRefused) {

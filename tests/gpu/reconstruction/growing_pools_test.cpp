@@ -23,12 +23,12 @@ struct SmallCubes {
         scenes::SyntheticSource source(device, std::move(scene), {.frames = count});
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
-        lights = point_lights(source.scene().lights);
+        lights = source.scene().lights;
     }
 
     SequenceInfo info;
     std::vector<Frame> frames;
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
 };
 
 struct Result {
@@ -75,14 +75,14 @@ class GrowingPoolsTest : public GpuTest {
     }
 
     Result reconstruct(const ReconstructionSettings& settings, vulkan::Device& on = device()) const {
-        Pipeline reconstruction(on, settings);
-        reconstruction.set_lights(cubes_.lights);
-        for (const Frame& frame : cubes_.frames) reconstruction.add(patina::to_rgbd(cubes_.info, frame));
+        Pipeline pipeline(on, settings);
+        pipeline.set_lights(cubes_.lights);
+        for (const Frame& frame : cubes_.frames) pipeline.add(patina::to_rgbd(cubes_.info, frame));
         Result result;
-        result.mesh = reconstruction.extract_surface();
-        result.reflectance = reconstruction.sample_reflectance(result.mesh);
-        reconstruction.wait();
-        result.pools = reconstruction.statistics().pools;
+        result.mesh = pipeline.extract_surface();
+        result.reflectance = pipeline.sample_reflectance(result.mesh);
+        pipeline.wait();
+        result.pools = pipeline.counters().pools;
         return result;
     }
 
@@ -117,35 +117,35 @@ TEST_F(GrowingPoolsTest, GainsAreThoseOfTheFramesAlthoughTheFirstIsFusedAnew) {
     ReconstructionSettings small = settings(64, 64, 64);
     small.reflectance.reset();
     small.gains.emplace();
-    Pipeline reconstruction(device(), small);
-    for (const Frame& frame : cubes_.frames) reconstruction.add(patina::to_rgbd(cubes_.info, frame));
-    reconstruction.wait();
-    EXPECT_EQ(reconstruction.gains().size(), cubes_.frames.size());
+    Pipeline pipeline(device(), small);
+    for (const Frame& frame : cubes_.frames) pipeline.add(patina::to_rgbd(cubes_.info, frame));
+    pipeline.wait();
+    EXPECT_EQ(pipeline.gains().size(), cubes_.frames.size());
 }
 
 TEST_F(GrowingPoolsTest, GivenLabelsBeyondTheCapacityAreTaken) {
     ReconstructionSettings given = settings(16384, 32768, 65536, 4);
     given.segmentation->given = true;
-    Pipeline reconstruction(device(), given);
-    reconstruction.set_lights(cubes_.lights);
-    reconstruction.set_material(300, glm::vec3(0.1f), 0.2f);
+    Pipeline pipeline(device(), given);
+    pipeline.set_lights(cubes_.lights);
+    pipeline.set_material(300, glm::vec3(0.1f), 0.2f);
     const Extent2D extent = cubes_.info.depth.extent;
     const std::vector<uint16_t> labels(size_t{extent.width} * extent.height, 300);
     for (const Frame& frame : cubes_.frames) {
         RgbdFrame rgbd = patina::to_rgbd(cubes_.info, frame);
         rgbd.labels = labels;
-        reconstruction.add(rgbd);
+        pipeline.add(rgbd);
     }
-    const Mesh mesh = reconstruction.extract_surface();
-    const MeshReflectance reflectance = reconstruction.sample_reflectance(mesh);
+    const Mesh mesh = pipeline.extract_surface();
+    const MeshReflectance reflectance = pipeline.sample_reflectance(mesh);
     EXPECT_GT(std::count(reflectance.labels.begin(), reflectance.labels.end(), 300u),
               ptrdiff_t(mesh.positions_m.size() / 2));
     ASSERT_GT(reflectance.segments.size(), 300u);
     ASSERT_TRUE(reflectance.segments[300].gloss.has_value());
     EXPECT_FLOAT_EQ(reflectance.segments[300].gloss->alpha, 0.2f);
-    reconstruction.wait();
-    const Statistics statistics = reconstruction.statistics();
-    for (const PoolState& pool : statistics.pools) EXPECT_FALSE(pool.is_full()) << pool.name;
+    pipeline.wait();
+    const PipelineCounters counters = pipeline.counters();
+    for (const PoolState& pool : counters.pools) EXPECT_FALSE(pool.is_full()) << pool.name;
 }
 
 TEST_F(GrowingPoolsTest, ALimitInTheSettingsIsKeptAndNamed) {

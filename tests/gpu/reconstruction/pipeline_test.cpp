@@ -30,9 +30,7 @@ struct Cubes {
         while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
     }
 
-    void add_to(Pipeline& reconstruction, uint32_t index) const {
-        reconstruction.add(patina::to_rgbd(info, frames[index]));
-    }
+    void add_to(Pipeline& pipeline, uint32_t index) const { pipeline.add(patina::to_rgbd(info, frames[index])); }
 
     SequenceInfo info;
     std::vector<Frame> frames;
@@ -41,8 +39,8 @@ struct Cubes {
 class PipelineTest : public GpuTest {
   protected:
     /// Shows the last frame to the checker, which must find it right and each of its barriers needed.
-    void expect_sound(Pipeline& reconstruction, const std::string& which) {
-        const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    void expect_sound(Pipeline& pipeline, const std::string& which) {
+        const graph::CompiledFrame& compiled = pipeline.runner().last_frame();
         EXPECT_THAT(graph::check(compiled.description, compiled.plan), IsEmpty()) << which;
         EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), IsEmpty()) << which;
     }
@@ -55,15 +53,15 @@ TEST_F(PipelineTest, EveryFrameShapeIsOrderedByBarriersThatAreAllNeeded) {
         ReconstructionSettings settings = small_settings();
         settings.remove_every = 2;
         settings.view_every_frame = view_every_frame;
-        Pipeline reconstruction(device(), settings);
+        Pipeline pipeline(device(), settings);
         for (uint32_t i = 0; i < 4; ++i) {
-            cubes_.add_to(reconstruction, i);
-            expect_sound(reconstruction, text("frame ", i, view_every_frame ? " with" : " without", " view"));
+            cubes_.add_to(pipeline, i);
+            expect_sound(pipeline, text("frame ", i, view_every_frame ? " with" : " without", " view"));
         }
-        const ViewReadback view = reconstruction.view(cubes_.info.color, *cubes_.frames[3].world_from_camera);
-        expect_sound(reconstruction, "view");
-        reconstruction.extract_surface();
-        expect_sound(reconstruction, "last frame of the surface extraction");
+        const ViewReadback view = pipeline.view(cubes_.info.color, *cubes_.frames[3].world_from_camera);
+        expect_sound(pipeline, "view");
+        pipeline.extract_surface();
+        expect_sound(pipeline, "last frame of the surface extraction");
         EXPECT_TRUE(view.ready());
     }
 }
@@ -80,13 +78,13 @@ struct LabelledCubes {
             labels.push_back(source.truth().labels);
             if (source.truth().seen) seen = *source.truth().seen;  // of the last frame in the end
         }
-        lights = point_lights(source.scene().lights);
+        lights = source.scene().lights;
         materials = scenes::materials_of(source.scene());
     }
 
-    void prepare(Pipeline& reconstruction) const {
-        reconstruction.set_lights(lights);
-        for (const sensor::Material& m : materials) reconstruction.set_material(m.id, glm::vec3(m.ks), float(m.alpha));
+    void prepare(Pipeline& pipeline) const {
+        pipeline.set_lights(lights);
+        for (const sensor::Material& m : materials) pipeline.set_material(m.id, glm::vec3(m.ks), float(m.alpha));
     }
 
     RgbdFrame frame(uint32_t index) const {
@@ -99,7 +97,7 @@ struct LabelledCubes {
     std::vector<Frame> frames;
     std::vector<Image<uint16_t>> labels;
     scenes::FrameTruth::Seen seen;
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
     std::vector<sensor::Material> materials;
 };
 
@@ -121,15 +119,15 @@ ReconstructionSettings small_settings_with_reflectance() {
 TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     constexpr uint32_t kFrames = 8;
     const LabelledCubes cubes(device(), kFrames);
-    Pipeline reconstruction(device(), small_settings_with_reflectance());
-    cubes.prepare(reconstruction);
-    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
-    expect_sound(reconstruction, "a frame with reflectance");
-    reconstruction.refine_all();
-    expect_sound(reconstruction, "refinement of all");
-    const ViewReadback pending = reconstruction.view(cubes.info.color, *cubes.frames.back().world_from_camera);
-    expect_sound(reconstruction, "a view with reflectance");
-    reconstruction.wait();
+    Pipeline pipeline(device(), small_settings_with_reflectance());
+    cubes.prepare(pipeline);
+    for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
+    expect_sound(pipeline, "a frame with reflectance");
+    pipeline.refine_all();
+    expect_sound(pipeline, "refinement of all");
+    const ViewReadback pending = pipeline.view(cubes.info.color, *cubes.frames.back().world_from_camera);
+    expect_sound(pipeline, "a view with reflectance");
+    pipeline.wait();
     const ModelView view = pending.get();
     ASSERT_TRUE(view.reflectance);
     std::vector<double> kd_errors, rgb_errors;
@@ -157,11 +155,11 @@ TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {
     const LabelledCubes cubes(device(), kFrames);
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular.emplace();
-    Pipeline reconstruction(device(), settings);
-    reconstruction.set_lights(cubes.lights);
-    for (uint32_t i = 0; i < kFrames; ++i) reconstruction.add(cubes.frame(i));
-    expect_sound(reconstruction, "a frame with a fit");
-    const MeshReflectance found = reconstruction.sample_reflectance(reconstruction.extract_surface());
+    Pipeline pipeline(device(), settings);
+    pipeline.set_lights(cubes.lights);
+    for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
+    expect_sound(pipeline, "a frame with a fit");
+    const MeshReflectance found = pipeline.sample_reflectance(pipeline.extract_surface());
     for (const sensor::Material& truth : cubes.materials) {
         if (truth.id != kFloor) continue;
         const std::optional<WardGloss>& gloss = found.segments[truth.id].gloss;
@@ -179,10 +177,10 @@ TEST_F(PipelineTest, SpecularMaterialsFollowTheNetwork) {
         ReconstructionSettings settings = small_settings_with_reflectance();
         settings.specular = SpecularSettings{.fit = fit};
         settings.network = random_hemi_network(1);
-        Pipeline reconstruction(device(), settings);
-        reconstruction.set_lights(cubes.lights);
-        for (uint32_t i = 0; i < 8; ++i) reconstruction.add(cubes.frame(i));
-        expect_sound(reconstruction, fit ? "a frame with network and fit" : "a frame with a network");
+        Pipeline pipeline(device(), settings);
+        pipeline.set_lights(cubes.lights);
+        for (uint32_t i = 0; i < 8; ++i) pipeline.add(cubes.frame(i));
+        expect_sound(pipeline, fit ? "a frame with network and fit" : "a frame with a network");
     }
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular = SpecularSettings{.fit = false};
@@ -198,14 +196,14 @@ TEST_F(PipelineTest, TheNetworkIsNotAskedOfWhatTheFitIsSureOf) {
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular.emplace();
     settings.network = random_hemi_network(1);
-    Pipeline reconstruction(device(), settings);
-    reconstruction.set_lights(cubes.lights);
-    for (uint32_t i = 0; i < 24; ++i) reconstruction.add(cubes.frame(i));
-    graph::FrameGraph frame = reconstruction.runner().begin();
-    const graph::Readback read_fits = frame.read_back(reconstruction.specular()->fits(frame));
-    const graph::Readback read_means = frame.read_back(reconstruction.specular()->means(frame));
-    reconstruction.runner().submit(std::move(frame));
-    reconstruction.runner().wait();
+    Pipeline pipeline(device(), settings);
+    pipeline.set_lights(cubes.lights);
+    for (uint32_t i = 0; i < 24; ++i) pipeline.add(cubes.frame(i));
+    graph::FrameGraph frame = pipeline.runner().begin();
+    const graph::Readback read_fits = frame.read_back(pipeline.specular()->fits(frame));
+    const graph::Readback read_means = frame.read_back(pipeline.specular()->means(frame));
+    pipeline.runner().submit(std::move(frame));
+    pipeline.runner().wait();
     const auto fits = read_fits.as<gpu::WardFit>();
     const auto means = read_means.as<gpu::PerceptualMaterial>();
     uint32_t spared = 0, asked = 0;
@@ -220,31 +218,31 @@ TEST_F(PipelineTest, TheNetworkIsNotAskedOfWhatTheFitIsSureOf) {
 }
 
 TEST_F(PipelineTest, LabelsOfAnotherSizeAreRefused) {
-    Pipeline reconstruction(device(), small_settings_with_reflectance());
+    Pipeline pipeline(device(), small_settings_with_reflectance());
     RgbdFrame frame = patina::to_rgbd(cubes_.info, cubes_.frames[0]);
     const std::vector<uint16_t> labels(7);
     frame.labels = labels;
-    EXPECT_THROW(reconstruction.add(frame), Error);
+    EXPECT_THROW(pipeline.add(frame), Error);
 }
 
 TEST_F(PipelineTest, AFrameOfAKnownShapeIsNotCompiledAgain) {
     ReconstructionSettings settings = small_settings();
     settings.map.capacity_blocks = 32768;  // a pool that grows changes the shape
     settings.remove_every = 0;
-    Pipeline reconstruction(device(), settings);
-    cubes_.add_to(reconstruction, 0);
-    const uint32_t compilations = reconstruction.runner().compilations();
-    for (uint32_t i = 1; i < 4; ++i) cubes_.add_to(reconstruction, i);
-    EXPECT_EQ(reconstruction.runner().compilations(), compilations);
+    Pipeline pipeline(device(), settings);
+    cubes_.add_to(pipeline, 0);
+    const uint32_t compilations = pipeline.runner().compilations();
+    for (uint32_t i = 1; i < 4; ++i) cubes_.add_to(pipeline, i);
+    EXPECT_EQ(pipeline.runner().compilations(), compilations);
 }
 
 TEST_F(PipelineTest, OneFrameOfGeometryTakesFewDispatches) {
     ReconstructionSettings settings = small_settings();
     settings.remove_every = 1;
     settings.view_every_frame = true;
-    Pipeline reconstruction(device(), settings);
-    cubes_.add_to(reconstruction, 0);
-    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    Pipeline pipeline(device(), settings);
+    cubes_.add_to(pipeline, 0);
+    const graph::CompiledFrame& compiled = pipeline.runner().last_frame();
     const auto dispatches = std::ranges::count_if(compiled.plan.order, [&](uint32_t pass) {
         return std::ranges::none_of(compiled.description.passes[pass].accesses, [](const graph::Access& access) {
             return graph::scope_of(access.use).stages == graph::kStageTransfer;
@@ -265,10 +263,10 @@ TEST_F(PipelineTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
         options.fail_allocation_at = failures + 1;
         vulkan::Device failing(options);
         try {
-            Pipeline reconstruction(failing, small_settings());
-            cubes_.add_to(reconstruction, 0);
-            const ViewReadback view = reconstruction.view(cubes_.info.color, *cubes_.frames[0].world_from_camera);
-            reconstruction.extract_surface();
+            Pipeline pipeline(failing, small_settings());
+            cubes_.add_to(pipeline, 0);
+            const ViewReadback view = pipeline.view(cubes_.info.color, *cubes_.frames[0].world_from_camera);
+            pipeline.extract_surface();
             succeeded = true;
         } catch (const Error& error) {
             EXPECT_THAT(error.what(), ::testing::ContainsRegex("out of memory.*'.+'")) << "allocation " << failures + 1;
@@ -282,7 +280,7 @@ TEST_F(PipelineTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
 TEST_F(PipelineTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
     ReconstructionSettings settings = small_settings();
     settings.fusion.settled_color_every = 2;
-    Pipeline reconstruction(device(), settings);
+    Pipeline pipeline(device(), settings);
     const Intrinsics camera = cubes_.info.depth;
     const auto add = [&](uint8_t grey, int count) {
         RgbdFrame frame = patina::to_rgbd(cubes_.info, cubes_.frames[0]);
@@ -290,10 +288,10 @@ TEST_F(PipelineTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
         frame.color.pixels = std::span(picture.pixels());
         for (int i = 0; i < count; ++i) {
             frame.held_out = i % 2 == 1;
-            reconstruction.add(frame);
+            pipeline.add(frame);
         }
-        const ViewReadback pending = reconstruction.view(camera, frame.world_from_depth);
-        reconstruction.wait();
+        const ViewReadback pending = pipeline.view(camera, frame.world_from_depth);
+        pipeline.wait();
         return pending.get().color;
     };
     const Image<glm::vec4> before = add(60, 24), after = add(200, 48);

@@ -28,23 +28,23 @@ class Relocalisation : public GpuTest {
     }
 
     /// Gives the frame to the reconstruction at the time of step `step`; returns its state.
-    static TrackingState add(Pipeline& reconstruction, uint32_t index, uint32_t step) {
+    static TrackingState add(Pipeline& pipeline, uint32_t index, uint32_t step) {
         RgbdFrame rgbd = patina::to_rgbd(office().info, office().frames[index]);
         rgbd.time.timestamp_s = step / office().info.fps;
-        reconstruction.add(rgbd);
-        return reconstruction.tracking_report()->state;
+        pipeline.add(rgbd);
+        return pipeline.tracking_report()->state;
     }
 
     /// What of the first frames tracks is the map of the tests.
-    static void track_first(Pipeline& reconstruction, uint32_t frames) {
+    static void track_first(Pipeline& pipeline, uint32_t frames) {
         for (uint32_t i = 0; i < frames; ++i) {
-            ASSERT_EQ(add(reconstruction, i, i), TrackingState::kTracking)
-                << "frame " << i << ": " << reconstruction.tracking_report()->reason;
+            ASSERT_EQ(add(pipeline, i, i), TrackingState::kTracking)
+                << "frame " << i << ": " << pipeline.tracking_report()->reason;
         }
     }
 
-    static void expect_pose_of(const Pipeline& reconstruction, uint32_t index) {
-        const PoseError error = pose_error(reconstruction.tracking_report()->world_from_depth, office().frames[index]);
+    static void expect_pose_of(const Pipeline& pipeline, uint32_t index) {
+        const PoseError error = pose_error(pipeline.tracking_report()->world_from_depth, office().frames[index]);
         EXPECT_LT(error.translation_m, 0.02) << "frame " << index;
         EXPECT_LT(error.rotation_degrees, 0.7) << "frame " << index;
     }
@@ -61,57 +61,57 @@ class Relocalisation : public GpuTest {
 };
 
 TEST_F(Relocalisation, ATeleportedCameraIsFoundAndTracksOn) {
-    Pipeline reconstruction(device(), tracked_settings());
-    track_first(reconstruction, kFrames);
+    Pipeline pipeline(device(), tracked_settings());
+    track_first(pipeline, kFrames);
     for (uint32_t i = 5; i < 9; ++i) {
-        ASSERT_EQ(add(reconstruction, i, kFrames + i), TrackingState::kTracking)
-            << "frame " << i << ": " << reconstruction.tracking_report()->reason;
-        expect_pose_of(reconstruction, i);
+        ASSERT_EQ(add(pipeline, i, kFrames + i), TrackingState::kTracking)
+            << "frame " << i << ": " << pipeline.tracking_report()->reason;
+        expect_pose_of(pipeline, i);
     }
-    EXPECT_EQ(reconstruction.frames(), kFrames + 4);
+    EXPECT_EQ(pipeline.frames(), kFrames + 4);
 }
 
 TEST_F(Relocalisation, WithoutKeyframesItStaysLost) {
     ReconstructionSettings settings = tracked_settings();
     settings.keyframes.reset();
-    Pipeline reconstruction(device(), settings);
-    track_first(reconstruction, kFrames);
-    EXPECT_NE(add(reconstruction, 5, kFrames + 5), TrackingState::kTracking);
-    EXPECT_EQ(reconstruction.frames(), kFrames);
+    Pipeline pipeline(device(), settings);
+    track_first(pipeline, kFrames);
+    EXPECT_NE(add(pipeline, 5, kFrames + 5), TrackingState::kTracking);
+    EXPECT_EQ(pipeline.frames(), kFrames);
 }
 
 TEST_F(Relocalisation, WhatTheMapDoesNotShowIsLostAndNotFused) {
-    Pipeline reconstruction(device(), tracked_settings());
-    track_first(reconstruction, 8);
-    const uint32_t free_before = (reconstruction.wait(), reconstruction.statistics().map.free_blocks);
-    EXPECT_EQ(add(reconstruction, kFrames - 1, 8), TrackingState::kLost);
-    EXPECT_EQ(add(reconstruction, kFrames - 2, 9), TrackingState::kLost);
-    reconstruction.wait();
-    EXPECT_EQ(reconstruction.frames(), 8u);
-    EXPECT_EQ(reconstruction.statistics().map.free_blocks, free_before);
-    EXPECT_EQ(add(reconstruction, 8, 10), TrackingState::kTracking);  // the view is back
-    expect_pose_of(reconstruction, 8);
+    Pipeline pipeline(device(), tracked_settings());
+    track_first(pipeline, 8);
+    const uint32_t free_before = (pipeline.wait(), pipeline.counters().map.free_blocks);
+    EXPECT_EQ(add(pipeline, kFrames - 1, 8), TrackingState::kLost);
+    EXPECT_EQ(add(pipeline, kFrames - 2, 9), TrackingState::kLost);
+    pipeline.wait();
+    EXPECT_EQ(pipeline.frames(), 8u);
+    EXPECT_EQ(pipeline.counters().map.free_blocks, free_before);
+    EXPECT_EQ(add(pipeline, 8, 10), TrackingState::kTracking);  // the view is back
+    expect_pose_of(pipeline, 8);
 }
 
 TEST_F(Relocalisation, InTheDarkNothingIsFusedAndTrackingReturnsWithTheView) {
-    Pipeline reconstruction(device(), tracked_settings());
-    track_first(reconstruction, 10);
+    Pipeline pipeline(device(), tracked_settings());
+    track_first(pipeline, 10);
     for (uint32_t step = 10; step < 14; ++step) {
-        reconstruction.add(dark_frame(step));
-        EXPECT_EQ(reconstruction.tracking_report()->state, TrackingState::kLost) << step;
+        pipeline.add(dark_frame(step));
+        EXPECT_EQ(pipeline.tracking_report()->state, TrackingState::kLost) << step;
     }
-    EXPECT_EQ(reconstruction.frames(), 10u);
-    EXPECT_EQ(add(reconstruction, 3, 14), TrackingState::kTracking);  // elsewhere than it was lost
-    expect_pose_of(reconstruction, 3);
+    EXPECT_EQ(pipeline.frames(), 10u);
+    EXPECT_EQ(add(pipeline, 3, 14), TrackingState::kTracking);  // elsewhere than it was lost
+    expect_pose_of(pipeline, 3);
 }
 
 TEST_F(Relocalisation, TheSameFramesGiveTheSamePoses) {
     std::vector<RigidTransform> poses[2];
     for (auto& run : poses) {
-        Pipeline reconstruction(device(), tracked_settings());
+        Pipeline pipeline(device(), tracked_settings());
         for (const uint32_t index : {0, 1, 2, 3, 4, 5, 6, 7, 30, 2, 3}) {
-            add(reconstruction, index, static_cast<uint32_t>(run.size()));
-            run.push_back(reconstruction.tracking_report()->world_from_depth);
+            add(pipeline, index, static_cast<uint32_t>(run.size()));
+            run.push_back(pipeline.tracking_report()->world_from_depth);
         }
     }
     EXPECT_EQ(poses[0], poses[1]);

@@ -49,9 +49,9 @@ class SegmentationStageTest : public GpuTest {
     }
 
     /// The labels of what a frame's depth camera sees.
-    Image<uint32_t> view(Pipeline& reconstruction, uint32_t index) {
-        const ViewReadback pending = reconstruction.view(cubes_.info.depth, *cubes_.frames[index].world_from_camera);
-        reconstruction.wait();
+    Image<uint32_t> view(Pipeline& pipeline, uint32_t index) {
+        const ViewReadback pending = pipeline.view(cubes_.info.depth, *cubes_.frames[index].world_from_camera);
+        pipeline.wait();
         return pending.get().label;
     }
 
@@ -59,9 +59,9 @@ class SegmentationStageTest : public GpuTest {
 };
 
 TEST_F(SegmentationStageTest, GivenIdsAreTheLabelsOfTheMap) {
-    Pipeline reconstruction(device(), settings(true));
-    for (int i = 0; i < 4; ++i) reconstruction.add(cubes_.frame(0));
-    const Image<uint32_t> seen = view(reconstruction, 0);
+    Pipeline pipeline(device(), settings(true));
+    for (int i = 0; i < 4; ++i) pipeline.add(cubes_.frame(0));
+    const Image<uint32_t> seen = view(pipeline, 0);
     size_t covered = 0, known = 0, right = 0;
     for (size_t i = 0; i < seen.pixels().size(); ++i) {
         if (cubes_.labels[0].pixels()[i] == 0) continue;
@@ -76,19 +76,19 @@ TEST_F(SegmentationStageTest, GivenIdsAreTheLabelsOfTheMap) {
 }
 
 TEST_F(SegmentationStageTest, ACameraThatStandsStillSeesTheSameLabelsForGood) {
-    Pipeline reconstruction(device(), settings(false));
-    for (uint32_t i = 0; i < gpu::kUpdateFrames; ++i) reconstruction.add(cubes_.frame(0));
-    const Image<uint32_t> before = view(reconstruction, 0);
-    const uint32_t created = reconstruction.statistics().segments.created;
+    Pipeline pipeline(device(), settings(false));
+    for (uint32_t i = 0; i < gpu::kUpdateFrames; ++i) pipeline.add(cubes_.frame(0));
+    const Image<uint32_t> before = view(pipeline, 0);
+    const uint32_t created = pipeline.counters().segments.created;
     EXPECT_GT(created, 3u);
-    for (uint32_t i = 0; i < 4 * gpu::kUpdateFrames; ++i) reconstruction.add(cubes_.frame(0));
-    const Image<uint32_t> after = view(reconstruction, 0);
-    EXPECT_EQ(reconstruction.statistics().segments.created, created);
+    for (uint32_t i = 0; i < 4 * gpu::kUpdateFrames; ++i) pipeline.add(cubes_.frame(0));
+    const Image<uint32_t> after = view(pipeline, 0);
+    EXPECT_EQ(pipeline.counters().segments.created, created);
     size_t changed = 0;
     for (size_t i = 0; i < before.pixels().size(); ++i)
         changed += before.pixels()[i] != 0 && before.pixels()[i] != after.pixels()[i];
     EXPECT_LT(changed, before.pixels().size() / 500);
-    const LabelStability stability = reconstruction.statistics().label_stability;
+    const LabelStability stability = pipeline.counters().label_stability;
     EXPECT_GT(stability.voxels, 0u);
     EXPECT_LT(stability.flips, stability.voxels / 500 + 1);
     EXPECT_GE(stability.seen, static_cast<double>(stability.voxels)) << "not every block has its turn";
@@ -96,11 +96,11 @@ TEST_F(SegmentationStageTest, ACameraThatStandsStillSeesTheSameLabelsForGood) {
 
 TEST_F(SegmentationStageTest, ASecondPassOverTheSamePathMakesNoLabels) {
     const SmallCubes path(device(), 24);
-    Pipeline reconstruction(device(), settings(false));
+    Pipeline pipeline(device(), settings(false));
     const auto pass = [&] {
-        for (uint32_t i = 0; i < 8; ++i) reconstruction.add(path.frame(i));
-        reconstruction.wait();
-        return reconstruction.statistics().segments.created;
+        for (uint32_t i = 0; i < 8; ++i) pipeline.add(path.frame(i));
+        pipeline.wait();
+        return pipeline.counters().segments.created;
     };
     const uint32_t created = pass();
     EXPECT_GT(created, 3u);
@@ -110,28 +110,28 @@ TEST_F(SegmentationStageTest, ASecondPassOverTheSamePathMakesNoLabels) {
 TEST_F(SegmentationStageTest, TheSameInputGivesTheSameLabels) {
     std::vector<Image<uint32_t>> seen;
     for (int run = 0; run < 2; ++run) {
-        Pipeline reconstruction(device(), settings(false));
-        for (uint32_t i = 0; i < 6; ++i) reconstruction.add(cubes_.frame(i % 2));
-        seen.push_back(view(reconstruction, 1));
+        Pipeline pipeline(device(), settings(false));
+        for (uint32_t i = 0; i < 6; ++i) pipeline.add(cubes_.frame(i % 2));
+        seen.push_back(view(pipeline, 1));
     }
     EXPECT_EQ(seen[0].pixels(), seen[1].pixels());
 }
 
 TEST_F(SegmentationStageTest, WithoutDepthThereAreNoSegments) {
-    Pipeline reconstruction(device(), settings(false));
+    Pipeline pipeline(device(), settings(false));
     RgbdFrame frame = cubes_.frame(0);
     const std::vector<uint16_t> nothing(frame.depth.camera.extent.area());
     frame.depth.pixels = std::span<const uint16_t>(nothing);
-    for (int i = 0; i < 3; ++i) reconstruction.add(frame);
-    const std::vector<uint32_t> seen = view(reconstruction, 0).pixels();
+    for (int i = 0; i < 3; ++i) pipeline.add(frame);
+    const std::vector<uint32_t> seen = view(pipeline, 0).pixels();
     EXPECT_EQ(std::set<uint32_t>(seen.begin(), seen.end()), std::set<uint32_t>{0});
-    EXPECT_EQ(reconstruction.statistics().segments.created, 0u);
+    EXPECT_EQ(pipeline.counters().segments.created, 0u);
 }
 
 TEST_F(SegmentationStageTest, SegmentationTakesFewDispatches) {
-    Pipeline reconstruction(device(), settings(false));
-    reconstruction.add(cubes_.frame(0));
-    const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+    Pipeline pipeline(device(), settings(false));
+    pipeline.add(cubes_.frame(0));
+    const graph::CompiledFrame& compiled = pipeline.runner().last_frame();
     size_t dispatches = 0;
     for (const uint32_t pass : compiled.plan.order)
         dispatches += compiled.description.passes[pass].name.starts_with("segmentation.") ? 1 : 0;

@@ -9,6 +9,7 @@ namespace patina {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
@@ -18,10 +19,10 @@ constexpr uint32_t kFrames = 5;
 /// A wall one metre ahead, seen by a camera that says when it ends; its third frame is damaged.
 class LiveWall : public Source {
   public:
-    LiveWall() {
+    explicit LiveWall(bool has_poses = true) {
         info_.name = "wall";
         info_.depth = info_.color = {{64, 48}, 60, 60, 31.5, 23.5};
-        info_.has_poses = true;
+        info_.has_poses = has_poses;
     }
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override {
@@ -139,8 +140,16 @@ TEST_F(SessionTest, WhatCannotBeMetIsOneSentence) {
     options.lighting = NoLights{};
     options.reflectance_for = "the viewer";
     EXPECT_THAT([&] { Session(device_, std::make_unique<LiveWall>(), options); },
-                ThrowsMessage<Error>(HasSubstr("the viewer needs lights")));
+                ThrowsMessage<Error>(HasSubstr("the viewer needs lights: give lights ")));
     options.reflectance_for.clear();
+    options.poses = Poses::kPrior;
+    EXPECT_THAT([&] { Session(device_, std::make_unique<LiveWall>(false), options); },
+                ThrowsMessage<Error>(EndsWith("'wall' has no poses, but tracking was to start from them; track the "
+                                              "camera without them")));
+    options.hints.track = "the third switch";
+    EXPECT_THAT([&] { Session(device_, std::make_unique<LiveWall>(false), options); },
+                ThrowsMessage<Error>(EndsWith(" (the third switch)")));
+    options.poses = Poses::kAuto;
     Session session(device_, std::make_unique<LiveWall>(), options);
     EXPECT_THAT([&] { session.finish(); }, ThrowsMessage<Error>(HasSubstr("no frame of 'wall' could be used")));
 }

@@ -15,7 +15,7 @@ namespace {
 
 const Intrinsics kCamera{{192, 144}, 160, 160, 95.5, 71.5, {}};
 const glm::dvec3 kBoxCenter{0, -0.15, 0}, kBoxHalf{0.15, 0.15, 0.1};
-const std::vector<PointLight> kLights = {{{0.8f, -1.0f, 0.1f}, {1.5f, 1.5f, 1.5f}}, {{-0.5f, -1.4f, -0.6f}, {1, 1, 1}}};
+const std::vector<Light> kLights = {{{0.8f, -1.0f, 0.1f}, {1.5f, 1.5f, 1.5f}}, {{-0.5f, -1.4f, -0.6f}, {1, 1, 1}}};
 
 double scene(glm::dvec3 p) {
     return std::min(reference::box(kBoxCenter, kBoxHalf)(p), reference::half_space({0, -1, 0}, 0)(p));
@@ -298,7 +298,7 @@ void paint(RigFrame& frame, const reference::Ward& material) {
             const glm::dvec3 point(frame.world_from_camera * in_camera);
             const glm::dvec3 normal = reference::normal_at(scene, point);
             std::vector<reference::ReceivedLight> lights;
-            for (const PointLight& light : kLights) {
+            for (const Light& light : kLights) {
                 lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity),
                                   !box_between(point + 1e-4 * normal, glm::dvec3(light.position_m))});
             }
@@ -312,7 +312,7 @@ void paint(RigFrame& frame, const reference::Ward& material) {
 TEST_F(FindVisibilityTest, KdOfAGlossySceneWithShadowsIsFoundThroughTheWholePipeline) {
     const reference::Ward material{{0.5, 0.4, 0.3}, glm::dvec3(0.08), 0.25};
     Model model(device(), runner());
-    model.reflectance.lights.set(kLights, glm::vec3(0.05f));
+    model.reflectance.lights.set(kLights, glm::dvec3(0.05f));
     model.reflectance.materials.set(1, glm::vec3(material.ks), static_cast<float>(material.alpha));
     for (RigFrame frame : frames()) {
         paint(frame, material);

@@ -20,12 +20,12 @@ using reference::Ward;
 constexpr int kViews = 30;
 constexpr double kPacking = 1.0 / 512;  // of colours and of kd: a shared exponent keeps 9 bits
 
-const std::vector<PointLight> kLights = {
+const std::vector<Light> kLights = {
     {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
 
 std::vector<ReceivedLight> received(const Lights& lights) {
     std::vector<ReceivedLight> result;
-    for (const PointLight& light : lights.point_lights())
+    for (const gpu::PointLight& light : lights.point_lights())
         result.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
     return result;
 }
@@ -57,8 +57,7 @@ class RefineAlbedoTest : public GpuTest {
     void observe(FilledRecord& record, const Ward& material, int views = kViews) {
         for (int i = 0; i < views; ++i) {
             const glm::dvec3 direction = random_direction(random_, glm::dvec3(record.normal), 0.3);
-            const glm::dvec3 rgb =
-                reference::shade(material, kept(record), received(rig_.lights), glm::dvec3(ambient_), direction);
+            const glm::dvec3 rgb = reference::shade(material, kept(record), received(rig_.lights), ambient_, direction);
             record.observations.push_back({glm::vec3(direction), glm::vec3(rgb), {}});
         }
     }
@@ -92,12 +91,11 @@ class RefineAlbedoTest : public GpuTest {
             observations.push_back({glm::dvec3(seen.to_viewer),
                                     glm::dvec3(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(seen.rgb))), seen.clipped});
         }
-        return reference::refine_albedo(observations, kept(record), received(rig_.lights), glm::dvec3(ambient_),
-                                        material);
+        return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material);
     }
 
     std::mt19937 random_{1};
-    glm::vec3 ambient_{0.05f, 0.04f, 0.03f};
+    glm::dvec3 ambient_{0.05f, 0.04f, 0.03f};
     VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
     // Several chunks of 256 records.
     ObservationMap map_{device(),
@@ -138,8 +136,8 @@ TEST_F(RefineAlbedoTest, AMaterialThatIsNotKnownLeavesItsHighlightInKd) {
     FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 5, {}};
     const SurfacePoint point = kept(record);
     const auto lights = received(rig_.lights);
-    const glm::dvec3 ambient(ambient_),
-        direction = glm::reflect(glm::normalize(point.position_m - lights[0].position_m), point.normal);
+    const glm::dvec3 ambient = ambient_,
+                     direction = glm::reflect(glm::normalize(point.position_m - lights[0].position_m), point.normal);
     record.observations.push_back(
         {glm::vec3(direction), glm::vec3(reference::shade(material, point, lights, ambient, direction)), {}});
     const glm::dvec3 highlight = reference::shade({{}, material.ks, material.alpha}, point, lights, {}, direction);
@@ -183,8 +181,8 @@ TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {
 }
 
 TEST_F(RefineAlbedoTest, WhatReceivesNoLightIsUnknown) {
-    ambient_ = glm::vec3(0.2f, 0, 0);
-    rig_.lights.set(std::vector<PointLight>{{{0, 5, 0}, {9, 9, 9}}}, ambient_);  // below the floor
+    ambient_ = glm::dvec3(0.2f, 0, 0);
+    rig_.lights.set(std::vector<Light>{{{0, 5, 0}, {9, 9, 9}}}, ambient_);  // below the floor
     const Ward material{{0.3, 0.5, 0.2}, {}, 1};
     FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
     observe(record, material);

@@ -21,7 +21,7 @@ constexpr double kHalf = 1.0 / 1024;  // rgba16f rounds at 2^-11; twice that for
 constexpr uint64_t kAllLights = ~uint64_t{0};
 const RigidTransform kPose{1.0};
 const glm::dvec3 kAmbient(0.05, 0.04, 0.03);
-const PointLight kLamp{{0.4f, -0.5f, 0.1f}, {1.5f, 1.0f, 0.8f}};
+const Light kLamp{{0.4f, -0.5f, 0.1f}, {1.5f, 1.0f, 0.8f}};
 
 ShadedRecord painted(glm::dvec3 kd, uint32_t label = 0, uint64_t reached = kAllLights) {
     ShadedRecord record;
@@ -42,7 +42,7 @@ class PredictRadiance : public GpuTest {
                    const std::vector<RigidTransform>& poses = {kPose}) {
         ShadingRig rig(device(), runner(), voxel_m);
         for (const RigidTransform& pose : poses) rig.see(field, pose);
-        rig.lights.set(std::vector{kLamp}, glm::vec3(kAmbient));
+        rig.lights.set(std::vector{kLamp}, glm::dvec3(kAmbient));
         return rig;
     }
 
@@ -261,7 +261,7 @@ TEST_F(PredictRadiance, TheEdgeOfAShadowIsOneVoxelWide) {
 
 TEST_F(PredictRadiance, ManyLightsEachReachWhatTheyReach) {
     ShadingRig rig = this->rig(wall_);
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
     for (uint32_t i = 0; i < gpu::kMaxPointLights; ++i) {
         const float angle = 0.3f * static_cast<float>(i);
         lights.push_back({{std::cos(angle), std::sin(angle), 0.2f}, {i % 3 == 0, i % 3 == 1, i % 3 == 2}});
@@ -305,8 +305,8 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
         };
         const RigidTransform poses[] = {kPose, reference::look_at({0.5, -0.3, 0.1}, {0, 0, 1})};
         ShadingRig rig = this->rig(field, voxel_m, {poses[0], poses[1]});
-        std::vector<PointLight> lights = {kLamp, {{-0.5f, -0.5f, 0}, {0.5f, 1, 1}}, {{0, -1, 0.8f}, {1, 1, 1}}};
-        rig.lights.set(lights, glm::vec3(kAmbient));
+        std::vector<Light> lights = {kLamp, {{-0.5f, -0.5f, 0}, {0.5f, 1, 1}}, {{0, -1, 0.8f}, {1, 1, 1}}};
+        rig.lights.set(lights, glm::dvec3(kAmbient));
         rig.materials.set(1, glm::vec3(0.1f), 0.2f);
         rig.materials.set(2, glm::vec3(0.05f), 0.4f);
         std::mt19937 random(1);

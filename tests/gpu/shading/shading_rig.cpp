@@ -195,7 +195,7 @@ reference::ShadedScene ShadingRig::scene() const {
     scene.voxel_m = voxel_m_;
     scene.records = painted_;
     scene.segment_kd = reference::average_segments(painted_);
-    for (const PointLight& light : lights.point_lights()) {
+    for (const gpu::PointLight& light : lights.point_lights()) {
         scene.lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
     }
     scene.ambient = glm::dvec3(lights.ambient());

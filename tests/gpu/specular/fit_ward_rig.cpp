@@ -14,7 +14,7 @@ constexpr float kBlurM = 0.0076f;  // of a bent surface that an observation show
 
 }  // namespace
 
-const std::vector<PointLight> FitWardTest::kLights = {
+const std::vector<Light> FitWardTest::kLights = {
     {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
 
 FitWardTest::FitWardTest() {
@@ -25,14 +25,13 @@ FitWardTest::FitWardTest() {
     estimates_.reset(frame);
     table_.reset(frame);
     run(std::move(frame));
-    rig_.lights.set(kLights, glm::vec3(0.05f, 0.04f, 0.03f));
+    rig_.lights.set(kLights, glm::dvec3(0.05f, 0.04f, 0.03f));
     materials_.resize(kLabels);
 }
 
 std::vector<reference::ReceivedLight> FitWardTest::received() {
     std::vector<reference::ReceivedLight> lights;
-    for (const PointLight& light : kLights)
-        lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
+    for (const Light& light : kLights) lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
     return lights;
 }
 

@@ -20,7 +20,7 @@ class FitWardTest : public GpuTest {
   protected:
     static constexpr uint32_t kLabels = 16;
     static constexpr uint32_t kVoxels = 128;  ///< of a segment
-    static const std::vector<PointLight> kLights;
+    static const std::vector<Light> kLights;
 
     FitWardTest();
 

@@ -112,9 +112,9 @@ TEST_F(FitWardTest, KeepsThePriorWhereNoObservationTells) {
     std::vector<FilledRecord> records = sphere(1, {{}, glm::dvec3(0.2), 0.05});
     for (FilledRecord& record : records) {
         std::erase_if(record.observations, [&](const FilledObservation& seen) {
-            return std::ranges::any_of(kLights, [&](const PointLight& light) {
+            return std::ranges::any_of(kLights, [&](const Light& light) {
                 const glm::vec3 half =
-                    glm::normalize(glm::normalize(light.position_m - record.point_m) + seen.to_viewer);
+                    glm::normalize(glm::normalize(glm::vec3(light.position_m) - record.point_m) + seen.to_viewer);
                 return glm::dot(half, record.normal) > std::cos(0.7f);
             });
         });
@@ -180,15 +180,15 @@ TEST_F(FitWardTest, AFewWrongNormalsDoNotRuleAHighlightOut) {
     uint32_t wrong = 0;
     for (size_t i = 0; i < records.size(); ++i) {
         const auto shows_peak = [&](const FilledObservation& seen) {
-            return std::ranges::any_of(kLights, [&](const PointLight& light) {
-                const glm::vec3 to_light = glm::normalize(light.position_m - records[i].point_m);
+            return std::ranges::any_of(kLights, [&](const Light& light) {
+                const glm::vec3 to_light = glm::normalize(glm::vec3(light.position_m) - records[i].point_m);
                 return glm::dot(glm::normalize(to_light + seen.to_viewer), records[i].normal) > std::cos(0.7f);
             });
         };
         std::erase_if(records[i].observations, shows_peak);
         if (wrong == 2 || records[i].observations.empty()) continue;
         ++wrong;
-        const glm::vec3 to_light = glm::normalize(kLights[0].position_m - records[i].point_m);
+        const glm::vec3 to_light = glm::normalize(glm::vec3(kLights[0].position_m) - records[i].point_m);
         records[i].normal = glm::normalize(to_light + records[i].observations.front().to_viewer);
     }
     fill(records);

@@ -67,69 +67,69 @@ class TrackingTest : public GpuTest {
         return rgbd;
     }
 
-    bool add(Pipeline& reconstruction, const Shot& shot, double frame, const RigidTransform& start) const {
+    bool add(Pipeline& pipeline, const Shot& shot, double frame, const RigidTransform& start) const {
         RgbdFrame rgbd = frame_of(shot, start);
         rgbd.time.timestamp_s = frame / 30;
-        return reconstruction.add(rgbd);
+        return pipeline.add(rgbd);
     }
 
-    bool add(Pipeline& reconstruction, double frame) const {
-        return add(reconstruction, shoot(room(), pose_at(frame)), frame, pose_at(0));
+    bool add(Pipeline& pipeline, double frame) const {
+        return add(pipeline, shoot(room(), pose_at(frame)), frame, pose_at(0));
     }
 
-    static double error_m(Pipeline& reconstruction, double frame) {
-        return glm::length(glm::dvec3(reconstruction.tracking_report()->world_from_depth[3] - pose_at(frame)[3]));
+    static double error_m(Pipeline& pipeline, double frame) {
+        return glm::length(glm::dvec3(pipeline.tracking_report()->world_from_depth[3] - pose_at(frame)[3]));
     }
 
-    static TrackingState state(Pipeline& reconstruction) { return reconstruction.tracking_report()->state; }
+    static TrackingState state(Pipeline& pipeline) { return pipeline.tracking_report()->state; }
 
     const Intrinsics camera_ = pinhole_camera({128, 106});
 };
 
 TEST_F(TrackingTest, FollowsACameraAroundARoom) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     for (int frame = 0; frame < 20; ++frame) {
-        ASSERT_TRUE(add(reconstruction, frame)) << frame << ": " << reconstruction.tracking_report()->reason;
-        EXPECT_LT(error_m(reconstruction, frame), kMost_m) << frame;
+        ASSERT_TRUE(add(pipeline, frame)) << frame << ": " << pipeline.tracking_report()->reason;
+        EXPECT_LT(error_m(pipeline, frame), kMost_m) << frame;
     }
-    EXPECT_EQ(reconstruction.frames(), 20u);
+    EXPECT_EQ(pipeline.frames(), 20u);
 }
 
 TEST_F(TrackingTest, EveryGraphIsSound) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     for (int frame = 0; frame < 3; ++frame) {
-        add(reconstruction, frame);
-        const graph::CompiledFrame& compiled = reconstruction.runner().last_frame();
+        add(pipeline, frame);
+        const graph::CompiledFrame& compiled = pipeline.runner().last_frame();
         EXPECT_THAT(graph::check(compiled.description, compiled.plan), ::testing::IsEmpty());
         EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), ::testing::IsEmpty());
     }
-    reconstruction.wait();  // fuses kept pictures alone
-    const graph::CompiledFrame& last = reconstruction.runner().last_frame();
+    pipeline.wait();  // fuses kept pictures alone
+    const graph::CompiledFrame& last = pipeline.runner().last_frame();
     EXPECT_THAT(graph::check(last.description, last.plan), ::testing::IsEmpty());
     EXPECT_THAT(graph::find_unneeded_barriers(last.description, last.plan), ::testing::IsEmpty());
 }
 
 TEST_F(TrackingTest, DroppedFramesAreCaughtUpWith) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     for (int frame = 0; frame < 24; frame += 2) {
-        ASSERT_TRUE(add(reconstruction, frame)) << frame << ": " << reconstruction.tracking_report()->reason;
-        EXPECT_LT(error_m(reconstruction, frame), kMost_m) << frame;
+        ASSERT_TRUE(add(pipeline, frame)) << frame << ": " << pipeline.tracking_report()->reason;
+        EXPECT_LT(error_m(pipeline, frame), kMost_m) << frame;
     }
 }
 
 TEST_F(TrackingTest, ABlackoutIsALossAndEndsWithIt) {
-    Pipeline reconstruction(device(), settings());
-    for (int frame = 0; frame < 6; ++frame) ASSERT_TRUE(add(reconstruction, frame));
+    Pipeline pipeline(device(), settings());
+    for (int frame = 0; frame < 6; ++frame) ASSERT_TRUE(add(pipeline, frame));
     const Shot black{Image<float>(camera_.extent, 0.0f), Image<glm::vec3>(camera_.extent)};
     for (int frame = 6; frame < 26; ++frame) {
-        EXPECT_FALSE(add(reconstruction, black, frame, pose_at(0)));
-        EXPECT_EQ(state(reconstruction), TrackingState::kLost);
-        EXPECT_THAT(reconstruction.tracking_report()->reason, HasSubstr("only 0 of 0 readings"));
+        EXPECT_FALSE(add(pipeline, black, frame, pose_at(0)));
+        EXPECT_EQ(state(pipeline), TrackingState::kLost);
+        EXPECT_THAT(pipeline.tracking_report()->reason, HasSubstr("only 0 of 0 readings"));
     }
-    EXPECT_EQ(reconstruction.frames(), 6u);
+    EXPECT_EQ(pipeline.frames(), 6u);
     for (int frame = 26; frame < 29; ++frame) {
-        ASSERT_TRUE(add(reconstruction, frame)) << reconstruction.tracking_report()->reason;
-        EXPECT_LT(error_m(reconstruction, frame), kMost_m) << frame;
+        ASSERT_TRUE(add(pipeline, frame)) << pipeline.tracking_report()->reason;
+        EXPECT_LT(error_m(pipeline, frame), kMost_m) << frame;
     }
 }
 
@@ -137,95 +137,93 @@ TEST_F(TrackingTest, BeforeAWallAloneItIsWeakAndFusesNothing) {
     const DistanceField wall = reference::half_space({0, 0, -1}, -1.5);
     ReconstructionSettings depth_only = settings();
     depth_only.tracking->photometric = false;
-    Pipeline reconstruction(device(), depth_only);
-    ASSERT_TRUE(add(reconstruction, shoot(wall, pose_at(0)), 0, pose_at(0)));
+    Pipeline pipeline(device(), depth_only);
+    ASSERT_TRUE(add(pipeline, shoot(wall, pose_at(0)), 0, pose_at(0)));
     for (int frame = 1; frame < 6; ++frame) {
-        EXPECT_FALSE(add(reconstruction, shoot(wall, pose_at(frame)), frame, pose_at(0)));
-        EXPECT_EQ(state(reconstruction), TrackingState::kWeak);
-        EXPECT_THAT(reconstruction.tracking_report()->reason, HasSubstr("leaves 3 directions of motion open"));
+        EXPECT_FALSE(add(pipeline, shoot(wall, pose_at(frame)), frame, pose_at(0)));
+        EXPECT_EQ(state(pipeline), TrackingState::kWeak);
+        EXPECT_THAT(pipeline.tracking_report()->reason, HasSubstr("leaves 3 directions of motion open"));
         // What the wall shows is found: how far it is.
-        EXPECT_NEAR(reconstruction.tracking_report()->world_from_depth[3].z, pose_at(frame)[3].z, 0.005);
+        EXPECT_NEAR(pipeline.tracking_report()->world_from_depth[3].z, pose_at(frame)[3].z, 0.005);
     }
-    EXPECT_EQ(reconstruction.frames(), 1u);
+    EXPECT_EQ(pipeline.frames(), 1u);
 }
 
 TEST_F(TrackingTest, WithTheLightOffDepthLeads) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     for (int frame = 0; frame < 16; ++frame) {
         Shot shot = shoot(room(), pose_at(frame));
         if (frame >= 5 && frame < 11) shot.color = Image<glm::vec3>(camera_.extent, glm::vec3(0.001f));
-        ASSERT_TRUE(add(reconstruction, shot, frame, pose_at(0)))
-            << frame << ": " << reconstruction.tracking_report()->reason;
-        EXPECT_LT(error_m(reconstruction, frame), kMost_m) << frame;
+        ASSERT_TRUE(add(pipeline, shot, frame, pose_at(0))) << frame << ": " << pipeline.tracking_report()->reason;
+        EXPECT_LT(error_m(pipeline, frame), kMost_m) << frame;
     }
 }
 
 TEST_F(TrackingTest, ARelocaliserEndsALoss) {
-    Pipeline reconstruction(device(), settings());
-    for (int frame = 0; frame < 5; ++frame) ASSERT_TRUE(add(reconstruction, frame));
+    Pipeline pipeline(device(), settings());
+    for (int frame = 0; frame < 5; ++frame) ASSERT_TRUE(add(pipeline, frame));
     // Half a metre aside: farther than a camera moves from frame to frame.
     const auto far_pose = [](int i) { return reference::look_at({0.5 + 0.01 * i, -0.2, -0.2}, {0.1, 0.3, 2}); };
-    const auto add_far = [&](int i) { return add(reconstruction, shoot(room(), far_pose(i)), 5 + i, pose_at(0)); };
+    const auto add_far = [&](int i) { return add(pipeline, shoot(room(), far_pose(i)), 5 + i, pose_at(0)); };
     const auto far_error_m = [&](int i) {
-        return glm::length(glm::dvec3(reconstruction.tracking_report()->world_from_depth[3] - far_pose(i)[3]));
+        return glm::length(glm::dvec3(pipeline.tracking_report()->world_from_depth[3] - far_pose(i)[3]));
     };
     EXPECT_FALSE(add_far(0));
-    EXPECT_EQ(state(reconstruction), TrackingState::kLost);
+    EXPECT_EQ(state(pipeline), TrackingState::kLost);
     int asked = 0;
-    reconstruction.set_relocaliser([&](const RgbdFrame&) {
+    pipeline.set_relocaliser([&](const RgbdFrame&) {
         ++asked;
         RigidTransform near_by = far_pose(1), wrong = pose_at(0);
         near_by[3] += glm::dvec4(0.01, -0.01, 0.01, 0);
         wrong[3] += glm::dvec4(0, 0, -2, 0);
         return std::vector{wrong, near_by};
     });
-    ASSERT_TRUE(add_far(1)) << reconstruction.tracking_report()->reason;
+    ASSERT_TRUE(add_far(1)) << pipeline.tracking_report()->reason;
     EXPECT_LT(far_error_m(1), kMost_m);
-    ASSERT_TRUE(add_far(2)) << reconstruction.tracking_report()->reason;
+    ASSERT_TRUE(add_far(2)) << pipeline.tracking_report()->reason;
     EXPECT_LT(far_error_m(2), kMost_m);
     EXPECT_EQ(asked, 1);
 }
 
 TEST_F(TrackingTest, TheFirstFrameNeedsReadings) {
-    Pipeline reconstruction(device(), settings());
+    Pipeline pipeline(device(), settings());
     const Shot black{Image<float>(camera_.extent, 0.0f), Image<glm::vec3>(camera_.extent)};
-    EXPECT_FALSE(add(reconstruction, black, 0, pose_at(0)));
-    EXPECT_THAT(reconstruction.tracking_report()->reason, HasSubstr("the first frame has 0 readings"));
-    EXPECT_TRUE(add(reconstruction, 1));
-    EXPECT_EQ(reconstruction.tracking_report()->world_from_depth, pose_at(0));
+    EXPECT_FALSE(add(pipeline, black, 0, pose_at(0)));
+    EXPECT_THAT(pipeline.tracking_report()->reason, HasSubstr("the first frame has 0 readings"));
+    EXPECT_TRUE(add(pipeline, 1));
+    EXPECT_EQ(pipeline.tracking_report()->world_from_depth, pose_at(0));
 }
 
 TEST_F(TrackingTest, TheSameFramesGiveTheSameBytes) {
     const auto run = [&] {
-        Pipeline reconstruction(device(), settings());
-        for (int frame = 0; frame < 8; ++frame) add(reconstruction, frame);
-        return std::pair(reconstruction.tracking_report()->world_from_depth,
-                         reconstruction.extract_surface().positions_m);
+        Pipeline pipeline(device(), settings());
+        for (int frame = 0; frame < 8; ++frame) add(pipeline, frame);
+        return std::pair(pipeline.tracking_report()->world_from_depth, pipeline.extract_surface().positions_m);
     };
     EXPECT_EQ(run(), run());
 }
 
 TEST_F(TrackingTest, ATrackedFrameIsOneSubmission) {
-    Pipeline reconstruction(device(), settings());
-    const auto submissions = [&] { return reconstruction.runner().host_timing().samples_ms.size(); };
+    Pipeline pipeline(device(), settings());
+    const auto submissions = [&] { return pipeline.runner().host_timing().samples_ms.size(); };
     const auto conversions = [&] {
         size_t count = 0;
-        for (const graph::Timing& pass : reconstruction.runner().pass_timings()) {
+        for (const graph::Timing& pass : pipeline.runner().pass_timings()) {
             if (pass.name == "input.convert_depth" || pass.name == "input.convert_color")
                 count += pass.samples_ms.size();
         }
         return count;
     };
-    ASSERT_TRUE(add(reconstruction, 0));
+    ASSERT_TRUE(add(pipeline, 0));
     const size_t before = submissions();
-    for (int frame = 1; frame < 6; ++frame) ASSERT_TRUE(add(reconstruction, frame));
+    for (int frame = 1; frame < 6; ++frame) ASSERT_TRUE(add(pipeline, frame));
     EXPECT_EQ(submissions() - before, 5u);
-    EXPECT_EQ(reconstruction.frames(), 6u) << "the last one waits to be fused, and counts";
-    reconstruction.wait();
+    EXPECT_EQ(pipeline.frames(), 6u) << "the last one waits to be fused, and counts";
+    pipeline.wait();
     EXPECT_EQ(submissions() - before, 6u) << "which fuses it";
     EXPECT_EQ(conversions(), 2 * 6u) << "each picture once";
-    EXPECT_EQ(reconstruction.frames(), 6u);
-    reconstruction.wait();
+    EXPECT_EQ(pipeline.frames(), 6u);
+    pipeline.wait();
     EXPECT_EQ(submissions() - before, 6u) << "nothing waits any more";
 }
 
@@ -256,30 +254,30 @@ TEST_F(TrackingTest, WhatWaitsIsFusedBeforeTheModelIsLookedAt) {
 }
 
 TEST_F(TrackingTest, AFrameOfGivenPoseComesAfterTheOneThatWaits) {
-    Pipeline reconstruction(device(), settings());
-    ASSERT_TRUE(add(reconstruction, 0));
-    ASSERT_TRUE(add(reconstruction, 1));
+    Pipeline pipeline(device(), settings());
+    ASSERT_TRUE(add(pipeline, 0));
+    ASSERT_TRUE(add(pipeline, 1));
     const Shot shot = shoot(room(), pose_at(2));
-    const size_t before = reconstruction.runner().host_timing().samples_ms.size();
-    reconstruction.add_posed(frame_of(shot, pose_at(2)));
-    EXPECT_EQ(reconstruction.runner().host_timing().samples_ms.size() - before, 2u) << "the one that waited, and this";
-    EXPECT_EQ(reconstruction.frames(), 3u);
+    const size_t before = pipeline.runner().host_timing().samples_ms.size();
+    pipeline.add_posed(frame_of(shot, pose_at(2)));
+    EXPECT_EQ(pipeline.runner().host_timing().samples_ms.size() - before, 2u) << "the one that waited, and this";
+    EXPECT_EQ(pipeline.frames(), 3u);
 }
 
 TEST_F(TrackingTest, AFrameThatCannotBeReadLosesNothing) {
     const auto surface_after = [&](bool with_wrong_frame) {
-        Pipeline reconstruction(device(), settings());
-        EXPECT_TRUE(add(reconstruction, 0));
-        EXPECT_TRUE(add(reconstruction, 1));
+        Pipeline pipeline(device(), settings());
+        EXPECT_TRUE(add(pipeline, 0));
+        EXPECT_TRUE(add(pipeline, 1));
         if (with_wrong_frame) {
             const Shot shot = shoot(room(), pose_at(2));
             RgbdFrame wrong = frame_of(shot, pose_at(0));
             wrong.depth.max_metres = -1;
-            EXPECT_THROW(reconstruction.add(wrong), Error);
+            EXPECT_THROW(pipeline.add(wrong), Error);
         }
-        EXPECT_EQ(reconstruction.frames(), 2u);
-        EXPECT_TRUE(add(reconstruction, 2)) << reconstruction.tracking_report()->reason;
-        return reconstruction.extract_surface().positions_m;
+        EXPECT_EQ(pipeline.frames(), 2u);
+        EXPECT_TRUE(add(pipeline, 2)) << pipeline.tracking_report()->reason;
+        return pipeline.extract_surface().positions_m;
     };
     EXPECT_EQ(surface_after(true), surface_after(false));
 }

@@ -1,4 +1,4 @@
-#include "tools/report/tracking_record.h"
+#include "tools/report/tracking_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 
 #include <limits>
 
 #include <gmock/gmock.h>
 
-#include "tests/export/test_record.h"
+#include "tests/export/full_summary.h"
 
 namespace patina {
 namespace {
@@ -19,8 +19,8 @@ std::vector<std::string> keys(const ordered_json& object) {
     return names;
 }
 
-TEST(RunRecord, KeysKeepTheirOrder) {
-    const ordered_json run = ordered_json::parse(run_json(test::full_record()));
+TEST(RunSummary, KeysKeepTheirOrder) {
+    const ordered_json run = ordered_json::parse(run_json(test::full_summary()));
     EXPECT_THAT(keys(run), ElementsAre("format", "version", "id", "finished", "device", "driver", "seed", "settings",
                                        "lights", "sequence", "frames", "voxel_pool", "memory", "totals", "shortfalls",
                                        "warnings", "passes", "times", "files"));
@@ -29,21 +29,21 @@ TEST(RunRecord, KeysKeepTheirOrder) {
     EXPECT_THAT(keys(ordered_json::parse(run_json({}))), keys(run));
 }
 
-TEST(RunRecord, TheIdIsOfAllButDurations) {
-    RunRecord record = test::full_record();
-    const std::string id = run_id(record, 7);
+TEST(RunSummary, TheIdIsOfAllButDurations) {
+    RunSummary summary = test::full_summary();
+    const std::string id = run_id(summary, 7);
     EXPECT_EQ(id.size(), 16u);
-    record.id = id;
-    record.times_s.emplace_back("more", 3);
-    record.passes.clear();
-    EXPECT_EQ(run_id(record, 7), id);
-    EXPECT_NE(run_id(record, 8), id);
-    record.seed += 1;
-    EXPECT_NE(run_id(record, 7), id);
+    summary.id = id;
+    summary.times_s.emplace_back("more", 3);
+    summary.passes.clear();
+    EXPECT_EQ(run_id(summary, 7), id);
+    EXPECT_NE(run_id(summary, 8), id);
+    summary.seed += 1;
+    EXPECT_NE(run_id(summary, 7), id);
 }
 
-TEST(RunRecord, EveryFieldArrives) {
-    const ordered_json run = ordered_json::parse(run_json(test::full_record()));
+TEST(RunSummary, EveryFieldArrives) {
+    const ordered_json run = ordered_json::parse(run_json(test::full_summary()));
     EXPECT_EQ(run["format"], "patina-run");
     EXPECT_EQ(run["version"], "0.1.0");
     EXPECT_EQ(
@@ -69,43 +69,43 @@ TEST(RunRecord, EveryFieldArrives) {
     EXPECT_EQ(run["times"], ordered_json({{"total_s", 61.25}, {"reading_s", 3.5}}));
 }
 
-TEST(RunRecord, ThePoolOfObservationsIsToldWhereThereIsOne) {
-    RunRecord record = test::full_record();
-    record.observation_pool = {900, 1000, 7, 3};
-    EXPECT_EQ(ordered_json::parse(run_json(record))["observation_pool"],
+TEST(RunSummary, ThePoolOfObservationsIsReportedWhereThereIsOne) {
+    RunSummary summary = test::full_summary();
+    summary.observation_pool = {900, 1000, 7, 3};
+    EXPECT_EQ(ordered_json::parse(run_json(summary))["observation_pool"],
               ordered_json(
                   {{"records_used", 900}, {"records_capacity", 1000}, {"records_refused", 7}, {"blocks_refused", 3}}));
 }
 
-TEST(RunRecord, HowARunFellShortIsToldWhereItDid) {
-    RunRecord record = test::full_record();
-    ordered_json run = ordered_json::parse(run_json(record));
+TEST(RunSummary, HowARunFellShortIsReportedWhereItDid) {
+    RunSummary summary = test::full_summary();
+    ordered_json run = ordered_json::parse(run_json(summary));
     for (const char* key : {"ended", "world_offset_m", "materials_missing"}) EXPECT_FALSE(run.contains(key)) << key;
     EXPECT_TRUE(run["shortfalls"].empty());
-    record.finished = false;
-    record.ended = "interrupted after 12 of 60 frames";
-    record.world_offset_m = {3e6, 0, -1};
-    record.materials_missing = "no lights";
-    record.shortfalls = {"a full pool"};
-    run = ordered_json::parse(run_json(record));
+    summary.finished = false;
+    summary.ended = "interrupted after 12 of 60 frames";
+    summary.world_offset_m = {3e6, 0, -1};
+    summary.materials_missing = "no lights";
+    summary.shortfalls = {"a full pool"};
+    run = ordered_json::parse(run_json(summary));
     EXPECT_EQ(run["ended"], "interrupted after 12 of 60 frames");
     EXPECT_EQ(run["world_offset_m"], ordered_json({3e6, 0, -1}));
     EXPECT_EQ(run["materials_missing"], "no lights");
     EXPECT_EQ(run["shortfalls"], ordered_json({"a full pool"}));
 }
 
-TEST(RunRecord, GainsAndHeldOutPicturesAreToldWhereThereAreAny) {
-    RunRecord record = test::full_record();
-    record.color_gains = {{0.5, 1, 2}, {0.25, 1, 1.5}, {0.75, 1, 4}};
-    record.held_out = {30, {0.9, 20, 22}, PictureScore{0.8, 24, 26}};
-    ordered_json run = ordered_json::parse(run_json(record));
+TEST(RunSummary, GainsAndHeldOutPicturesAreReportedWhereThereAreAny) {
+    RunSummary summary = test::full_summary();
+    summary.color_gains = {{0.5, 1, 2}, {0.25, 1, 1.5}, {0.75, 1, 4}};
+    summary.held_out = {30, {0.9, 20, 22}, PictureScore{0.8, 24, 26}};
+    ordered_json run = ordered_json::parse(run_json(summary));
     EXPECT_EQ(run["color_gains"]["green"], ordered_json({{"min", 0.25}, {"median", 1.0}, {"max", 1.5}}));
     EXPECT_EQ(run["color_gains"]["blue"]["max"], 4.0);
     EXPECT_EQ(run["held_out"]["pictures"], 30);
     EXPECT_EQ(run["held_out"]["mean_color"]["psnr_srgb_db"], 22.0);
     EXPECT_EQ(run["held_out"]["reflectance"]["coverage"], 0.8);
-    record.held_out->reflectance.reset();
-    EXPECT_TRUE(ordered_json::parse(run_json(record))["held_out"]["reflectance"].is_null());
+    summary.held_out->reflectance.reset();
+    EXPECT_TRUE(ordered_json::parse(run_json(summary))["held_out"]["reflectance"].is_null());
 }
 
 std::string without_times(const std::string& text) {
@@ -115,22 +115,22 @@ std::string without_times(const std::string& text) {
     return run.dump();
 }
 
-TEST(RunRecord, TwoRunsDifferInTimesAndPassesOnly) {
-    RunRecord other = test::full_record();
+TEST(RunSummary, TwoRunsDifferInTimesAndPassesOnly) {
+    RunSummary other = test::full_summary();
     for (PassTime& pass : other.passes)
         pass = {pass.name, pass.count, pass.min_ms * 2, pass.median_ms * 2, pass.max_ms * 2};
     for (auto& [name, seconds] : other.times_s) seconds *= 2;
-    const std::string first = run_json(test::full_record()), second = run_json(other);
-    EXPECT_EQ(first, run_json(test::full_record()));
+    const std::string first = run_json(test::full_summary()), second = run_json(other);
+    EXPECT_EQ(first, run_json(test::full_summary()));
     EXPECT_NE(first, second);
     EXPECT_EQ(without_times(first), without_times(second));
 }
 
-TEST(RunRecord, StaysJsonWhateverItIsTold) {
-    RunRecord record;
-    record.warnings = {"not UTF-8: \xff\xfe", "a\nline\tand \"quotes\""};
-    record.times_s = {{"total", std::numeric_limits<double>::quiet_NaN()}};
-    const std::string text = run_json(record);
+TEST(RunSummary, StaysJsonWhateverItHolds) {
+    RunSummary summary;
+    summary.warnings = {"not UTF-8: \xff\xfe", "a\nline\tand \"quotes\""};
+    summary.times_s = {{"total", std::numeric_limits<double>::quiet_NaN()}};
+    const std::string text = run_json(summary);
     const ordered_json run = ordered_json::parse(text);
     EXPECT_TRUE(run["times"]["total_s"].is_null());
     EXPECT_THAT(run["warnings"][0].get<std::string>(), HasSubstr("not UTF-8: \xef\xbf\xbd"));

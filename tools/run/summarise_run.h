@@ -2,7 +2,7 @@
 
 #include "export/write_glb.h"
 #include "reconstruction/session/session_core.h"
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 #include "tools/run/run.h"
 
 namespace patina::tools {
@@ -10,9 +10,9 @@ namespace patina::tools {
 /// What run.json and report.html say of a run, but for its ending, its times and what was compared: of the settings,
 /// the frames, the pools, the passes. `scene` is what became of the mesh. Asks nothing of the device, which may be
 /// lost.
-RunRecord make_record(const RunOptions& options, SessionCore& fusion, const GlbSummary& scene);
+RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbSummary& scene);
 
 /// Adds what the keyframes counted. Waits for the device; throws Error where it was lost.
-void add_keyframes(RunRecord& record, SessionCore& fusion);
+void add_keyframes(RunSummary& summary, SessionCore& session);
 
 }  // namespace patina::tools

@@ -1,4 +1,4 @@
-#include "tools/report/tracking_record.h"
+#include "tools/report/tracking_summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ const std::vector<TrackedFrame> kFrames = {
     frame(3, TrackingState::kLost, "no <one>"), frame(4, TrackingState::kLost, "nor here"),
     frame(5, TrackingState::kWeak, "a wall"),   frame(6, TrackingState::kTracking)};
 
-TEST(TrackingRecord, CountsStatesAndTellsEveryFrame) {
+TEST(TrackingSummary, CountsStatesAndListsEveryFrame) {
     const nlohmann::ordered_json json = tracking_json(kFrames);
     EXPECT_EQ(json["tracking"], 3);
     EXPECT_EQ(json["weak"], 1);
@@ -34,7 +34,7 @@ TEST(TrackingRecord, CountsStatesAndTellsEveryFrame) {
     EXPECT_FALSE(json["frames"][0].contains("reason"));
 }
 
-TEST(TrackingRecord, StretchesJoinFramesOfOneState) {
+TEST(TrackingSummary, StretchesJoinFramesOfOneState) {
     const std::vector<TrackingStretch> stretches = stretches_of(kFrames);
     ASSERT_EQ(stretches.size(), 4u);
     EXPECT_EQ(stretches[1].first, 3u);
@@ -44,7 +44,7 @@ TEST(TrackingRecord, StretchesJoinFramesOfOneState) {
     EXPECT_EQ(stretches[3].first, 6u);
 }
 
-TEST(TrackingRecord, TheTableEscapesReasonsAndIsEmptyWithoutFrames) {
+TEST(TrackingSummary, TheTableEscapesReasonsAndIsEmptyWithoutFrames) {
     EXPECT_THAT(tracking_table(kFrames), HasSubstr("<td>lost</td><td>no &lt;one&gt;</td>"));
     EXPECT_EQ(tracking_table({}), "");
 }

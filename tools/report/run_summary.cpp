@@ -1,4 +1,4 @@
-#include "tools/report/run_record.h"
+#include "tools/report/run_summary.h"
 
 #include "engine/core/digest.h"
 
@@ -34,9 +34,9 @@ Json frames_json(const FrameLedger& frames) {
     return {{"read", frames.read}, {"used", frames.used}, {"skipped", std::move(skipped)}};
 }
 
-Json memory_json(const std::vector<MemoryRecord>& pools) {
+Json memory_json(const std::vector<MemorySummary>& pools) {
     Json result = Json::object();
-    for (const MemoryRecord& pool : pools) {
+    for (const MemorySummary& pool : pools) {
         result[pool.name] = {{"bytes", pool.bytes}, {"used", pool.used}, {"capacity", pool.capacity}};
     }
     return result;
@@ -64,7 +64,7 @@ Json score_json(const PictureScore& score) {
         {"coverage", score.coverage}, {"psnr_linear_db", score.psnr_linear_db}, {"psnr_srgb_db", score.psnr_srgb_db}};
 }
 
-Json held_out_json(const HeldOutRecord& held_out) {
+Json held_out_json(const HeldOutSummary& held_out) {
     return {{"pictures", held_out.pictures},
             {"mean_color", score_json(held_out.mean_color)},
             {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()}};
@@ -79,52 +79,52 @@ Json object_of(const std::vector<std::pair<std::string, Value>>& pairs, const ch
 
 std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
-Json json_of(const RunRecord& record) {
+Json json_of(const RunSummary& summary) {
     Json run;
     run["format"] = "patina-run";
-    run["version"] = record.version;
-    run["id"] = record.id;
-    run["finished"] = record.finished;
-    if (!record.finished) run["ended"] = record.ended;
+    run["version"] = summary.version;
+    run["id"] = summary.id;
+    run["finished"] = summary.finished;
+    if (!summary.finished) run["ended"] = summary.ended;
     run["device"] = {
-        {"name", record.device.name}, {"type", record.device.type}, {"vulkan", record.device.vulkan_version}};
-    run["driver"] = record.device.driver;
-    run["seed"] = record.seed;
-    run["settings"] = record.settings;
-    run["lights"] = record.lights;
-    run["sequence"] = sequence_json(record.sequence);
-    run["frames"] = frames_json(record.frames);
-    run["voxel_pool"] = {{"blocks_used", record.voxel_pool.blocks_used},
-                         {"blocks_capacity", record.voxel_pool.blocks_capacity},
-                         {"blocks_refused", record.voxel_pool.blocks_refused}};
-    if (const auto& pool = record.observation_pool) {
+        {"name", summary.device.name}, {"type", summary.device.type}, {"vulkan", summary.device.vulkan_version}};
+    run["driver"] = summary.device.driver;
+    run["seed"] = summary.seed;
+    run["settings"] = summary.settings;
+    run["lights"] = summary.lights;
+    run["sequence"] = sequence_json(summary.sequence);
+    run["frames"] = frames_json(summary.frames);
+    run["voxel_pool"] = {{"blocks_used", summary.voxel_pool.blocks_used},
+                         {"blocks_capacity", summary.voxel_pool.blocks_capacity},
+                         {"blocks_refused", summary.voxel_pool.blocks_refused}};
+    if (const auto& pool = summary.observation_pool) {
         run["observation_pool"] = {{"records_used", pool->records_used},
                                    {"records_capacity", pool->records_capacity},
                                    {"records_refused", pool->records_refused},
                                    {"blocks_refused", pool->blocks_refused}};
     }
-    run["memory"] = memory_json(record.memory);
-    run["totals"] = object_of(record.totals);
-    if (!record.tracking.empty()) run["tracking"] = tracking_json(record.tracking);
-    if (!record.color_gains.empty()) run["color_gains"] = gains_json(record.color_gains);
-    if (record.held_out) run["held_out"] = held_out_json(*record.held_out);
-    if (record.world_offset_m != glm::dvec3(0))
-        run["world_offset_m"] = {record.world_offset_m.x, record.world_offset_m.y, record.world_offset_m.z};
-    if (!record.materials_missing.empty()) run["materials_missing"] = record.materials_missing;
-    run["shortfalls"] = record.shortfalls;
-    run["warnings"] = record.warnings;
-    run["passes"] = passes_json(record.passes);
-    run["times"] = object_of(record.times_s, "_s");
-    run["files"] = record.files;
+    run["memory"] = memory_json(summary.memory);
+    run["totals"] = object_of(summary.totals);
+    if (!summary.tracking.empty()) run["tracking"] = tracking_json(summary.tracking);
+    if (!summary.color_gains.empty()) run["color_gains"] = gains_json(summary.color_gains);
+    if (summary.held_out) run["held_out"] = held_out_json(*summary.held_out);
+    if (summary.world_offset_m != glm::dvec3(0))
+        run["world_offset_m"] = {summary.world_offset_m.x, summary.world_offset_m.y, summary.world_offset_m.z};
+    if (!summary.materials_missing.empty()) run["materials_missing"] = summary.materials_missing;
+    run["shortfalls"] = summary.shortfalls;
+    run["warnings"] = summary.warnings;
+    run["passes"] = passes_json(summary.passes);
+    run["times"] = object_of(summary.times_s, "_s");
+    run["files"] = summary.files;
     return run;
 }
 
 }  // namespace
 
-std::string run_json(const RunRecord& record) { return dumped(json_of(record)) + '\n'; }
+std::string run_json(const RunSummary& summary) { return dumped(json_of(summary)) + '\n'; }
 
-std::string run_id(const RunRecord& record, uint64_t files_digest) {
-    Json what = json_of(record);
+std::string run_id(const RunSummary& summary, uint64_t files_digest) {
+    Json what = json_of(summary);
     for (const char* key : {"id", "passes", "times"}) what.erase(key);
     Digest digest;
     digest.add(dumped(what));

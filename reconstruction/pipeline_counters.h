@@ -15,9 +15,11 @@ struct ObservationCounters {
     gpu::MapCounters records{};  ///< their block is a voxel's record
 };
 
-/// How a reconstruction is doing. Counters are those of the last fused frame
-/// whose work the device has finished.
-struct Statistics {
+/// What is counted in a frame, in the words of the shaders that count: those of
+/// the last fused frame whose work the device has finished. Public Statistics
+/// are made from it (statistics_of); this has more than they show, for the
+/// library's own programs and tests, and types that the public API may not name.
+struct PipelineCounters {
     uint32_t frames = 0;  ///< fused so far, those included that the device works on
     gpu::MapCounters map{};
     uint32_t visible_blocks = 0;               ///< that the depth camera saw

@@ -1,0 +1,15 @@
+#include "engine/core/shader_light.h"
+
+namespace patina {
+
+gpu::PointLight make_point_light(const Light& light) {
+    return {glm::vec4(light.position_m, light.radius_m), glm::vec4(light.intensity, 0)};
+}
+
+Light light_of(const gpu::PointLight& light) {
+    return {glm::dvec3(light.position_m), glm::dvec3(light.intensity), light.position_m.w};
+}
+
+Light rounded_to_float(const Light& light) { return light_of(make_point_light(light)); }
+
+}  // namespace patina
