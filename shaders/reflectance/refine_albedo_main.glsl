@@ -59,7 +59,7 @@ float trust[kMaxObservations];        // its inverse variance, relative to one w
 float whole_trust[kMaxObservations];  // less where a channel is clipped
 
 // Adds up all lights.
-Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scale, bool specular, uvec2 reached,
+Irradiance add_lights(uint count, vec3 point_m, vec3 normal, WardShape shape, bool specular, uvec2 reached,
                       uvec2 uncertain) {
     Irradiance irradiance = Irradiance(header.ambient.rgb, vec3(0.0));
     for (uint i = 0u; i < count; ++i) {
@@ -72,12 +72,11 @@ Irradiance add_lights(uint count, vec3 point_m, vec3 normal, float exponent_scal
         const bool lit = bit_is_set(reached, i);
         irradiance.sum += lit ? received : vec3(0.0);
         irradiance.uncertain += bit_is_set(uncertain, i) ? received : vec3(0.0);
-        // cos / sqrt(cos) of Eq. 3 and 6.
-        const vec3 gloss = lit ? facing * sqrt(cosine) : vec3(0.0);
+        const vec3 gloss = lit ? facing * ward_light_part(cosine) : vec3(0.0);
         if (!specular) continue;
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float tan2 = ward_half_tan2(cosine, normal_cosine[k], dot(to_light, direction_of[k]));
-            highlight[k] += gloss * ward_falloff(exponent_scale * tan2);
+            highlight[k] += gloss * ward_falloff(shape, tan2);
         }
     }
     return irradiance;
@@ -106,7 +105,7 @@ Center remove_highlights(uint record, uint count, vec3 ks_over_n) {
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint k = 4u * quad + i;
             if (k >= kMaxObservations) continue;
-            highlight[k] *= ks_over_n * inversesqrt(normal_cosine[k]);
+            highlight[k] *= ks_over_n * ward_viewer_part(normal_cosine[k]);
             diffuse[k] = unpack_shared_exponent(words[i]) - highlight[k];
             brightness[k] = mean_of(diffuse[k]);
             sum += k < count ? brightness[k] : 0.0;
@@ -204,7 +203,7 @@ void main() {
     unpack_directions(record, normal);
     // Were it the uniform alone, lavapipe would compile the loop anew in every frame: 6 ms.
     const uint light_count = count > 0u ? header.count : 0u;
-    const Irradiance irradiance = add_lights(light_count, point_m, normal, kWardExponent / (alpha * alpha), specular,
+    const Irradiance irradiance = add_lights(light_count, point_m, normal, ward_shape(alpha), specular,
                                              visibility[record], status[record].uncertain);
     const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
     const Center guess = remove_highlights(record, count, ks * ward_scale(alpha));

@@ -52,18 +52,11 @@ vec3 ks_scaled[kAlphas];  // what the fits before found, as it multiplies lobes
 float nearest_tan2;       // of a voxel's views and mirrored lights
 vec3 lobes[kAlphas];      // of an observation
 
-// A lobe of a voxel, whose surface bends: as wide as that of a rougher material, and with the same integral.
-struct BlurredLobe {
-    float exponent_scale;  // of tan^2, in an exponent to the base of 2
-    float log_peak;        // to the base of 2
-};
-BlurredLobe blurred[kAlphas];
+WardShape blurred[kAlphas];  // the lobes of a voxel, whose surface bends
 
 void blur_lobes(uint first_alpha, float blur2) {
-    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) {
-        const float alpha = fit_alpha(float(first_alpha + a)), inverse = 1.0 / (alpha * alpha + blur2);
-        blurred[a] = BlurredLobe(kWardExponent * inverse, log2(alpha * alpha * inverse));
-    }
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) blurred[a] =
+        ward_shape_blurred(fit_alpha(float(first_alpha + a)), blur2);
 }
 
 struct Voxel {
@@ -77,14 +70,13 @@ struct Voxel {
 void add_lobes(vec3 gloss, float tan2) {
     const float lit = any(greaterThan(gloss, vec3(0.0))) ? tan2 : kFarTan2;
     nearest_tan2 = min(nearest_tan2, lit);
-    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobes[a] +=
-        gloss * ward_falloff(tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
+    [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobes[a] += gloss * ward_falloff(blurred[a], tan2);
 }
 
 void find_lobes(Voxel voxel, uint direction_word) {
     [[unroll]] for (uint a = 0u; a < kAlphas; ++a) lobes[a] = vec3(0.0);
     const vec3 to_viewer = observation_direction(direction_word);
-    const float cosine = max(dot(to_viewer, voxel.normal), kFitLeastCosine), bend = inversesqrt(cosine);
+    const float cosine = max(dot(to_viewer, voxel.normal), kFitLeastCosine), bend = ward_viewer_part(cosine);
     for (uint i = 0u; i < header.count; ++i) {
         const FitLight light = fit_light(i, voxel.point_m, voxel.normal, voxel.reached);
         add_lobes(light.gloss * bend, tan2_of_half(light, to_viewer, cosine));
@@ -188,7 +180,7 @@ void add_voxel(Voxel voxel, bool fitted) {
         const vec3 mean_color = own.color / max(own.weight, kNoWeight);
         // Views count as near a peak where they are clipped, too, even if all of the voxel's are: that it is bright is
         // known, though not how bright.
-        const float peak = ward_falloff(nearest_tan2 * blurred[a].exponent_scale + blurred[a].log_peak);
+        const float peak = ward_falloff(blurred[a], nearest_tan2);
         segment_sums[a].lobe2 += vec4(max(own.lobe2 - mean_lobe * own.lobe, 0.0), min(peak * (1.0 / kSeenLobe), 1.0));
         segment_sums[a].product += vec4(own.product - mean_color * own.lobe, 0.0);
         segment_sums[a].color2 += vec4(max(own.color2 - mean_color * own.color, 0.0), own.count);

@@ -67,12 +67,12 @@ void unpack_directions(uint record, vec3 normal) {
 }
 
 void add_highlights(vec3 point_m, vec3 normal, uvec2 reached, float alpha, uint count) {
-    const float exponent_scale = kWardExponent / (alpha * alpha);
+    const WardShape shape = ward_shape(alpha);
     for (uint i = 0u; i < count; ++i) {
         const FitLight light = fit_light(i, point_m, normal, reached);
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float tan2 = tan2_of_half(light, direction_of[k], max(viewer_cosine[k], kFitLeastCosine));
-            highlight[k] += light.gloss * ward_falloff(exponent_scale * tan2);
+            highlight[k] += light.gloss * ward_falloff(shape, tan2);
         }
     }
 }
@@ -83,7 +83,7 @@ void take_highlights(uint record, vec3 ks_scale) {
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint k = 4u * quad + i;
             if (k >= kMaxObservations) continue;
-            highlight[k] *= ks_scale * inversesqrt(max(viewer_cosine[k], kFitLeastCosine));
+            highlight[k] *= ks_scale * ward_viewer_part(max(viewer_cosine[k], kFitLeastCosine));
             rest[k] = unpack_shared_exponent(words[i]) - highlight[k];
             channels[k] = vec3(not(observation_clipped(direction_word[k])));
         }

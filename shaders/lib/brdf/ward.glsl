@@ -5,14 +5,17 @@
 #include "lib/math/pi.glsl"
 #include "lib/math/sampling.glsl"
 
-// The half-angle form, for many lights and views of one surface point: the lobe is
-//   ward_scale(alpha) * ward_falloff(kWardExponent / alpha^2 * ward_half_tan2(...)) / sqrt(cos_i * cos_o).
+// The half-angle form, for many lights and views of one surface point. The lobe times cos_i is
+//   ward_scale(alpha) * ward_light_part(cos_i) * ward_viewer_part(cos_o) * ward_falloff(ward_shape(alpha),
+//   ward_half_tan2(...)).
 
 // 1 / (4 pi alpha^2), of the paper's Eq. 4.
 float ward_scale(float alpha) { return 1.0 / (4.0 * kPi * alpha * alpha); }
 
-// What tan^2 / alpha^2 is multiplied by in the lobe's exponent, to the base of 2: -log2(e).
-const float kWardExponent = -1.442695;
+// What the lobe times cos_i owes to one light alone, and to one view: cos_i / sqrt(cos_i cos_o) of the paper's Eq. 4
+// and 6.
+float ward_light_part(float cos_i) { return sqrt(cos_i); }
+float ward_viewer_part(float cos_o) { return inversesqrt(cos_o); }
 
 // tan^2 of the angle between normal and half vector, from the cosines of light and viewer to the normal and of the
 // angle between both: with unit l and v, h = l + v has |h|^2 = 2 + 2 l.v, and tan^2 is |h|^2 / (n.h)^2 - 1. The error
@@ -22,9 +25,28 @@ float ward_half_tan2(float cos_i, float cos_o, float cos_between) {
     return max((2.0 + 2.0 * cos_between) / (along * along) - 1.0, 0.0);
 }
 
-// e^gamma of the paper's Eq. 3, from the exponent to the base of 2. It ends at 2^-60: its square is no denormal number
-// yet, which processors take much longer for.
-float ward_falloff(float exponent) { return exp2(max(exponent, -60.0)); }
+// What of a lobe's shape does not depend on directions.
+struct WardShape {
+    float exponent_scale;  // of tan^2, in an exponent to the base of 2
+    float log_peak;        // to the base of 2; 0: a peak of 1
+};
+
+const float kWardExponent = -1.442695;  // -log2(e)
+
+WardShape ward_shape(float alpha) { return WardShape(kWardExponent / (alpha * alpha), 0.0); }
+
+// The shape on a surface that bends: as wide as that of a rougher material, and with the same integral.
+WardShape ward_shape_blurred(float alpha, float blur2) {
+    const float inverse = 1.0 / (alpha * alpha + blur2);
+    return WardShape(kWardExponent * inverse, log2(alpha * alpha * inverse));
+}
+
+// e^gamma of the paper's Eq. 3. It ends at 2^-60: its square is no denormal number yet, which processors take much
+// longer for.
+float ward_falloff(WardShape shape, float tan2) {
+    const float exponent = tan2 * shape.exponent_scale + shape.log_peak;
+    return exp2(max(exponent, -60.0));
+}
 
 // The Ward lobe without its albedo, e^gamma / N (paper, Eq. 3 and 4), in 1/sr. 0 where the light or the viewer is at or
 // below the horizon, where N has no meaning.
