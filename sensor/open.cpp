@@ -70,12 +70,14 @@ const Format& named(const std::string& name) {
     if (found == kFormats.end()) {
         std::vector<std::string> names;
         for (const Format& format : kFormats) names.emplace_back(format.name);
-        throw Error("format '", name, "' is not known, must be ", enumerated(&Format::name), did_you_mean(name, names));
+        throw Error("format '", name, "' is not known, must be ", format_names(), did_you_mean(name, names));
     }
     return *found;
 }
 
 }  // namespace
+
+std::string format_names() { return enumerated(&Format::name); }
 
 std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format) {
     if (!path_exists(path)) throw Error(path.string(), " does not exist");

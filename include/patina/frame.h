@@ -45,7 +45,7 @@ struct Frame {
 /// What holds for all frames of a source.
 struct SequenceInfo {
     std::string name;
-    std::string format;  ///< "patina-sequence", "7-scenes", "tum", "open3d", "synthetic"
+    std::string format;  ///< a recording's, as "tum" (docs/guide/recording.md lists all); "synthetic"
     double fps = 30;
     std::optional<uint32_t> frames;  ///< how many there are; empty: the source says when it ends, as a camera does
     Intrinsics color;

@@ -36,9 +36,9 @@ class Source {
     virtual std::optional<Reading> next() = 0;
 };
 
-/// Opens a recorded sequence: a folder, or its sequence.json. `format` is "patina-sequence", "7-scenes", "tum" or
-/// "open3d"; empty: recognised by the folder's content. Throws Error when the path does not exist, is of no known
-/// format, or the sequence as a whole is unusable.
+/// Opens a recorded sequence: a folder, or its sequence.json. `format`: a name as SequenceInfo::format; empty:
+/// recognised by the folder's content. Throws Error when the path does not exist, is of no known format, or the
+/// sequence as a whole is unusable.
 std::unique_ptr<Source> open_recording(const std::filesystem::path& path, const std::string& format = "");
 
 /// Renders a synthetic scene on the device as it is read. `scene` is the name of a built-in one ("cubes", "bunnies",

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "reconstruction/setting_table.h"
+#include "sensor/open.h"
 #include "tools/bench/measure.h"
 #include "tools/bench/recording.h"
 #include "tools/bench/subjects.h"
@@ -146,7 +147,7 @@ Subject passes_subject() {
                 app.add_option("sequence", options->recording.sequence, "Folder of a sequence, or synthetic:SCENE")
                     ->required();
                 app.add_option("--format", options->recording.format,
-                               "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
+                               sensor::format_names() + ", instead of recognising it");
                 app.add_flag("--no-color", options->no_color, "Fuse depth only");
                 app.add_option("--set", options->assignments, "One setting as KEY=VALUE; may be repeated")->take_all();
                 app.add_option("--dump", options->dump, "Write the frames to this folder, for other programs");

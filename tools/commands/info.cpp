@@ -19,8 +19,7 @@ void add_info(CLI::App& app) {
     };
     const auto arguments = std::make_shared<Arguments>();
     command->add_option("sequence", arguments->sequence, "Folder of a sequence, or synthetic:SCENE")->required();
-    command->add_option("--format", arguments->format,
-                        "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
+    command->add_option("--format", arguments->format, sensor::format_names() + ", instead of recognising it");
     command->callback([arguments] {
         if (const auto scene = scenes::scene_name(arguments->sequence)) {
             const std::string report =

@@ -4,6 +4,7 @@
 #include "reconstruction/session/choices.h"
 #include "reconstruction/setting_table.h"
 #include "scenes/files/scene_file.h"
+#include "sensor/open.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
 
@@ -32,8 +33,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
                     "of: " +
                         scenes::scene_names())
         ->required();
-    command.add_option("--format", options.format,
-                       "patina-sequence, 7-scenes, tum or open3d, instead of recognising it");
+    command.add_option("--format", options.format, sensor::format_names() + ", instead of recognising it");
     command
         .add_option("--frames", options.frames, "Use at most so many frames; without it all (of a synthetic scene 120)")
         ->check(at_least_one());
