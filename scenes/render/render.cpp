@@ -125,7 +125,7 @@ void SceneModel::bind_environment(graph::FrameGraph& frame, graph::PassBuilder& 
 RenderedImages add_render(graph::FrameGraph& frame, const SceneModel& scene, const Intrinsics& camera,
                           const RigidTransform& world_from_camera, const RenderSettings& settings,
                           uint32_t frame_index) {
-    if (camera.distorted()) throw Error("the pass 'synthetic.trace_scene' takes a camera without lens distortion");
+    if (camera.distorted()) throw Error("the pass 'scenes.trace_scene' takes a camera without lens distortion");
     const gpu::TraceSceneParams params{make_camera(camera, world_from_camera)};
     RenderedImages images = add_trace(frame, scene, camera.extent, params);
     if (!samples_direct_light(scene, settings))

@@ -341,7 +341,7 @@ TEST_F(GatherLightTest, RefusesToSampleWithoutSamples) {
         trace(scene, camera_of({8, 8}), RigidTransform(1.0), {.samples = 0});
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("'synthetic.gather_light' needs at least 1 sample"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("'scenes.gather_light' needs at least 1 sample"));
     }
 }
 
