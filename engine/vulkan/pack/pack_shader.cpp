@@ -25,7 +25,7 @@ namespace {
 
 struct Module {
     struct Destroy {
-        void operator()(spvc_context context) const { spvc_context_destroy(context); }
+        void operator()(spvc_context_s* destroyed) const { spvc_context_destroy(destroyed); }
     };
     std::unique_ptr<spvc_context_s, Destroy> context;  ///< owns the others
     spvc_compiler compiler = nullptr;
