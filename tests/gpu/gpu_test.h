@@ -12,10 +12,13 @@
 namespace patina {
 
 /// Opens one device per test program, as PATINA_DEVICE says, with validation and synchronization validation, and fails
-/// any test during which the validation layer said something. Every frame a test submits through run() is also shown to
-/// the graph's own checker, and each of its barriers must be needed.
+/// any test during which the validation layer reported something. A test that lost the device fails, and the next one
+/// opens it anew. Every kind of frame that tests submit through run() is also shown to the graph's own checker, and each
+/// of its barriers must be needed.
 class GpuTest : public ::testing::Test {
   protected:
+    GpuTest();
+
     void SetUp() override;
     void TearDown() override;
 
@@ -26,7 +29,7 @@ class GpuTest : public ::testing::Test {
     void run(graph::FrameGraph frame);
 
   private:
-    graph::Runner runner_{device()};
+    graph::Runner runner_;
     size_t messages_before_ = 0;
 };
 
