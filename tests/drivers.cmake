@@ -32,20 +32,28 @@ if(PATINA_TEST_HARDWARE)
     set(PATINA_ENVIRONMENT_hardware PATINA_DEVICE=discrete)
 endif()
 
-# A sanitized process takes a second or two to start, open a device and look for leaks, and SwiftShader keeps no compiled
-# shaders between processes.
-set(PATINA_SUITES_TOGETHER lavapipe256 lavapipe128 swiftshader)
-
 # Suites and TESTs that reconstruct whole scenes. They take most of the time on SwiftShader, which is three times slower
 # than lavapipe, so that only PATINA_TEST_FULL runs them there.
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|Relocalisation|SegmentationStageTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
-# Registers each suite of a GoogleTest program as "PREFIX.Suite", with a label and what follows it as environment.
-function(patina_test_suites TARGET PREFIX LABEL)
+# Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
+# there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the
+# suites of a folder below tests/NAME are one test, "PREFIX.FOLDER". Whole reconstructions stay tests of their own.
+function(patina_test_suites TARGET NAME PREFIX LABEL)
     set(PROGRAM ${patina_BINARY_DIR}/${TARGET})
+    set(FOLDER tests/${NAME})
     set(ENVIRONMENT ${ARGN})
     set(LEFT_OUT "^$")
+    if(ENVIRONMENT)  # ctest begins with what takes long
+        set(ALONE "${PATINA_WHOLE_SUITES}")
+        set(COST_ALONE 1000)
+        set(COST 100)
+    else()
+        set(ALONE ".")
+        set(COST_ALONE 0)
+        set(COST 0)
+    endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
     endif()
@@ -54,19 +62,19 @@ function(patina_test_suites TARGET PREFIX LABEL)
     set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${DISCOVERY_FILE})
 endfunction()
 
-# Registers every TEST of a GoogleTest program once per driver, as "PREFIX.DRIVER.Suite.Name" with the driver as label;
-# on drivers in PATINA_SUITES_TOGETHER, where there is no filter, a suite is one test.
+# Registers a GoogleTest program once per driver, with the driver as label: without a filter by folders, as "NAME.DRIVER.FOLDER";
+# with one every TEST by itself, as "NAME.DRIVER.Suite.Name".
 #   DRIVERS   only these, instead of all
 #   FILTER    only TESTs that this GoogleTest filter takes
 #   LABELS    more labels
-function(patina_test_on_drivers TARGET PREFIX)
+function(patina_test_on_drivers TARGET NAME)
     cmake_parse_arguments(ARG "" "FILTER" "DRIVERS;LABELS" ${ARGN})
     if(NOT ARG_DRIVERS)
         set(ARG_DRIVERS ${PATINA_DRIVERS})
     endif()
     foreach(DRIVER ${ARG_DRIVERS})
-        if(DRIVER IN_LIST PATINA_SUITES_TOGETHER AND NOT ARG_FILTER)
-            patina_test_suites(${TARGET} ${PREFIX}.${DRIVER} ${DRIVER} ${PATINA_ENVIRONMENT_${DRIVER}})
+        if(NOT ARG_FILTER)
+            patina_test_suites(${TARGET} ${NAME} ${NAME}.${DRIVER} ${DRIVER} ${PATINA_ENVIRONMENT_${DRIVER}})
             continue()
         endif()
         string(MAKE_C_IDENTIFIER "${TARGET}_${DRIVER}_${ARG_FILTER}" LIST)
@@ -74,7 +82,7 @@ function(patina_test_on_drivers TARGET PREFIX)
         if(DRIVER STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
             string(APPEND FILTER "-${PATINA_WHOLE_TESTS}")
         endif()
-        gtest_discover_tests(${TARGET} TEST_PREFIX "${PREFIX}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${FILTER}"
+        gtest_discover_tests(${TARGET} TEST_PREFIX "${NAME}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${FILTER}"
                              DISCOVERY_MODE PRE_TEST)
         # The environment is a list, which gtest_discover_tests() cannot pass on; ctest sets it after discovery.
         set(ENVIRONMENT ${PATINA_ENVIRONMENT_${DRIVER}})

@@ -1,9 +1,13 @@
-# Shortens `ctest --verbose`: one line per test, the output of tests that failed, the reason of tests that were skipped, and
-# ctest's summary unchanged.
+# Shortens `ctest --verbose`: one line per test, the output of tests that failed without what GoogleTest prints of TESTs
+# that passed, the reason of tests that were skipped, and ctest's summary unchanged.
 /^( *Start +[0-9]+:|Done constructing|Added [0-9]+ tests|Check(ing|ed) test dep|Parse Config|test [0-9]+|UpdateCTestConfiguration|Constructing|Updating test list|Test timeout|Working Directory|Environment variables|Test command)/ { next }
 /^[0-9]+: / {
     number = $1 + 0
-    output[number] = output[number] $0 "\n"
+    if (/^[0-9]+: \[----------\]/) next
+    if (/^[0-9]+: \[ RUN      \]/) { running[number] = $0 "\n"; next }
+    if (/^[0-9]+: \[       OK \]/) { running[number] = ""; next }
+    output[number] = output[number] running[number] $0 "\n"
+    running[number] = ""
     if (after_skip[number]) {
         reason[number] = reason[number] " " substr($0, length($1) + 2)
         after_skip[number] = 0
@@ -17,8 +21,9 @@
     match($0, /#[0-9]+/)
     number = substr($0, RSTART + 1, RLENGTH - 1) + 0
     if (/\*\*\*Skipped/) print "          skipped:" reason[number]
-    else if (/\*\*\*/) printf "%s", output[number]
+    else if (/\*\*\*/) printf "%s", output[number] running[number]
     delete output[number]
+    delete running[number]
     fflush()
     next
 }
