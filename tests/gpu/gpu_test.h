@@ -13,8 +13,8 @@ namespace patina {
 
 /// Opens one device per test program, as PATINA_DEVICE says, with validation and synchronization validation, and fails
 /// any test during which the validation layer reported something. A test that lost the device fails, and the next one
-/// opens it anew. Every kind of frame that tests submit through run() is also shown to the graph's own checker, and each
-/// of its barriers must be needed.
+/// opens it anew. Every kind of frame that tests submit through run() is also shown to the graph's own checker, and
+/// each of its barriers must be needed.
 class GpuTest : public ::testing::Test {
   protected:
     GpuTest();
