@@ -17,6 +17,8 @@ void wire_materials(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds&
         observed.labels = stages.segmentation->add(graph, voxels, segmented, frame);
     }
     if (!stages.reflectance) return;
+    if (!stages.segmentation || stages.segmentation->may_lose_records(frame.index))
+        stages.reflectance->reclaim(graph, voxels, stages.geometry.near_surface_m(), frame.index);
     if (stages.segmentation) stages.segmentation->add_records(graph, stages.reflectance->observations(), frame.index);
     if (frame.held_out) return;
     const RecordList changed = stages.reflectance->add(graph, voxels, observed, frame);

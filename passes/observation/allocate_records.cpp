@@ -31,6 +31,7 @@ void add_assign_blocks(graph::FrameGraph& frame, const ObservationMap& map, Obse
 
     auto assign = frame.compute("observation.assign_tables", spirv::assign_tables);
     assign.read("Keys", ids.keys).read("NewSlots", ids.new_slots).read("Observation", params);
+    assign.read("FreeBlocks", ids.free_blocks);
     ids.block_counters = assign.modify("Counters", ids.block_counters);
     ids.blocks = assign.modify("Blocks", ids.blocks);
     ids.block_keys = assign.modify("BlockKeys", ids.block_keys);
@@ -63,6 +64,7 @@ void add_assign_records(graph::FrameGraph& frame, ObservationMapIds& ids, Record
 
     auto assign = frame.compute("observation.assign_records", spirv::assign_records);
     assign.read("Observation", params).read("BlockKeys", ids.block_keys).read("NewVoxels", new_voxels);
+    assign.read("FreeRecords", ids.free_records);
     ids.record_counters = assign.modify("Counters", ids.record_counters);
     ids.record_table = assign.modify("RecordTable", ids.record_table);
     ids.records = assign.modify("Records", ids.records);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "engine/core/error.h"
 #include "passes/state/block_at.h"
@@ -31,6 +32,18 @@ uint32_t checked_capacity(const char* what, uint32_t capacity, uint32_t most) {
                     " on this device");
     }
     return capacity;
+}
+
+/// Uploads a stack of `count` ids, popped from its end: 0 first.
+graph::BufferId all_free(graph::FrameGraph& frame, graph::BufferId stack, uint32_t count) {
+    std::vector<uint32_t> ids(count);
+    std::iota(ids.rbegin(), ids.rend(), 0u);
+    return frame.upload_bytes(stack, 0, std::as_bytes(std::span(ids)), true);
+}
+
+/// Announces a longer stack of free ids. New ids are popped last: ids in use stay below the high-water mark.
+void enlarge_stack(graph::Enlargement& enlargement, vulkan::BufferRef& stack, uint32_t before, uint32_t count) {
+    enlargement.add(stack, count * uint64_t{4}, {.offset = (uint64_t{count} - before) * 4});
 }
 
 }  // namespace
@@ -66,6 +79,8 @@ ObservationMap::ObservationMap(vulkan::Device& device, const ObservationMapSetti
     blocks_ = buffer("observations.blocks", table_slots_ * 4u);
     new_slots_ = buffer("observations.new_slots", table_slots_ * 4u);
     block_keys_ = buffer("observations.block_keys", blocks * 4);
+    free_blocks_ = buffer("observations.free_blocks", blocks * 4);
+    free_records_ = buffer("observations.free_records", records * 4);
     block_counters_ = buffer("observations.block_counters", sizeof(gpu::MapCounters));
     record_counters_ = buffer("observations.record_counters", sizeof(gpu::MapCounters));
     block_arguments_ = buffer("observations.block_arguments", 16);
@@ -88,6 +103,9 @@ void ObservationMap::reset(graph::FrameGraph& frame, glm::dvec3 center_m) {
         return frame.upload_bytes(id, 0, std::as_bytes(std::span(&values, 1)), true);
     };
     ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
+    ids.block_keys = frame.fill(ids.block_keys, gpu::kEmptyKey);
+    ids.free_blocks = all_free(frame, ids.free_blocks, capacity_blocks());
+    ids.free_records = all_free(frame, ids.free_records, capacity_records_);
     ids.block_arguments = frame.fill(ids.block_arguments, 0);
     ids.block_counters = counters(ids.block_counters, capacity_blocks());
     ids.record_counters = counters(ids.record_counters, capacity_records_);
@@ -101,7 +119,8 @@ void ObservationMap::enlarge_blocks(graph::Enlargement& enlargement, uint32_t bl
     enlargement.add(keys_, slots * 4u, {.kept = false, .fill = gpu::kEmptyKey});
     enlargement.add(blocks_, slots * 4u, {.kept = false});
     enlargement.add(new_slots_, slots * 4u, {.kept = false});
-    enlargement.add(block_keys_, blocks * uint64_t{4});
+    enlargement.add(block_keys_, blocks * uint64_t{4}, {.fill = gpu::kEmptyKey});
+    enlarge_stack(enlargement, free_blocks_, capacity_blocks(), blocks);
     enlargement.add(record_table_, blocks * (uint64_t{4} << 3 * edge_shift_));
     enlargement.set(table_slots_, slots);
     enlargement.set(grid_.bucket_mask, slots / gpu::kBucketSlots - 1);
@@ -112,6 +131,7 @@ void ObservationMap::enlarge_records(graph::Enlargement& enlargement, uint32_t r
     PATINA_ASSERT(records > capacity_records_ && records <= most_records_, "the pool of observed voxels grows from ",
                   capacity_records_, " to ", records, ", at most ", most_records_);
     enlargement.add(records_, records * sizeof(gpu::VoxelRecord));
+    enlarge_stack(enlargement, free_records_, capacity_records_, records);
     for (vulkan::BufferRef* words : {&seen_, &changed_}) enlargement.add(*words, records * uint64_t{4});
     for (vulkan::BufferRef* pairs : {&albedo_, &visibility_}) enlargement.add(*pairs, records * uint64_t{8});
     enlargement.add(directions_, records);
@@ -120,37 +140,29 @@ void ObservationMap::enlarge_records(graph::Enlargement& enlargement, uint32_t r
 }
 
 ObservationMapIds ObservationMap::import(graph::FrameGraph& frame) const {
-    return {frame.import(keys_),
-            frame.import(blocks_),
-            frame.import(block_keys_),
-            frame.import(new_slots_),
-            frame.import(block_counters_),
-            frame.import(record_counters_),
-            frame.import(block_arguments_),
-            frame.import(record_table_),
-            frame.import(records_),
-            frame.import(seen_),
-            frame.import(changed_),
-            frame.import(albedo_),
-            frame.import(visibility_),
-            frame.import(directions_),
-            frame.import(colors_)};
+    return {frame.import(keys_),           frame.import(blocks_),          frame.import(block_keys_),
+            frame.import(free_blocks_),    frame.import(free_records_),    frame.import(new_slots_),
+            frame.import(block_counters_), frame.import(record_counters_), frame.import(block_arguments_),
+            frame.import(record_table_),   frame.import(records_),         frame.import(seen_),
+            frame.import(changed_),        frame.import(albedo_),          frame.import(visibility_),
+            frame.import(directions_),     frame.import(colors_)};
 }
 
 void ObservationMap::keep(graph::FrameGraph& frame, const ObservationMapIds& ids) {
-    for (const graph::BufferId id : {ids.keys, ids.blocks, ids.block_keys, ids.block_counters, ids.record_counters,
-                                     ids.block_arguments, ids.record_table, ids.records, ids.seen, ids.changed,
-                                     ids.albedo, ids.visibility, ids.directions, ids.colors}) {
+    for (const graph::BufferId id :
+         {ids.keys, ids.blocks, ids.block_keys, ids.free_blocks, ids.free_records, ids.block_counters,
+          ids.record_counters, ids.block_arguments, ids.record_table, ids.records, ids.seen, ids.changed, ids.albedo,
+          ids.visibility, ids.directions, ids.colors}) {
         frame.keep(id);
     }
 }
 
 std::vector<VoxelMap::PoolBytes> ObservationMap::memory() const {
     return {{"observations", directions_.bytes() + colors_.bytes()},
-            {"observed voxels",
-             records_->bytes() + seen_->bytes() + changed_->bytes() + albedo_->bytes() + visibility_->bytes()},
-            {"observation table",
-             keys_->bytes() + blocks_->bytes() + new_slots_->bytes() + block_keys_->bytes() + record_table_->bytes()}};
+            {"observed voxels", records_->bytes() + seen_->bytes() + changed_->bytes() + albedo_->bytes() +
+                                    visibility_->bytes() + free_records_->bytes()},
+            {"observation table", keys_->bytes() + blocks_->bytes() + new_slots_->bytes() + block_keys_->bytes() +
+                                      free_blocks_->bytes() + record_table_->bytes()}};
 }
 
 }  // namespace patina

@@ -28,13 +28,15 @@ struct ObservationMapSettings {
 struct ObservationMapIds {
     graph::BufferId keys;             ///< u32 per table slot: a block's packed coordinates, kEmptyKey when unused
     graph::BufferId blocks;           ///< u32 per table slot: block id, kNoBlock for a refused key
-    graph::BufferId block_keys;       ///< u32 per block: its key
+    graph::BufferId block_keys;       ///< u32 per block: its key, kEmptyKey when the block is free
+    graph::BufferId free_blocks;      ///< u32 stack of free block ids, as many as block_counters.free_blocks
+    graph::BufferId free_records;     ///< u32 stack of free record ids, as many as record_counters.free_blocks
     graph::BufferId new_slots;        ///< u32 list of the slots inserted in this frame
     graph::BufferId block_counters;   ///< gpu::MapCounters of the blocks
     graph::BufferId record_counters;  ///< gpu::MapCounters of the records
     graph::BufferId block_arguments;  ///< dispatch over all block ids in use, 64 a group
     graph::BufferId record_table;     ///< u32 per voxel of each block: record id, or kNoRecord, kRefusedRecord
-    graph::BufferId records;          ///< gpu::VoxelRecord per record
+    graph::BufferId records;          ///< gpu::VoxelRecord per record; of a free one: kEmptyKey, no label
     graph::BufferId seen;             ///< u32 per record: the frame that saw it last, index + 1
     graph::BufferId changed;          ///< u32 per record: the frame that changed it last, index + 1; 0: never
     graph::BufferId albedo;           ///< uvec2 per record, zero at first: for the refinement's kd and its weight
@@ -47,14 +49,15 @@ struct ObservationMapIds {
 /// a table of its voxels, and a pool of records, of which a voxel takes one when it is first observed: a surface
 /// crosses few of a block's voxels. Lives as long as the reconstruction; passes/observation fills it. Which voxels have
 /// records, and what these hold, does not depend on the order in which GPU invocations ran, though ids do. What is full
-/// refuses by key, counts that, and keeps what it has.
+/// refuses by key, counts that, and keeps what it has. Records whose surface went are given back
+/// (observation/reclaim_records.h).
 ///
 /// Memory of a record: 30 observations of 8 bytes with 16 bytes of their closest pair; 16 bytes of position, surface
-/// and label; 8 of stamps, 8 of albedo, 8 of visibility. With its entry in the tables a voxel of 2 cm takes about 300
-/// bytes: a square metre of surface about 1.1 MB, at 1 cm 4.5 MB.
+/// and label; 8 of stamps, 8 of albedo, 8 of visibility, 4 of the list of free ones. With its entry in the tables a
+/// voxel of 2 cm takes about 300 bytes: a square metre of surface about 1.1 MB, at 1 cm 4.5 MB.
 class ObservationMap {
   public:
-    static constexpr uint32_t kRecordBytes = 2 * gpu::kRecordQuads * 16 + sizeof(gpu::VoxelRecord) + 2 * 4 + 2 * 8;
+    static constexpr uint32_t kRecordBytes = 2 * gpu::kRecordQuads * 16 + sizeof(gpu::VoxelRecord) + 3 * 4 + 2 * 8;
 
     /// Throws Error when a size makes no sense, a capacity exceeds what the buffers hold, or memory runs out.
     ObservationMap(vulkan::Device& device, const ObservationMapSettings& settings);
@@ -92,8 +95,8 @@ class ObservationMap {
     uint32_t edge_shift_ = 0;
     uint32_t table_slots_ = 0;
     uint32_t capacity_records_ = 0, most_blocks_ = 0, most_records_ = 0;
-    vulkan::BufferRef keys_, blocks_, block_keys_, new_slots_, block_counters_, record_counters_, block_arguments_,
-        record_table_, records_, seen_, changed_, albedo_, visibility_;
+    vulkan::BufferRef keys_, blocks_, block_keys_, free_blocks_, free_records_, new_slots_, block_counters_,
+        record_counters_, block_arguments_, record_table_, records_, seen_, changed_, albedo_, visibility_;
     vulkan::ChunkedBuffer directions_, colors_;
 };
 

@@ -5,6 +5,7 @@
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/sharpen_normals.h"
 #include "passes/surface/extract_surface.h"
+#include "shared/fusion/remove_empty_blocks.h"
 
 namespace patina {
 
@@ -27,6 +28,10 @@ const GeometrySettings& checked(const GeometrySettings& settings) {
 
 GeometryStage::GeometryStage(vulkan::Device& device, const GeometrySettings& settings)
     : settings_(checked(settings)), map_(device, settings.map), access_(preferred_map_access(device.caps(), map_)) {}
+
+float GeometryStage::near_surface_m() const {
+    return gpu::kSurfaceTruncation * least_truncation_m(settings_.fusion, settings_.map.voxel_m);
+}
 
 float GeometryStage::far_m() const {
     const FusionSettings& fusion = settings_.fusion;

@@ -79,6 +79,10 @@ class GeometryStage {
     /// them is given back before.
     Mesh extract_surface(graph::Runner& runner) const;
 
+    /// A voxel that was seen nearer to the surface than this, metres, keeps its
+    /// block from being removed.
+    float near_surface_m() const;
+
     VoxelMap& map() { return map_; }
     const VoxelMap& map() const { return map_; }
     MapAccess access() const { return access_; }

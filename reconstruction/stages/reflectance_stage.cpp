@@ -1,5 +1,6 @@
 #include "reconstruction/stages/reflectance_stage.h"
 
+#include "passes/observation/reclaim_records.h"
 #include "passes/shading/pack_records.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -35,6 +36,8 @@ void ReflectanceStage::set_material(uint32_t label, glm::vec3 ks, float alpha) {
 void ReflectanceStage::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
     observations_.reset(graph, center_m);
     state_.reset(graph);
+    reclaim_at_ = settings_.reclaim_every;
+    reclaim_turn_ = 0;
     // Uploaded before a frame that replaces them.
     materials_.import(graph);
 }
@@ -46,6 +49,17 @@ void ReflectanceStage::enlarge_blocks(graph::Enlargement& enlargement, uint32_t 
 void ReflectanceStage::enlarge_records(graph::Enlargement& enlargement, uint32_t records) {
     observations_.enlarge_records(enlargement, records);
     state_.enlarge(enlargement, records);
+}
+
+void ReflectanceStage::reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m,
+                               uint32_t frame_index) {
+    if (settings_.reclaim_every == 0 || uint64_t{frame_index} + 1 < reclaim_at_) return;
+    reclaim_at_ = uint64_t{frame_index} + 1 + settings_.reclaim_every;
+    ObservationMapIds records = observations_.import(graph);
+    ReflectanceStateIds state = state_.import(graph);
+    add_reclaim_records(graph, observations_, records, state, map_, voxels, near_m, reclaim_turn_++);
+    ObservationMap::keep(graph, records);
+    ReflectanceState::keep(graph, state);
 }
 
 RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,

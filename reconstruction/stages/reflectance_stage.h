@@ -22,6 +22,8 @@ struct ReflectanceStageSettings {
     uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far
                                          ///< as buffers and memory allow
     uint32_t limit_records = 0;          ///< likewise
+    uint32_t reclaim_every = 16;         ///< frames after which a part of the observations gives
+                                         ///< back what holds no surface any more; 0: never
     ObservationSettings observe;
     ReflectanceSettings refine;
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at
@@ -74,6 +76,12 @@ class ReflectanceStage {
     RecordList add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                    const FrameContext& frame);
 
+    /// Gives back records whose surface went, where that is due: those in whose
+    /// voxels nothing was seen within `near_m` of the surface
+    /// (observation/reclaim_records.h). Whoever keeps record ids must choose them
+    /// anew in this frame.
+    void reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m, uint32_t frame_index);
+
     /// Announce that a pool of the observations grows; see ObservationMap.
     void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);
     void enlarge_records(graph::Enlargement& enlargement, uint32_t records);
@@ -120,6 +128,8 @@ class ReflectanceStage {
     Lights lights_;
     SegmentMaterials materials_;
     ReflectanceState state_;
+    uint64_t reclaim_at_ = 0;  ///< the frame from which on that is due
+    uint32_t reclaim_turn_ = 0;
     ReflectanceAccess access_;
 };
 

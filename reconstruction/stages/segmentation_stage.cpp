@@ -139,6 +139,10 @@ graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapId
     return add_label_pixels(graph, seen, known, table.parents, assigned, {values.extent.x, values.extent.y});
 }
 
+bool SegmentationStage::may_lose_records(uint32_t frame_index) const {
+    return settings_.sample_every == 0 || samples_are_due(frame_index, settings_.sample_every);
+}
+
 void SegmentationStage::add_records(graph::FrameGraph& graph, const ObservationMap& map, uint32_t frame_index) const {
     ObservationMapIds records = map.import(graph);
     gpu::SegmentationParams values{};

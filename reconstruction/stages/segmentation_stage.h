@@ -110,6 +110,10 @@ class SegmentationStage {
     graph::ImageId add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
                        const FrameContext& frame) const;
 
+    /// Whether records may be given back before add_records() of this frame: it
+    /// chooses the segments' records anew, or never does.
+    bool may_lose_records(uint32_t frame_index) const;
+
     /// Brings one part of the observations' labels up to date with merged and
     /// pruned segments, another every few frames, and chooses the segments'
     /// records when that is due. To be called in every frame in which add() was.

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Takes the next record for every voxel seen for the first time, empties it and lists it; or marks the voxel as refused
+// Takes a free record for every voxel seen for the first time, empties it and lists it; or marks the voxel as refused
 // when it was not among those accepted.
 #include "lib/map/accepted_key.glsl"
 #include "lib/records/observations.glsl"
@@ -20,6 +20,7 @@ layout(std430, binding = 8) buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 9) buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 10) buffer Visible { uint visible[]; };
 layout(std430, binding = 11) buffer VisibleArguments { uint visible_arguments[]; };
+layout(std430, binding = 12) readonly buffer FreeRecords { uint free_records[]; };
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;
@@ -32,7 +33,7 @@ void main() {
         record_table[entry] = kRefusedRecord;
         return;
     }
-    const uint record = frame.record_capacity - counters.claim_base + atomicAdd(counters.claimed, 1u);
+    const uint record = free_records[counters.claim_base - 1u - atomicAdd(counters.claimed, 1u)];
     record_table[entry] = record;
     records[record] = VoxelRecord(key, 0u, pack_state(0u, voxel, 0u, 0.0), 0u);
     seen[record] = frame.stamp;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per new key: takes the next block and empties its voxels' entries of the record table; or leaves the
-// key without a block when it was not among those accepted. Blocks are never given back, so ids follow from a count.
+// key without a block when it was not among those accepted.
 #include "lib/map/accepted_key.glsl"
 #include "lib/map/voxel_map.glsl"
 #include "lib/records/observations.glsl"
@@ -14,6 +14,7 @@ layout(std430, binding = 3) buffer Blocks { uint blocks[]; };
 layout(std430, binding = 4) buffer BlockKeys { uint block_keys[]; };
 layout(std430, binding = 5) buffer RecordTable { uvec4 record_table[]; };
 layout(std140, binding = 6) uniform Observation { ObservationParams frame; };
+layout(std430, binding = 7) readonly buffer FreeBlocks { uint free_blocks[]; };
 
 shared uint block;
 
@@ -21,7 +22,7 @@ void claim(uint slot) {
     const uint key = keys[slot];
     block = kNoBlock;
     if (is_accepted(hash_of_key(key), counters.accepted_bins)) {
-        block = frame.grid.capacity - counters.claim_base + atomicAdd(counters.claimed, 1u);
+        block = free_blocks[counters.claim_base - 1u - atomicAdd(counters.claimed, 1u)];
         block_keys[block] = key;
     }
     blocks[slot] = block;

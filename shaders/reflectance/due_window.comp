@@ -33,7 +33,8 @@ void consider_quad(uvec4 entries) {
 
 void main() {
     const uint mask = params.records.bucket_mask;
-    const float share = float(params.refreshed) / float(max(record_counters.high_water, 1u));
+    const uint records_in_use = record_counters.capacity - record_counters.free_blocks;
+    const float share = float(params.refreshed) / float(max(records_in_use, 1u));
     const uint window = clamp(uint(min(share, 1.0) * float(mask + 1u)), 1u, params.max_window);
     const uint parity = params.stamp & 1u;
     const uint cursor = cursors.window[parity];

@@ -6,6 +6,8 @@
 
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
+#include "passes/observation/reclaim_records.h"
+#include "shared/fusion/remove_empty_blocks.h"
 #include "shared/test/test_observations.h"
 #include "spirv/shaders.h"
 
@@ -17,10 +19,16 @@ bool RecordContent::operator==(const RecordContent& other) const {
 }
 
 ObservationRig::ObservationRig(vulkan::Device& device, graph::Runner& runner, const ObservationMapSettings& map,
-                               const ObservationSettings& settings, const FusionSettings& fusion)
-    : runner_(runner), fusion_(device, runner, {}, fusion), map_(device, map), settings_(settings) {
+                               const ObservationSettings& settings, const FusionSettings& fusion,
+                               const VoxelMapSettings& voxels)
+    : runner_(runner),
+      fusion_(device, runner, voxels, fusion),
+      map_(device, map),
+      state_(device, map_),
+      settings_(settings) {
     graph::FrameGraph frame = runner_.begin();
     map_.reset(frame, glm::dvec3(0));
+    state_.reset(frame);
     runner_.submit(std::move(frame));
 }
 
@@ -62,6 +70,52 @@ ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
     runner_.wait();
     return {seen.as<uint32_t>().front(), changed.as<uint32_t>().front(), position.image<glm::vec4>(),
             widen(normal.image<uint64_t>())};
+}
+
+void ObservationRig::reclaim(uint32_t turn) {
+    graph::FrameGraph frame = runner_.begin();
+    ObservationMapIds ids = map_.import(frame);
+    ReflectanceStateIds state = state_.import(frame);
+    const float near_m = gpu::kSurfaceTruncation * fusion_.settings().truncation_m;
+    const VoxelMapIds voxels = fusion_.map().import(frame);
+    add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, turn);
+    ObservationMap::keep(frame, ids);
+    ReflectanceState::keep(frame, state);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+}
+
+ObservationRig::PoolIds ObservationRig::pool_ids(graph::BufferId ObservationMapIds::*free_list,
+                                                 const gpu::MapCounters& counters) {
+    graph::FrameGraph frame = runner_.begin();
+    const ObservationMapIds ids = map_.import(frame);
+    const graph::Readback free = frame.read_back(ids.*free_list), keys = frame.read_back(ids.block_keys),
+                          table = frame.read_back(ids.record_table);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+    PoolIds pool;
+    pool.free = free.as<uint32_t>();
+    pool.free.resize(counters.free_blocks);
+    const auto block_keys = keys.as<uint32_t>(), entries = table.as<uint32_t>();
+    const size_t per_block = size_t{1} << 3 * map_.edge_shift();
+    for (uint32_t block = 0; block < block_keys.size(); ++block) {
+        if (block_keys[block] == gpu::kEmptyKey) continue;
+        if (free_list == &ObservationMapIds::free_blocks) {
+            pool.used.push_back(block);
+            continue;
+        }
+        for (size_t i = block * per_block; i < (block + 1) * per_block; ++i) {
+            if (entries[i] < gpu::kNewRecord) pool.used.push_back(entries[i]);
+        }
+    }
+    return pool;
+}
+
+ObservationRig::PoolIds ObservationRig::block_ids() {
+    return pool_ids(&ObservationMapIds::free_blocks, block_counters());
+}
+ObservationRig::PoolIds ObservationRig::record_ids() {
+    return pool_ids(&ObservationMapIds::free_records, record_counters());
 }
 
 gpu::MapCounters ObservationRig::read(graph::BufferId ObservationMapIds::*counters) {
@@ -116,7 +170,7 @@ ObservationContent ObservationRig::content() {
     ObservationContent content;
     for (uint32_t entry = 0; entry < blocks * per_block; ++entry) {
         const uint32_t id = table[entry], voxel = entry % per_block;
-        if (id >= gpu::kNewRecord) continue;
+        if (keys[entry / per_block] == gpu::kEmptyKey || id >= gpu::kNewRecord) continue;
         const reference::BlockCoordinates block = coordinates_of_key(keys[entry / per_block]);
         const std::array<uint32_t, 3> within{voxel % edge, voxel / edge % edge, voxel / edge / edge};
         std::array<int, 3> at{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "passes/observation/observation.h"
+#include "passes/state/reflectance_state.h"
 #include "tests/gpu/fusion/fusion_rig.h"
 
 namespace patina {
@@ -35,7 +36,8 @@ struct RigFrame {
 class ObservationRig {
   public:
     ObservationRig(vulkan::Device& device, graph::Runner& runner, const ObservationMapSettings& map = {},
-                   const ObservationSettings& settings = {}, const FusionSettings& fusion = {});
+                   const ObservationSettings& settings = {}, const FusionSettings& fusion = {},
+                   const VoxelMapSettings& voxels = {});
 
     /// Fuses the frame's depth; `times` so that every block is allocated.
     void fuse(const RigFrame& frame, int times = 4);
@@ -47,7 +49,16 @@ class ObservationRig {
     /// Casts the model into the frame's camera and collects its observations.
     Collected collect(const RigFrame& frame);
 
+    /// Gives back what holds no surface any more of the part of the observations whose turn it is.
+    void reclaim(uint32_t turn);
+
     ObservationContent content();
+    /// A pool's ids in use, and the valid part of its list of free ones.
+    struct PoolIds {
+        std::vector<uint32_t> used, free;
+    };
+    PoolIds block_ids();
+    PoolIds record_ids();
     /// The records that shaders find for these voxels (w unused); block_key is kEmptyKey where there is none.
     std::vector<gpu::VoxelRecord> find(const std::vector<glm::ivec4>& voxels);
     gpu::MapCounters block_counters();
@@ -58,11 +69,13 @@ class ObservationRig {
     const ObservationSettings& settings() const { return settings_; }
 
   private:
+    PoolIds pool_ids(graph::BufferId ObservationMapIds::*free_list, const gpu::MapCounters& counters);
     gpu::MapCounters read(graph::BufferId ObservationMapIds::*counters);
 
     graph::Runner& runner_;
     FusionRig fusion_;
     ObservationMap map_;
+    ReflectanceState state_;
     ObservationSettings settings_;
     uint32_t frame_ = 0;
 };

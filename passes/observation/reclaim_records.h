@@ -1,0 +1,20 @@
+#pragma once
+
+#include "engine/graph/frame_graph.h"
+#include "passes/state/observation_map.h"
+#include "passes/state/reflectance_state.h"
+#include "passes/state/voxel_map.h"
+
+namespace patina {
+
+/// Gives back what one of gpu::kReclaimParts parts of the observations, `turn` modulo their number, holds of surface
+/// that went: things that were moved, noise that was carved away. A record goes when its voxel holds no voxel of
+/// `voxels` that was seen within `near_m` metres of the surface; a block goes with its last record. Then rebuilds the
+/// table. Keys and voxels of that part that had been refused get another chance. Counts in MapCounters::deleted_blocks.
+/// Whoever keeps record ids from frame to frame has to choose them anew in the same frame
+/// (segmentation/sample_records.h). `status` of records that went is zero, as of new ones.
+void add_reclaim_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
+                         ReflectanceStateIds& state, const VoxelMap& voxel_map, const VoxelMapIds& voxels, float near_m,
+                         uint32_t turn);
+
+}  // namespace patina
