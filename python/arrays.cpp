@@ -25,8 +25,8 @@ py::array to_numpy(const py::object& given, const char* what) {
     return py::reinterpret_borrow<py::array>(given);
 }
 
-/// The array's pixels where it is of this type; its shape must be H x W x channels then, and its memory that of an image
-/// without gaps, whose values stand where this type may stand.
+/// The array's pixels where it is of this type; its shape must be H x W x channels then, and its memory that of an
+/// image without gaps, whose values stand where this type may stand.
 template <class Value, class Pixel>
 std::optional<std::span<const Pixel>> pixels_of(const py::array& array, Extent2D extent, py::ssize_t channels,
                                                 const char* what) {
@@ -67,8 +67,7 @@ RigidTransform to_transform(const py::array_t<double>& array, const char* what) 
     }
     if (!finite) throw Error(what, " holds values that are not finite");
     const double defect = rotation_defect(transform);
-    if (!(defect < kMaxRotationDefect))
-        throw Error(what, " is no rigid transform: its rotation is off by ", defect);
+    if (!(defect < kMaxRotationDefect)) throw Error(what, " is no rigid transform: its rotation is off by ", defect);
     for (int column = 0; column < 4; ++column)
         if (transform[column][3] != (column == 3 ? 1 : 0))
             throw Error(what, " is no rigid transform: its last row is not 0 0 0 1");

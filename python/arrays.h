@@ -45,8 +45,8 @@ py::array_t<T> shared(std::vector<py::ssize_t> shape, const T* data, py::handle 
 /// Rows of vectors as an N x L array that shares their memory.
 template <glm::length_t L, class T, glm::qualifier Q>
 py::array_t<T> shared(const std::vector<glm::vec<L, T, Q>>& rows, py::handle owner) {
-    return shared<T>({static_cast<py::ssize_t>(rows.size()), py::ssize_t{L}},
-                     rows.empty() ? nullptr : &rows.front()[0], owner);
+    return shared<T>({static_cast<py::ssize_t>(rows.size()), py::ssize_t{L}}, rows.empty() ? nullptr : &rows.front()[0],
+                     owner);
 }
 
 /// Hands a vector to Python, whose arrays it is the base of.

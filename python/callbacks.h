@@ -12,9 +12,9 @@ namespace patina::python {
 
 namespace py = pybind11;
 
-/// What a session calls in Python. The interpreter is held by each call alone. What a callback raises, and Ctrl-C, stops
-/// the session as its own `stop` does, and is thrown by run() once the session has stopped: an exception of Python would
-/// not be known for one in a search that goes on without what has failed.
+/// What a session calls in Python. The interpreter is held by each call alone. What a callback raises, and Ctrl-C,
+/// stops the session as its own `stop` does, and is thrown by run() once the session has stopped: an exception of
+/// Python would not be known for one in a search that goes on without what has failed.
 class Callbacks {
   public:
     /// Each may be None.
@@ -23,7 +23,8 @@ class Callbacks {
     /// They share `callbacks`, so that copies can be destroyed without the interpreter. The last one needs it.
     static SessionCallbacks of(const std::shared_ptr<Callbacks>& callbacks);
 
-    /// What `work` returns, which runs without the interpreter. Throws what was raised meanwhile, else what `work` does.
+    /// What `work` returns, which runs without the interpreter. Throws what was raised meanwhile, else what `work`
+    /// does.
     template <class Work>
     auto run(Work&& work) {
         try {

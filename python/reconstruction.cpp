@@ -1,9 +1,10 @@
 // Fusing arrays of one's own.
 
+#include "patina/reconstruction.h"
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "patina/reconstruction.h"
 #include "python/bindings.h"
 #include "python/choices.h"
 
@@ -14,11 +15,10 @@ namespace {
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 using Pose = std::optional<py::array_t<double>>;
 
-std::unique_ptr<Reconstruction> make(Device& device, const std::optional<Settings>& settings,
-                                     std::vector<Light> lights, std::array<double, 3> ambient,
-                                     const std::string& labels, const std::string& materials, const std::string& poses,
-                                     const std::string& gains, const std::filesystem::path& network,
-                                     std::optional<uint64_t> seed) {
+std::unique_ptr<Reconstruction> make(Device& device, const std::optional<Settings>& settings, std::vector<Light> lights,
+                                     std::array<double, 3> ambient, const std::string& labels,
+                                     const std::string& materials, const std::string& poses, const std::string& gains,
+                                     const std::filesystem::path& network, std::optional<uint64_t> seed) {
     ReconstructionOptions options;
     options.lighting = Lighting{std::move(lights), {ambient[0], ambient[1], ambient[2]}, "given"};
     options.labels = to_labels(labels);

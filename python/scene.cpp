@@ -1,9 +1,10 @@
 // What comes out: scenes, views, numbers.
 
+#include "patina/scene.h"
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "patina/scene.h"
 #include "python/bindings.h"
 
 namespace patina::python {
@@ -81,8 +82,8 @@ void bind_frame_result(py::module_& m) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<Scene>(m, "Scene",
-                      "A finished reconstruction. Arrays of vertices and triangles share its memory, and are to be read.")
+    py::class_<Scene>(
+        m, "Scene", "A finished reconstruction. Arrays of vertices and triangles share its memory, and are to be read.")
         .def_readonly("name", &Scene::name)
         .def_property_readonly("positions",
                                [](py::object self) { return shared(scene_of(self).mesh.positions_m, self); })

@@ -91,9 +91,12 @@ void bind_session(py::module_& m) {
         .def_property_readonly("last", [](const Running& self) { return std::optional(self.session->last()); })
         .def_property_readonly("info", [](const Running& self) { return info_of(self.session->info()); })
         .def_property_readonly("lighting", [](const Running& self) { return self.session->lighting(); })
-        .def("view", [](Running& self, const Intrinsics& camera, const py::array_t<double>& world_from_camera) {
-            return view_of(*self.session, camera, world_from_camera);
-        }, py::arg("camera"), py::arg("world_from_camera"))
+        .def(
+            "view",
+            [](Running& self, const Intrinsics& camera, const py::array_t<double>& world_from_camera) {
+                return view_of(*self.session, camera, world_from_camera);
+            },
+            py::arg("camera"), py::arg("world_from_camera"))
         .def("wait", &wait)
         .def("statistics", [](Running& self) { return to_dict(self.session->statistics()); })
         .def("shortfalls", &shortfalls)

@@ -22,7 +22,8 @@ void bind_errors(py::module_& m) {
 }
 
 void bind_device(py::module_& m) {
-    py::class_<Device>(m, "Device", "An opened Vulkan device. One thread at a time works with it and what is made on it.")
+    py::class_<Device>(m, "Device",
+                       "An opened Vulkan device. One thread at a time works with it and what is made on it.")
         .def(py::init([](const std::string& selector, bool validation,
                          const std::filesystem::path& pipeline_cache_folder, uint64_t memory_limit) {
                  return std::make_unique<Device>(DeviceChoice{.selector = selector,

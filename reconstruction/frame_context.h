@@ -36,16 +36,14 @@ struct DepthRange {
     float reach_m = 0;  ///< no farther reading is fused
 };
 
-/// What the stages know of one RGB-D frame besides its pictures. Made once a
-/// frame, when its pose is known.
+/// What the stages know of one RGB-D frame besides its pictures. Made once a frame, when its pose is known.
 struct FrameContext {
     uint32_t index = 0;        ///< how many frames were fused before
     uint32_t color_index = 0;  ///< of these, whose colour was fused
     PosedCamera depth;
     PosedCamera color;
     DepthRange range;                      ///< of the depth camera
-    std::optional<CameraMotion> motion{};  ///< of the colour camera since the frame before; empty for the
-                                           ///< first frame
+    std::optional<CameraMotion> motion{};  ///< of the colour camera since the frame before; empty for the first frame
     bool fuses_color = true;               ///< its colour is fused
     bool held_out = false;                 ///< its colour is neither fused nor observed
     std::span<const uint16_t> labels{};    ///< RgbdFrame::labels, borrowed
@@ -61,17 +59,14 @@ struct FrameHistory {
     void note(const FrameContext& frame);
 };
 
-/// The context of a frame at its pose, after the frames of `before`.
-/// `fuses_color`: the model has colours.
+/// The context of a frame at its pose, after the frames of `before`. `fuses_color`: the model has colours.
 FrameContext make_frame_context(const RgbdFrame& frame, const FrameHistory& before, const DepthRange& range,
                                 bool fuses_color);
 
-/// Throws Error when a picture of frame `number` is not its camera's size, or
-/// its pose is not rigid.
+/// Throws Error when a picture of frame `number` is not its camera's size, or its pose is not rigid.
 void check_frame(const RgbdFrame& frame, uint32_t number);
 
-/// Throws Error when a view's camera has no pixels or no focal length, or its
-/// pose is not rigid.
+/// Throws Error when a view's camera has no pixels or no focal length, or its pose is not rigid.
 void check_view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
 }  // namespace patina

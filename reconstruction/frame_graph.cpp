@@ -8,8 +8,7 @@ namespace patina {
 
 namespace {
 
-/// What the surface reflects: segments, then the observations, what they change
-/// of the albedo, and specular materials.
+/// What the surface reflects: segments, then the observations, what they change of the albedo, and specular materials.
 void wire_materials(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds& voxels, const FrameContext& frame,
                     SegmentationInputs segmented, ObservationInputs observed) {
     if (stages.segmentation) {
@@ -44,8 +43,7 @@ FrameReadbacks wire_frame(graph::FrameGraph& graph, Stages& stages, const FrameC
     const GeometryStage& geometry = stages.geometry;
     VoxelMapIds voxels = geometry.map().import(graph);
 
-    // Preprocess. Keyframes have the colours that the camera gave: those of a
-    // lost frame cannot be corrected.
+    // Preprocess. Keyframes have the colours that the camera gave: those of a lost frame cannot be corrected.
     InputImages input = add_input(graph, pictures, frame.depth.gpu, stages.settings.input);
     if (stages.keyframes) stages.keyframes->add_keep(graph, {input.depth_m, input.color}, frame);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.intrinsics);

@@ -59,8 +59,8 @@ class GrowingPools {
     void await(uint32_t index, const PoolReadbacks& counters);
 
     /// Enlarges what is short for frame `index`, in a frame of its own, and returns true; or returns false where
-    /// nothing is short or nothing can be had. Waits for frame `index` - 2. Throws as Runner::submit() does;
-    /// then the pools are as before.
+    /// nothing is short or nothing can be had. Waits for frame `index` - 2. Throws as Runner::submit() does; then the
+    /// pools are as before.
     bool grow(graph::Runner& runner, uint32_t index);
 
     /// Whether frame 0 found a pool full that can grow. It must have finished.

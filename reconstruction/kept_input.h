@@ -14,8 +14,8 @@ class KeptInput {
   public:
     explicit KeptInput(vulkan::Device& device) : device_(device) {}
 
-    /// Uploads and converts a frame's pictures in place of those of the frame before. Throws Error as
-    /// add_convert_depth and add_convert_color do, or for lack of memory.
+    /// Uploads and converts a frame's pictures in place of those of the frame before. Throws Error as add_convert_depth
+    /// and add_convert_color do, or for lack of memory.
     InputPictures add(graph::FrameGraph& frame, const DepthInput& depth, const ColorInput& color);
 
     /// The pictures of the frame that was added last.

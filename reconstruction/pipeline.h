@@ -17,52 +17,41 @@
 
 namespace patina {
 
-/// Fuses RGB-D frames into a volume and extracts its surface. Frames are
-/// submitted without waiting for the device, two in flight. Joins the stages
-/// with the two ways to fuse, at poses that are given and at poses that
-/// tracking finds. One device, one thread.
+/// Fuses RGB-D frames into a volume and extracts its surface. Frames are submitted without waiting for the device, two
+/// in flight. Joins the stages with the two ways to fuse, at poses that are given and at poses that tracking finds. One
+/// device, one thread.
 class Pipeline {
   public:
-    /// Throws Error for settings that cannot be met, or lack of memory. The
-    /// device must outlive this.
+    /// Throws Error for settings that cannot be met, or lack of memory. The device must outlive this.
     Pipeline(vulkan::Device& device, const ReconstructionSettings& settings);
 
-    /// Replaces all lights of the reflectance; at any time. `ambient` is
-    /// irradiance over pi, linear pixel value. Without reflectance nothing
-    /// changes. Throws Error as Lights::set does.
+    /// Replaces all lights of the reflectance; at any time. `ambient` is irradiance over pi, linear pixel value.
+    /// Without reflectance nothing changes. Throws Error as Lights::set does.
     void set_lights(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
-    /// Sets the specular material of a label (SegmentMaterials::set); at any
-    /// time. Without reflectance nothing changes.
+    /// Sets the specular material of a label (SegmentMaterials::set); at any time. Without reflectance nothing changes.
     void set_material(uint32_t label, glm::vec3 ks, float alpha);
 
-    /// Fuses a frame. The first one places the volume around its camera. With
-    /// tracking its pose is found first: one graph fuses the frame before, casts
-    /// the model and searches, and its end is waited for; the frame itself, whose
-    /// pictures stay on the device, is fused by the next one's graph, or as soon
-    /// as anything is asked of the model. Returns whether the frame is fused:
-    /// without tracking all are, with it those that track. Throws Error when a
+    /// Fuses a frame. The first one places the volume around its camera. With tracking its pose is found first: one
+    /// graph fuses the frame before, casts the model and searches, and its end is waited for; the frame itself, whose
+    /// pictures stay on the device, is fused by the next one's graph, or as soon as anything is asked of the model.
+    /// Returns whether the frame is fused: without tracking all are, with it those that track. Throws Error when a
     /// picture is not its camera's size, or the device was lost.
     bool add(const RgbdFrame& frame);
 
-    /// Fuses a frame at its given pose although others are tracked; tracking goes
-    /// on from there. Throws Error as add().
+    /// Fuses a frame at its given pose although others are tracked; tracking goes on from there. Throws Error as add().
     void add_posed(const RgbdFrame& frame);
 
-    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of
-    /// the keyframes; the first from which the frame tracks is taken. Without
-    /// tracking nothing changes.
+    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of the keyframes; the first from which
+    /// the frame tracks is taken. Without tracking nothing changes.
     void set_relocaliser(Relocaliser relocaliser);
 
-    /// How the last frame was tracked, and from where it was taken; null where
-    /// poses are given.
+    /// How the last frame was tracked, and from where it was taken; null where poses are given.
     const TrackingReport* tracking_report() const { return tracking() ? &tracking()->last() : nullptr; }
 
-    /// Casts the model into a pinhole camera (lens distortion is left out). Ready
-    /// two frames later, or after wait().
+    /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
     ViewReadback view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
-    /// How far surfaces are fused and seen, metres along the optical axis of a
-    /// depth camera (GeometryStage::range).
+    /// How far surfaces are fused and seen, metres along the optical axis of a depth camera (GeometryStage::range).
     float reach_m(const Intrinsics& camera) const { return stages_.geometry.range(camera).reach_m; }
 
     /// Fuses what waits to be, and waits for the device.
@@ -71,30 +60,26 @@ class Pipeline {
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
 
-    /// What a mesh of the surface and all segments reflect, brought up to date
-    /// before; waits. Empty without reflectance.
+    /// What a mesh of the surface and all segments reflect, brought up to date before; waits. Empty without
+    /// reflectance.
     MeshReflectance sample_reflectance(const Mesh& mesh);
 
-    /// Brings all of the reflectance up to date, where there is any; else that is
-    /// spread over frames.
+    /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
-    /// Puts the model under other lights than those of its frames, for views
-    /// alone: no frame may be added after that. Brings the reflectance up to date
-    /// first. Without reflectance nothing changes. Throws Error as Lights::set
-    /// does.
+    /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
+    /// Brings the reflectance up to date first. Without reflectance nothing changes. Throws Error as Lights::set does.
     void relight(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
 
-    /// Counters as of at most two frames ago; exact after wait(). Does not wait.
-    /// With tracking, the last frame is counted only after wait();
-    /// runner().wait() does not fuse it.
+    /// Counters as of at most two frames ago; exact after wait(). Does not wait. With tracking, the last frame is
+    /// counted only after wait(); runner().wait() does not fuse it.
     PipelineCounters counters();
 
     /// The keyframes' counters; waits. Zero without keyframes.
     gpu::KeyframeCounters keyframe_counters();
 
-    /// The colour gains of the frames so far (ColorCorrection::gains), with the
-    /// delay of counters(); empty where the settings estimate none.
+    /// The colour gains of the frames so far (ColorCorrection::gains), with the delay of counters(); empty where the
+    /// settings estimate none.
     std::span<const gpu::ColorGains> gains();
 
     uint32_t frames() const;  ///< fused, or about to be

@@ -15,9 +15,8 @@ struct ObservationCounters {
     gpu::MapCounters records{};  ///< their block is a voxel's record
 };
 
-/// What is counted in a frame, in the words of the shaders that count: those of
-/// the last fused frame whose work the device has finished. Public Statistics
-/// are made from it (statistics_of); this has more than they show, for the
+/// What is counted in a frame, in the words of the shaders that count: those of the last fused frame whose work the
+/// device has finished. Public Statistics are made from it (statistics_of); this has more than they show, for the
 /// library's own programs and tests, and types that the public API may not name.
 struct PipelineCounters {
     uint32_t frames = 0;  ///< fused so far, those included that the device works on
@@ -27,8 +26,7 @@ struct PipelineCounters {
     gpu::SegmentCounters segments{};           ///< zero without segmentation
     LabelStability label_stability;            ///< over all frames that were counted
     std::vector<PoolState> pools;              ///< how full they are, and what keeps them from growing
-    std::optional<TrackingReport> tracking{};  ///< of the last frame that was added; empty where poses are
-                                               ///< given
+    std::optional<TrackingReport> tracking{};  ///< of the last frame that was added; empty where poses are given
 };
 
 }  // namespace patina

@@ -16,9 +16,8 @@ void PosedFusion::add(const RgbdFrame& frame) {
     note(submit(begin(), frame));
 }
 
-/// Nothing is known yet of what the first frame asks for. Where that is more
-/// than the pools hold, they grow, and the frame is fused anew, into an empty
-/// model.
+/// Nothing is known yet of what the first frame asks for. Where that is more than the pools hold, they grow, and the
+/// frame is fused anew, into an empty model.
 void PosedFusion::add_first(const RgbdFrame& frame) {
     Declared declared;
     do {

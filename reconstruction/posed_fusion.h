@@ -12,16 +12,15 @@
 
 namespace patina {
 
-/// Fuses frames whose pose is known, one graph each, two of them in flight.
-/// Before a graph the pools grow where they are short; after it the frame's
-/// counters are gathered as they arrive.
+/// Fuses frames whose pose is known, one graph each, two of them in flight. Before a graph the pools grow where they
+/// are short; after it the frame's counters are gathered as they arrive.
 class PosedFusion {
   public:
     /// Both must outlive this.
     PosedFusion(graph::Runner& runner, Stages& stages);
 
-    /// Fuses a frame in a graph of its own. The first one places the map around
-    /// its camera. Throws Error when the device was lost or lacks memory.
+    /// Fuses a frame in a graph of its own. The first one places the map around its camera. Throws Error when the
+    /// device was lost or lacks memory.
     void add(const RgbdFrame& frame);
 
     /// A frame whose passes are declared.
@@ -29,9 +28,8 @@ class PosedFusion {
         FrameContext frame;
         FrameReadbacks counters;
     };
-    /// The steps of add(), for a graph that does more than fuse a frame; not for
-    /// the first one. begin() starts a graph, declare() adds the frame's passes
-    /// to it, note() counts the frame once the graph was submitted.
+    /// The steps of add(), for a graph that does more than fuse a frame; not for the first one. begin() starts a graph,
+    /// declare() adds the frame's passes to it, note() counts the frame once the graph was submitted.
     graph::FrameGraph begin();
     Declared declare(graph::FrameGraph& graph, const RgbdFrame& frame, const InputPictures& pictures);
     void note(const Declared& declared);

@@ -21,33 +21,26 @@ struct ReconstructionSettings {
     FusionSettings fusion;
     InputSettings input;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
-    uint32_t remove_every = 16;  ///< blocks without surface are removed every so
-                                 ///< many frames; 0 keeps them
-    /// Estimates each frame's colour gains, for cameras that change exposure or
-    /// white balance by themselves; empty: colours are taken as they are. Needs
-    /// fusion.color.
+    uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:
+    /// colours are taken as they are. Needs fusion.color.
     std::optional<GainSettings> gains{};
-    /// Observations and albedo beside the geometry; empty: none. Needs lights
-    /// (Pipeline::set_lights).
+    /// Observations and albedo beside the geometry; empty: none. Needs lights (Pipeline::set_lights).
     std::optional<ReflectanceStageSettings> reflectance{};
     /// Segments of the map; empty: none.
     std::optional<SegmentationSettings> segmentation{};
-    /// Specular materials of the segments; empty: those that the reflectance was
-    /// given. Needs both of the former.
+    /// Specular materials of the segments; empty: those that the reflectance was given. Needs both of the former.
     std::optional<SpecularSettings> specular{};
     std::optional<NetworkDescription> network{};  ///< that estimates specular materials; empty: none
     /// Finds the frames' poses; empty: they are given.
     std::optional<TrackingSettings> tracking{};
-    /// Keyframes of what is fused, by which a camera that tracking lost is found
-    /// again; empty: none.
+    /// Keyframes of what is fused, by which a camera that tracking lost is found again; empty: none.
     std::optional<KeyframeSettings> keyframes{};
-    /// Of all that is drawn at random: ferns of keyframes, the records that stand
-    /// for a segment, those that the network is shown, the samples that lights
-    /// are fitted to, and how fused colours are rounded. Each of these has a seed
-    /// of its own, which this one changes; 0 leaves it.
+    /// Of all that is drawn at random: ferns of keyframes, the records that stand for a segment, those that the network
+    /// is shown, the samples that lights are fitted to, and how fused colours are rounded. Each of these has a seed of
+    /// its own, which this one changes; 0 leaves it.
     uint64_t seed = 0;
-    bool view_every_frame = false;  ///< cast the model into every depth frame, as
-                                    ///< a live view or a tracker needs it
+    bool view_every_frame = false;  ///< cast the model into every depth frame, as a live view or a tracker needs it
 };
 
 }  // namespace patina

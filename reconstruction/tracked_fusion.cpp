@@ -7,8 +7,7 @@ namespace patina {
 
 namespace {
 
-/// A camera that tracks weakly for so many frames may be somewhere else
-/// altogether.
+/// A camera that tracks weakly for so many frames may be somewhere else altogether.
 constexpr uint32_t kWeakFrames = 4;
 
 /// How many pixels of a depth picture hold a reading.
@@ -107,8 +106,7 @@ TrackingReport TrackedFusion::best_search(const RgbdFrame& frame) {
     return best;
 }
 
-/// In the same graph as this search the frame before is fused, which the search
-/// needs the model of.
+/// In the same graph as this search the frame before is fused, which the search needs the model of.
 TrackingReport TrackedFusion::first_search(const RgbdFrame& frame, const RigidTransform& start) {
     graph::FrameGraph graph = waiting_ ? fusion_.begin() : runner_.begin();
     std::optional<PosedFusion::Declared> fused;
@@ -146,8 +144,7 @@ std::optional<TrackingReport> TrackedFusion::relocalised(const RgbdFrame& frame)
     const std::vector<RigidTransform> starts = candidates(frame);
     for (const RigidTransform& start : starts) {
         TrackingReport report = search_from(frame, start);
-        // From afar it may not have settled, or the view from the start showed too
-        // little of what the frame does.
+        // From afar it may not have settled, or the view from the start showed too little of what the frame does.
         if (report.state == TrackingState::kWeak) report = search_from(frame, report.world_from_depth);
         if (report.state == TrackingState::kTracking && report.share >= tracking_.settings().bounds.jump_share)
             return report;

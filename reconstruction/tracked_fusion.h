@@ -10,21 +10,19 @@
 
 namespace patina {
 
-/// Poses (world_from_depth) at which a frame may have been taken, the likeliest
-/// first, found by other means than tracking.
+/// Poses (world_from_depth) at which a frame may have been taken, the likeliest first, found by other means than
+/// tracking.
 using Relocaliser = std::function<std::vector<RigidTransform>(const RgbdFrame&)>;
 
-/// Finds each frame's pose, then fuses it. The pose is known only when the
-/// graph of the search has finished; the frame, whose pictures stay on the
-/// device, waits and is fused by the next frame's graph, or by fuse_waiting().
+/// Finds each frame's pose, then fuses it. The pose is known only when the graph of the search has finished; the frame,
+/// whose pictures stay on the device, waits and is fused by the next frame's graph, or by fuse_waiting().
 class TrackedFusion {
   public:
     /// All must outlive this; `stages` must have tracking.
     TrackedFusion(graph::Runner& runner, Stages& stages, PosedFusion& fusion);
 
-    /// Searches for a frame's pose; waits for that. The first frame is at its own
-    /// pose. Returns whether the frame tracks, and so is or will be fused. Throws
-    /// Error when the device was lost or lacks memory.
+    /// Searches for a frame's pose; waits for that. The first frame is at its own pose. Returns whether the frame
+    /// tracks, and so is or will be fused. Throws Error when the device was lost or lacks memory.
     bool add(const RgbdFrame& frame);
 
     /// Fuses a frame at its own pose; tracking goes on from there.
@@ -34,8 +32,8 @@ class TrackedFusion {
     void fuse_waiting();
     bool has_waiting() const { return waiting_.has_value(); }
 
-    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of
-    /// the keyframes; the first from which the frame tracks is taken.
+    /// Asks `relocaliser` for poses of every frame that tracking lost, instead of the keyframes; the first from which
+    /// the frame tracks is taken.
     void set_relocaliser(Relocaliser relocaliser) { relocaliser_ = std::move(relocaliser); }
 
   private:
@@ -54,8 +52,7 @@ class TrackedFusion {
     PosedFusion::Declared declare_waiting(graph::FrameGraph& graph);
 
     struct Waiting {
-        RgbdFrame frame;  ///< at its pose, without pixels: they are in
-                          ///< TrackingStage::pictures()
+        RgbdFrame frame;  ///< at its pose, without pixels: they are in TrackingStage::pictures()
         std::vector<uint16_t> labels;
     };
 

@@ -50,8 +50,7 @@ ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCame
         const ReflectanceStageSettings& settings = stages.reflectance->settings();
         const RestoreDetailInputs inputs{model.position_m, model.normal, color,
                                          static_cast<float>(camera.intrinsics.fx), settings.voxel_m};
-        // Under other lights than those of the frames, their colours would bring
-        // back the shadows of these.
+        // Under other lights than those of the frames, their colours would bring back the shadows of these.
         const bool detailed = stages.settings.fusion.color && settings.refine.albedo;
         const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
         view.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),

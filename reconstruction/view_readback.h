@@ -26,8 +26,7 @@ class ViewReadback {
     std::optional<Reflectance> reflectance_;
 };
 
-/// Declares a view of the model: what a camera sees of its surface, colours,
-/// labels and reflectance.
+/// Declares a view of the model: what a camera sees of its surface, colours, labels and reflectance.
 ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera);
 
 }  // namespace patina

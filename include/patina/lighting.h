@@ -26,8 +26,8 @@ struct Lighting {
     bool empty() const { return lights.empty() && ambient == glm::dvec3(0); }
 };
 
-/// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or no
-/// finite number, or an intensity or a radius is below 0.
+/// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or
+/// no finite number, or an intensity or a radius is below 0.
 Lighting read_lighting(const std::filesystem::path& file);
 
 /// Writes lights.json of the sequence format. Throws Error when the file cannot be written.

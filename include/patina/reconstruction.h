@@ -133,8 +133,8 @@ struct ReconstructionOptions {
     Settings settings{};
 };
 
-/// Fuses RGB-D frames into a volume with materials, and extracts the scene from it. Frames are submitted without waiting
-/// for the device, two in flight. One thread. Whoever has a source rather than frames uses Session.
+/// Fuses RGB-D frames into a volume with materials, and extracts the scene from it. Frames are submitted without
+/// waiting for the device, two in flight. One thread. Whoever has a source rather than frames uses Session.
 class Reconstruction {
   public:
     /// With light, segments and their materials are found. Throws Error for choices or settings that cannot be met, a

@@ -67,8 +67,8 @@ struct Scene {
     /// finite, a mesh that is too large for glTF, or a file that cannot be written.
     void save_glb(const std::filesystem::path& file) const;
 
-    /// Writes scene.glb, trajectory.txt and, where there are any, materials.json and lights.json into a folder, which is
-    /// created where there is none. Throws Error as save_glb() does.
+    /// Writes scene.glb, trajectory.txt and, where there are any, materials.json and lights.json into a folder, which
+    /// is created where there is none. Throws Error as save_glb() does.
     void save(const std::filesystem::path& folder) const;
 };
 

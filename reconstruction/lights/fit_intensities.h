@@ -29,9 +29,8 @@ struct FittedIntensities {
 };
 
 /// Samples of the surface, in groups that are taken to have one albedo each, or one of two that are well apart (grey
-/// tiles on grey): samples of one chromaticity within a cube.
-/// How bright the albedo is, nobody says: intensities are known up to one factor per channel, and are told such that
-/// the mean sample receives an irradiance / pi of 1.
+/// tiles on grey): samples of one chromaticity within a cube. How bright the albedo is, nobody says: intensities are
+/// known up to one factor per channel, and are told such that the mean sample receives an irradiance / pi of 1.
 class LitSurface {
   public:
     /// `drawn` as add_sample_surface returns it; `cell_m` is the size of the cubes.

@@ -9,9 +9,9 @@
 
 namespace patina {
 
-/// The settings of a reconstruction as the options say; what they leave open is decided by what its source and its light
-/// are. With light, reflectance is estimated; without, there is nothing to estimate it from. Ambient light alone shows
-/// nothing of gloss.
+/// The settings of a reconstruction as the options say; what they leave open is decided by what its source and its
+/// light are. With light, reflectance is estimated; without, there is nothing to estimate it from. Ambient light alone
+/// shows nothing of gloss.
 ReconstructionSettings choose_settings(const SessionOptions& options, const SequenceInfo& info,
                                        const Illumination& light, std::optional<NetworkDescription> network);
 

@@ -22,10 +22,10 @@ enum class LightsFrom : uint8_t {
 
 /// How lights are looked for.
 struct LightsOptions {
-    std::string sequence;       ///< folder of a recording with or without lighting/, or of a lighting sequence; or
-                                ///< "synthetic:SCENE"
-    std::string format;         ///< of the main sequence; empty: recognised
-    uint32_t frames = 0;        ///< at most so many frames of the sequence looked at; 0 takes all
+    std::string
+        sequence;  ///< folder of a recording with or without lighting/, or of a lighting sequence; or "synthetic:SCENE"
+    std::string format;   ///< of the main sequence; empty: recognised
+    uint32_t frames = 0;  ///< at most so many frames of the sequence looked at; 0 takes all
     LightsFrom from = LightsFrom::kAny;
     /// In whose world the lamps are wanted where a lighting sequence of another folder has no poses: the main sequence;
     /// empty: the one that holds the lighting sequence.
@@ -49,7 +49,7 @@ struct Illumination {
     std::vector<FoundLight> lights;  ///< brightest first; positions less world_offset_m
     glm::dvec3 world_offset_m{0};
     glm::dvec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value
-    float misfit = 0;      ///< of the main sequence's surface: FittedLights
+    float misfit = 0;       ///< of the main sequence's surface: FittedLights
     float unexplained = 0;
 };
 
@@ -71,8 +71,8 @@ bool has_lighting_sequence(const std::string& sequence);
 /// Finds the lamps of a room. In a sequence of low exposure (paper, Section 3.2): in the world and in the pixel values
 /// of the reflectance sequence beside it, the folder that holds lighting/; of one in no such folder (kLightingSequence
 /// alone) intensities are in its own pixel values. One without poses is brought into the main sequence's world
-/// (localise.h). In the main sequence: as fit_lights says. Throws Error when a sequence has no poses and there is no main
-/// one, or a file cannot be read; Interrupted when the caller stops it.
+/// (localise.h). In the main sequence: as fit_lights says. Throws Error when a sequence has no poses and there is no
+/// main one, or a file cannot be read; Interrupted when the caller stops it.
 Illumination find_lights(vulkan::Device& device, const LightsOptions& options);
 
 }  // namespace patina

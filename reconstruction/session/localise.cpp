@@ -56,8 +56,7 @@ class Localiser {
         for (glm::vec3& pixel : no_color_.pixels()) pixel = glm::vec3(std::numeric_limits<float>::quiet_NaN());
         std::vector<Waiting> waiting;
         while (auto reading = sequence.next()) {
-            if (auto* frame = std::get_if<Frame>(&*reading))
-                waiting.push_back({frame->index, std::move(frame->depth)});
+            if (auto* frame = std::get_if<Frame>(&*reading)) waiting.push_back({frame->index, std::move(frame->depth)});
         }
         poses_.assign(*info_.frames, std::nullopt);
         total_ = static_cast<uint32_t>(waiting.size());
@@ -118,8 +117,7 @@ class Localiser {
 
 }  // namespace
 
-FoundPoses localise(vulkan::Device& device, Source& main, Source& sequence,
-                    const LocaliseOptions& options) {
+FoundPoses localise(vulkan::Device& device, Source& main, Source& sequence, const LocaliseOptions& options) {
     Localiser localiser(device, options, main.info().has_poses && !options.track);
     localiser.fuse_main(main);
     FoundPoses poses = localiser.locate(sequence);

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "reconstruction/pipeline.h"
 #include "patina/source.h"
+#include "reconstruction/pipeline.h"
 
 namespace patina {
 
@@ -25,7 +25,6 @@ using FoundPoses = std::vector<std::optional<RigidTransform>>;
 /// depth (their exposure may be any), and tracks from there on, forwards and then backwards. Frames that are found are
 /// fused too, so that the camera may go on to what the main sequence does not show. Holds the sequence's depth pictures
 /// in memory. Throws Error when no frame of `main` can be used, or none of `sequence` is found.
-FoundPoses localise(vulkan::Device& device, Source& main, Source& sequence,
-                    const LocaliseOptions& options);
+FoundPoses localise(vulkan::Device& device, Source& main, Source& sequence, const LocaliseOptions& options);
 
 }  // namespace patina

@@ -4,10 +4,10 @@
 #include <span>
 
 #include "engine/core/error.h"
+#include "reconstruction/session/tensor_file.h"
 #include "sensor/files/json_file.h"
 #include "shared/specular/hemi_images.h"
 #include "shared/specular/network.h"
-#include "reconstruction/session/tensor_file.h"
 
 namespace patina {
 

@@ -5,11 +5,11 @@
 
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
+#include "sensor/files/text_file.h"
 #include "sensor/inspect.h"
 #include "sensor/open.h"
 #include "sensor/plausibility.h"
 #include "sensor/recentred_source.h"
-#include "sensor/files/text_file.h"
 
 namespace patina {
 
@@ -35,8 +35,7 @@ bool has_reading_within(const Frame& frame, double metres_per_unit, double far_m
     return std::ranges::any_of(metres.pixels(), [&](float r) { return near_enough(r, 1); });
 }
 
-[[noreturn]] void fail_out_of_reach(const SessionOptions& options, double far_m,
-                                    const sensor::SequenceReport& report) {
+[[noreturn]] void fail_out_of_reach(const SessionOptions& options, double far_m, const sensor::SequenceReport& report) {
     std::string reason;
     if (report.depth.valid_share == 0) {
         reason = "no pixel has a reading at all";

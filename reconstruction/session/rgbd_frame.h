@@ -1,7 +1,7 @@
 #pragma once
 
-#include "reconstruction/pipeline.h"
 #include "patina/frame.h"
+#include "reconstruction/pipeline.h"
 
 namespace patina {
 

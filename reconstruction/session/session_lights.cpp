@@ -103,8 +103,8 @@ std::optional<Illumination> searched(vulkan::Device& device, const SessionOption
     std::optional<Illumination> found = search(device, search_of(options, world_offset_m, false), light);
     if (found || options.sequence.empty()) return found;
     if (light.shortfalls.empty())
-        light.shortfalls.push_back(text("no lamp was found in the lighting sequence",
-                                        named ? text(" '", named->sequence, "'") : ""));
+        light.shortfalls.push_back(
+            text("no lamp was found in the lighting sequence", named ? text(" '", named->sequence, "'") : ""));
     light.shortfalls.back() += text("; lights were looked for in what they light in '", options.sequence, "'");
     const size_t before = light.shortfalls.size();
     found = search(device, search_of(options, world_offset_m, true), light);

@@ -1,9 +1,9 @@
 #include "reconstruction/session/session_materials.h"
 
 #include "engine/core/error.h"
-#include "scenes/files/scene_file.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/network_file.h"
+#include "scenes/files/scene_file.h"
 
 namespace patina {
 

@@ -11,8 +11,7 @@ namespace patina {
 
 namespace {
 
-/// Throws Error for what would make shaders divide by zero, or a weight outgrow
-/// its 16 bits.
+/// Throws Error for what would make shaders divide by zero, or a weight outgrow its 16 bits.
 const GeometrySettings& checked(const GeometrySettings& settings) {
     const auto check_range = [](const char* name, uint32_t value, uint32_t most) {
         if (value == 0 || value > most) throw Error(name, " is ", value, ", it must be 1 to ", most);

@@ -19,40 +19,34 @@ struct GeometrySettings {
     VoxelMapSettings map;
     FusionSettings fusion;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
-    uint32_t remove_every = 16;  ///< blocks without surface are removed every so
-                                 ///< many frames; 0 keeps them
+    uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
 };
 
-/// A frame's pictures as they are fused. Those of depth have the depth camera's
-/// extent.
+/// A frame's pictures as they are fused. Those of depth have the depth camera's extent.
 struct GeometryInputs {
     graph::ImageId depth_m;               ///< r32f, 0: no reading
     graph::ImageId slope;                 ///< of the readings (add_measure_slope)
     std::optional<graph::ImageId> color;  ///< rgba16f, linear, of the colour camera; empty: none is fused
 };
 
-/// The surface: owns the voxel map, fuses depth and colour into it, and casts
-/// it into cameras. The functions that add passes are called in the order in
-/// which they stand here.
+/// The surface: owns the voxel map, fuses depth and colour into it, and casts it into cameras. The functions that add
+/// passes are called in the order in which they stand here.
 class GeometryStage {
   public:
     /// Throws Error for settings that cannot be met, or lack of memory.
     GeometryStage(vulkan::Device& device, const GeometrySettings& settings);
 
-    /// Empties the map, placing it around `center_m`; the first thing done with
-    /// it.
+    /// Empties the map, placing it around `center_m`; the first thing done with it.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m) { map_.reset(graph, center_m); }
 
-    /// Which depths of a depth camera count. `reach_m` is fusion.max_depth_m, or
-    /// less where with such small voxels the view of the map does not reach so
-    /// far (view_reach_m).
+    /// Which depths of a depth camera count. `reach_m` is fusion.max_depth_m, or less where with such small voxels the
+    /// view of the map does not reach so far (view_reach_m).
     DepthRange range(const Intrinsics& camera) const;
 
     /// What a frame's fusion passes share: gpu::FusionParams.
     graph::BufferId add_params(graph::FrameGraph& graph, const FrameContext& frame) const;
 
-    /// Gives blocks to the surface that a frame's readings show (touch, then
-    /// assign).
+    /// Gives blocks to the surface that a frame's readings show (touch, then assign).
     void add_allocate(graph::FrameGraph& graph, VoxelMapIds& voxels, graph::ImageId depth_m,
                       graph::BufferId params) const;
 
@@ -75,12 +69,10 @@ class GeometryStage {
     void add_remove_empty(graph::FrameGraph& graph, VoxelMapIds& voxels, const VisibleBlocks& visible,
                           graph::BufferId params, uint32_t frame_index) const;
 
-    /// The surface of the whole map; waits. The memory that frames keep between
-    /// them is given back before.
+    /// The surface of the whole map; waits. The memory that frames keep between them is given back before.
     Mesh extract_surface(graph::Runner& runner) const;
 
-    /// A voxel that was seen nearer to the surface than this, metres, keeps its
-    /// block from being removed.
+    /// A voxel that was seen nearer to the surface than this, metres, keeps its block from being removed.
     float near_surface_m() const;
 
     VoxelMap& map() { return map_; }

@@ -19,15 +19,13 @@ struct ReflectanceStageSettings {
     float voxel_m = 0.02f;               ///< of observations: half or a quarter of a voxel block
     uint32_t capacity_blocks = 65536;    ///< at first
     uint32_t capacity_records = 262144;  ///< at first
-    uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far
-                                         ///< as buffers and memory allow
+    uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far as buffers and memory allow
     uint32_t limit_records = 0;          ///< likewise
-    uint32_t reclaim_every = 16;         ///< frames after which a part of the observations gives
-                                         ///< back what holds no surface any more; 0: never
+    /// Frames after which a part of the observations gives back what holds no surface any more; 0: never
+    uint32_t reclaim_every = 16;
     ObservationSettings observe;
     ReflectanceSettings refine;
-    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at
-                                      ///< first that of the segments
+    uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at first that of the segments
 };
 
 /// What a camera sees of the reflectance.
@@ -53,13 +51,11 @@ struct SpecularInputs {
     uint32_t material_count;
 };
 
-/// What a surface reflects, beside the voxel map that says where it is:
-/// observations by voxel, the lights, materials by label, and kd refined from
-/// them (paper, Sections 3.4 and 3.7). Lives as long as the map.
+/// What a surface reflects, beside the voxel map that says where it is: observations by voxel, the lights, materials by
+/// label, and kd refined from them (paper, Sections 3.4 and 3.7). Lives as long as the map.
 class ReflectanceStage {
   public:
-    /// Throws Error for settings that cannot be met, or lack of memory. The map
-    /// must outlive the stage.
+    /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the stage.
     ReflectanceStage(vulkan::Device& device, const VoxelMap& map, const ReflectanceStageSettings& settings);
 
     /// Replaces all lights; see Lights::set.
@@ -67,19 +63,15 @@ class ReflectanceStage {
     /// Sets the specular material of a label; see SegmentMaterials::set.
     void set_material(uint32_t label, glm::vec3 ks, float alpha);
 
-    /// Empties the model, placing it around the map's centre; the first thing
-    /// done with it.
+    /// Empties the model, placing it around the map's centre; the first thing done with it.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
 
-    /// Collects a frame's observations and refines what they change. Returns the
-    /// records that they changed.
+    /// Collects a frame's observations and refines what they change. Returns the records that they changed.
     RecordList add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                    const FrameContext& frame);
 
-    /// Gives back records whose surface went, where that is due: those in whose
-    /// voxels nothing was seen within `near_m` of the surface
-    /// (observation/reclaim_records.h). Whoever keeps record ids must choose them
-    /// anew in this frame.
+    /// Gives back records whose surface went, where that is due: those in whose voxels nothing was seen within `near_m`
+    /// of the surface (observation/reclaim_records.h). Whoever keeps record ids must choose them anew in this frame.
     void reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m, uint32_t frame_index);
 
     /// Announce that a pool of the observations grows; see ObservationMap.
@@ -88,8 +80,7 @@ class ReflectanceStage {
     /// Announces that there will be `labels` materials.
     void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) { materials_.enlarge(enlargement, labels); }
 
-    /// The observations, for passes beside those of the model; what they write
-    /// comes before or after add() in a frame.
+    /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
     const ObservationMap& observations() const { return observations_; }
 
     /// What the frame's records and materials are so far.
@@ -98,8 +89,8 @@ class ReflectanceStage {
     /// Brings every record up to date.
     void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels);
 
-    /// Puts the model under other lights than those it was observed under: their
-    /// visibility is found, kd stays. Nothing may be added or refined after that.
+    /// Puts the model under other lights than those it was observed under: their visibility is found, kd stays. Nothing
+    /// may be added or refined after that.
     void relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const Light> lights,
                  glm::dvec3 ambient);
 
@@ -110,8 +101,7 @@ class ReflectanceStage {
     /// What is known of each segment.
     SegmentIds add_segments(graph::FrameGraph& graph);
 
-    /// What is known of points of the surface: gpu::SampledReflectance[points];
-    /// see add_sample_reflectance.
+    /// What is known of points of the surface: gpu::SampledReflectance[points]; see add_sample_reflectance.
     graph::BufferId add_sample(graph::FrameGraph& graph, graph::BufferId positions_m, graph::BufferId normals,
                                uint32_t points);
 

@@ -23,8 +23,7 @@ namespace {
 // Not in the frames in which samples are chosen, which add passes of their own.
 constexpr uint32_t kSweepTurn = 1, kRelabelTurn = 3;
 
-/// In the beginning, when most records are new, more often: after 4, 8, ...
-/// frames.
+/// In the beginning, when most records are new, more often: after 4, 8, ... frames.
 bool samples_are_due(uint32_t frame_index, uint32_t every) {
     if (every == 0) return false;
     const uint32_t frames = frame_index + 1;
@@ -40,8 +39,7 @@ uint32_t first_labels(const SegmentationSettings& settings) {
     return std::min(settings.capacity_labels, limit_or_none(settings.limit_labels));
 }
 
-/// The ids that a frame was given, as r32ui of its depth camera; 0 where it was
-/// given none.
+/// The ids that a frame was given, as r32ui of its depth camera; 0 where it was given none.
 graph::ImageId upload_labels(graph::FrameGraph& graph, const FrameContext& frame) {
     const Extent2D extent = frame.depth.intrinsics.extent;
     std::vector<uint32_t> words(frame.labels.begin(), frame.labels.end());

@@ -19,42 +19,36 @@ namespace patina {
 
 /// Sizes and thresholds of the segmentation of the map.
 struct SegmentationSettings {
-    SegmentSettings frame;             ///< how a frame is divided
-    bool given = false;                ///< segments are those of RgbdFrame::labels, whose ids
-                                       ///< are the labels
-    uint32_t capacity_labels = 4096;   ///< at first, label 0 included
-    uint32_t limit_labels = 0;         ///< beyond which the table does not grow; 0:
-                                       ///< SegmentTable::kMaxCapacity
-    float inherit_share = 0.3f;        ///< of a segment's pixels that a label must cover
-                                       ///< to be the segment's
-    uint32_t inherit_pixels = 15;      ///< and how many at least
-    uint32_t new_pixels = 100;         ///< smaller segments get no label of their own
-    float merge_share = 0.2f;          ///< of a segment's pixels that its second label
-                                       ///< must cover to be the same object's
-    uint32_t merge_frames = 3;         ///< in which two labels were the same, less those
-                                       ///< in which they were not
-    float merge_chroma = 0.03f;        ///< labels whose mean chromaticities differ by more are not merged
-    float merge_brightness = 1.4f;     ///< nor those whose kd's luminances have a larger ratio
-    float merge_ks = 0.1f;             ///< nor those whose ks differs by more, in any channel
-    float merge_alpha = 2;             ///< or whose alpha's ratio is larger
-    uint32_t prune_voxels = 10;        ///< labels with fewer voxels are given up
-    uint32_t prune_frames = 30;        ///< when they were not seen for so many frames
-    uint32_t sample_every = 16;        ///< frames after which each segment's records are
-                                       ///< chosen anew, at first sooner; 0: never
+    SegmentSettings frame;            ///< how a frame is divided
+    bool given = false;               ///< segments are those of RgbdFrame::labels, whose ids are the labels
+    uint32_t capacity_labels = 4096;  ///< at first, label 0 included
+    uint32_t limit_labels = 0;        ///< beyond which the table does not grow; 0: SegmentTable::kMaxCapacity
+    float inherit_share = 0.3f;       ///< of a segment's pixels that a label must cover to be the segment's
+    uint32_t inherit_pixels = 15;     ///< and how many at least
+    uint32_t new_pixels = 100;        ///< smaller segments get no label of their own
+    float merge_share = 0.2f;       ///< of a segment's pixels that its second label must cover to be the same object's
+    uint32_t merge_frames = 3;      ///< in which two labels were the same, less those in which they were not
+    float merge_chroma = 0.03f;     ///< labels whose mean chromaticities differ by more are not merged
+    float merge_brightness = 1.4f;  ///< nor those whose kd's luminances have a larger ratio
+    float merge_ks = 0.1f;          ///< nor those whose ks differs by more, in any channel
+    float merge_alpha = 2;          ///< or whose alpha's ratio is larger
+    uint32_t prune_voxels = 10;     ///< labels with fewer voxels are given up
+    uint32_t prune_frames = 30;     ///< when they were not seen for so many frames
+    /// Frames after which each segment's records are chosen anew, at first sooner; 0: never
+    uint32_t sample_every = 16;
     uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
     uint32_t sample_seed = 1;          ///< of the first choice; others differ
 };
 
-/// How often voxels changed from one label to another, after the first frames,
-/// and but for frames in which labels were merged.
+/// How often voxels changed from one label to another, after the first frames, and but for frames in which labels were
+/// merged.
 struct LabelStability {
     static constexpr uint32_t kFirstFrames = 30;
 
     uint64_t voxels = 0;  ///< that segments voted on
     uint64_t flips = 0;   ///< of these
-    double seen = 0;      ///< voxels in sight that would be voted on if no block waited for its
-                          ///< turn: about, as if those that have short turns, some of whose
-                          ///< voxels nothing shows, were like others
+    double seen = 0;  ///< voxels in sight that would be voted on if no block waited for its turn: about, as if those
+                      ///< that have short turns, some of whose voxels nothing shows, were like others
     uint32_t frames = 0;  ///< all of them, the first ones too
 
     /// Counts a frame in.
@@ -68,8 +62,7 @@ struct LabelStability {
     }
 };
 
-/// What one frame brings to the segmentation; images of the depth camera but
-/// for the colour.
+/// What one frame brings to the segmentation; images of the depth camera but for the colour.
 struct SegmentationInputs {
     SurfaceView surface;                    ///< the map's, after the frame was fused
     graph::ImageId depth_m;                 ///< W x H r32f: smoothed readings
@@ -77,16 +70,14 @@ struct SegmentationInputs {
     std::optional<graph::BufferId> fits{};  ///< gpu::WardFit per label, as of the frame before
 };
 
-/// The surface as a camera sees it: `model` was cast into the camera of
-/// `visible`.
+/// The surface as a camera sees it: `model` was cast into the camera of `visible`.
 SurfaceView surface_of(const VisibleBlocks& visible, const RaycastImages& model);
 
-/// The map's segments: a label per voxel, carried over from the segments of
-/// frames so that an object keeps its label. Lives as long as the map.
+/// The map's segments: a label per voxel, carried over from the segments of frames so that an object keeps its label.
+/// Lives as long as the map.
 class SegmentationStage {
   public:
-    /// Throws Error for settings that cannot be met, or lack of memory. The map
-    /// must outlive the stage.
+    /// Throws Error for settings that cannot be met, or lack of memory. The map must outlive the stage.
     SegmentationStage(vulkan::Device& device, const VoxelMap& map, const SegmentationSettings& settings,
                       MapAccess access);
 
@@ -95,32 +86,28 @@ class SegmentationStage {
 
     /// Announces that the voxel map's pool grows to `blocks`.
     void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks) { labels_.enlarge(enlargement, blocks); }
-    /// Announces that there will be `labels`; in the same frame
-    /// segmentation/grow_labels.h makes use of them.
+    /// Announces that there will be `labels`; in the same frame segmentation/grow_labels.h makes use of them.
     void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
     /// That the table can grow to, memory permitting.
     uint32_t most_labels() const;
 
-    /// To be called after a frame's blocks were allocated, in the frame that
-    /// add() is called for.
+    /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::FrameGraph& graph, const VoxelMapIds& voxels) const;
 
-    /// Divides a frame, and carries its segments over to the map. Returns the
-    /// label of each pixel: W x H r32ui, 0 where none is known.
+    /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where
+    /// none is known.
     graph::ImageId add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
                        const FrameContext& frame) const;
 
-    /// Whether records may be given back before add_records() of this frame: it
-    /// chooses the segments' records anew, or never does.
+    /// Whether records may be given back before add_records() of this frame: it chooses the segments' records anew, or
+    /// never does.
     bool may_lose_records(uint32_t frame_index) const;
 
-    /// Brings one part of the observations' labels up to date with merged and
-    /// pruned segments, another every few frames, and chooses the segments'
-    /// records when that is due. To be called in every frame in which add() was.
+    /// Brings one part of the observations' labels up to date with merged and pruned segments, another every few
+    /// frames, and chooses the segments' records when that is due. To be called in every frame in which add() was.
     void add_records(graph::FrameGraph& graph, const ObservationMap& map, uint32_t frame_index) const;
 
-    /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is
-    /// known.
+    /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::FrameGraph& graph, const SurfaceView& surface) const;
 
     std::vector<VoxelMap::PoolBytes> memory() const;

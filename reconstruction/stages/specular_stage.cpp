@@ -48,8 +48,7 @@ void SpecularStage::add(graph::FrameGraph& graph, ReflectanceStage& reflectance,
                              fits_.labels(), inputs.material_count, frame_index + 1},
                             settings_.segments_per_frame, ids);
     if (network_) {
-        // Of the network the fit takes a prior, which hardly matters where
-        // observations tell enough.
+        // Of the network the fit takes a prior, which hardly matters where observations tell enough.
         const SegmentBatch& batch = settings_.fit ? chosen.doubtful : chosen.all;
         const HemiImages hemi = add_hemi_images(graph, inputs.map, inputs.records, segmentation.samples(), samples,
                                                 batch, network_->description().map, settings_.seed + frame_index);

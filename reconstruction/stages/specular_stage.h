@@ -22,15 +22,13 @@ struct SpecularSettings {
     uint32_t seed = 1;                ///< of the voxels that the network is shown
 };
 
-/// Specular materials of the map's segments: HemiCNN's estimate (paper,
-/// Section 3.6) where there is a network, and a fit of Ward's model. In each
-/// frame the segments whose observations changed most are estimated, and in
-/// turn those that have waited longest; beside the fit the network estimates
-/// those of them that it is not sure of. Lives as long as the segments.
+/// Specular materials of the map's segments: HemiCNN's estimate (paper, Section 3.6) where there is a network, and a
+/// fit of Ward's model. In each frame the segments whose observations changed most are estimated, and in turn those
+/// that have waited longest; beside the fit the network estimates those of them that it is not sure of. Lives as long
+/// as the segments.
 class SpecularStage {
   public:
-    /// Throws Error for settings that cannot be met, a network that does not
-    /// estimate materials, or lack of memory.
+    /// Throws Error for settings that cannot be met, a network that does not estimate materials, or lack of memory.
     SpecularStage(vulkan::Device& device, const SpecularSettings& settings, uint32_t labels,
                   std::optional<NetworkDescription> network);
 
@@ -40,8 +38,8 @@ class SpecularStage {
     /// Announces that there will be `labels` of them.
     void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
 
-    /// Estimates what a frame's observations changed: `changed` is what
-    /// ReflectanceStage::add returned. Replaces materials of the reflectance.
+    /// Estimates what a frame's observations changed: `changed` is what ReflectanceStage::add returned. Replaces
+    /// materials of the reflectance.
     void add(graph::FrameGraph& graph, ReflectanceStage& reflectance, const SegmentationStage& segmentation,
              const RecordList& changed, uint32_t frame_index);
 

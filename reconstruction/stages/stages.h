@@ -8,9 +8,8 @@
 
 namespace patina {
 
-/// The stages of a reconstruction. Each owns its part of what outlives a frame,
-/// and adds its passes to the frame's graph (reconstruction/frame_graph.h joins
-/// them). Those that the settings leave out are empty.
+/// The stages of a reconstruction. Each owns its part of what outlives a frame, and adds its passes to the frame's
+/// graph (reconstruction/frame_graph.h joins them). Those that the settings leave out are empty.
 struct Stages {
     /// Throws Error for settings that cannot be met, or lack of memory.
     Stages(vulkan::Device& device, const ReconstructionSettings& settings);
@@ -20,14 +19,12 @@ struct Stages {
     /// Empties all of them, for a map around `center_m`; before the first frame.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
 
-    /// Whether anything needs the model as the depth camera of each frame sees
-    /// it.
+    /// Whether anything needs the model as the depth camera of each frame sees it.
     bool need_raycast() const { return segmentation || reflectance || tracking || settings.view_every_frame; }
     /// Whether tracking compares shades, too.
     bool track_shades() const { return tracking && settings.fusion.color && tracking->settings().photometric; }
 
-    ReconstructionSettings settings;  ///< as given, but for reflectance.capacity_labels, which is
-                                      ///< that of the segments
+    ReconstructionSettings settings;  ///< as given, but for reflectance.capacity_labels, which is that of the segments
     GeometryStage geometry;
     std::optional<ColorCorrection> color_correction;
     std::optional<SegmentationStage> segmentation;

@@ -11,8 +11,7 @@ namespace patina {
 
 namespace {
 
-/// A rotation about the middle of the view by a small angle moves its pixels by
-/// about so much of their depth.
+/// A rotation about the middle of the view by a small angle moves its pixels by about so much of their depth.
 constexpr float kLeverShare = 0.4f;
 
 const TrackingSettings& checked(const TrackingSettings& settings) {
@@ -94,8 +93,7 @@ TrackingStage::Search TrackingStage::add_search(graph::FrameGraph& graph, const 
         const size_t i = level - first_level();
         const uint32_t coarser = level - settings_.finest;
         const TrackLevel model{graph.import(reference_[i].pixels), reference_[i].camera};
-        // Coarser levels have fewer pixels; that all of them have enough is judged
-        // in the end.
+        // Coarser levels have fewer pixels; that all of them have enough is judged in the end.
         const float least_pairs = static_cast<float>(settings_.bounds.least_pairs >> (2 * coarser));
         const uint32_t iterations = coarser == 0 ? settings_.finest_iterations : settings_.iterations;
         for (uint32_t step = 0; step < iterations; ++step) {

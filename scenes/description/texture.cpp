@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "engine/core/error.h"
-#include "sensor/files/picture_file.h"
 #include "scenes/description/periodic_noise.h"
+#include "sensor/files/picture_file.h"
 
 namespace patina::scenes {
 namespace {

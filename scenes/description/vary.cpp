@@ -9,8 +9,8 @@
 
 #include "scenes/description/clearance.h"
 #include "scenes/description/draws.h"
-#include "scenes/render/material_table.h"
 #include "scenes/description/vary_path.h"
+#include "scenes/render/material_table.h"
 
 namespace patina::scenes {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
-#include "sensor/report_lines.h"
-#include "scenes/render/environment.h"
 #include "scenes/description/lighting_sequence.h"
+#include "scenes/render/environment.h"
 #include "sensor/files/text_file.h"
+#include "sensor/report_lines.h"
 
 namespace patina::scenes {
 namespace {
@@ -30,8 +30,9 @@ std::string objects_line(const SyntheticScene& scene) {
 }
 
 std::string light_line(const Light& light) {
-    return text("intensity ", triple(light.intensity, 3), " at ", triple(light.position_m, 3), " m, ",
-                light.radius_m > 0 ? text("radius ", sensor::fixed(light.radius_m, 3), " m") : "a point that no camera sees");
+    return text(
+        "intensity ", triple(light.intensity, 3), " at ", triple(light.position_m, 3), " m, ",
+        light.radius_m > 0 ? text("radius ", sensor::fixed(light.radius_m, 3), " m") : "a point that no camera sees");
 }
 
 std::string environment_line(const Environment& environment) {

@@ -31,8 +31,8 @@ graph::BufferId add_encode_depth(graph::FrameGraph& frame, const RenderedImages&
     return encoded;
 }
 
-graph::ImageId add_expose_color(graph::FrameGraph& frame, graph::ImageId radiance, double exposure, const SensorNoise& noise,
-                                const NoiseKey& key) {
+graph::ImageId add_expose_color(graph::FrameGraph& frame, graph::ImageId radiance, double exposure,
+                                const SensorNoise& noise, const NoiseKey& key) {
     const Extent2D extent = frame.shape(radiance).extent;
     auto pass = frame.compute("scenes.expose_color", spirv::expose_color);
     pass.read("radiance", radiance);

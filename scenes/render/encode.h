@@ -17,8 +17,8 @@ graph::BufferId add_encode_depth(graph::FrameGraph& frame, const RenderedImages&
 /// Turns rendered radiance L into what a colour camera's sensor holds: v = exposure L, plus a Gaussian of variance
 /// color_read^2 + color_shot v in each channel; below 0 becomes 0, nothing is clipped above. Returns W x H rgba32f; a
 /// is the radiance's.
-graph::ImageId add_expose_color(graph::FrameGraph& frame, graph::ImageId radiance, double exposure, const SensorNoise& noise,
-                                const NoiseKey& key);
+graph::ImageId add_expose_color(graph::FrameGraph& frame, graph::ImageId radiance, double exposure,
+                                const SensorNoise& noise, const NoiseKey& key);
 
 /// Encodes linear colour as 8-bit sRGB (IEC 61966-2-1), clipped at 255. Returns one u32 per pixel, row by row:
 /// r | g << 8 | b << 16.

@@ -18,8 +18,7 @@ void add_gather_light(graph::FrameGraph& frame, const SceneModel& scene, const I
                       RenderedImages& images) {
     const bool direct = samples_direct_light(scene, settings);
     if (!direct && settings.bounces == 0 && !scene.has_environment()) return;
-    if (settings.samples == 0)
-        throw Error("the pass 'scenes.gather_light' needs at least 1 sample per pixel, not 0");
+    if (settings.samples == 0) throw Error("the pass 'scenes.gather_light' needs at least 1 sample per pixel, not 0");
     gpu::GatherLightParams params{
         .camera = make_camera(camera, world_from_camera),
         .seed = {static_cast<uint32_t>(settings.seed), static_cast<uint32_t>(settings.seed >> 32)},

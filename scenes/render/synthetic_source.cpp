@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "scenes/render/encode.h"
 #include "scenes/description/pose_noise.h"
+#include "scenes/render/encode.h"
 
 namespace patina::scenes {
 namespace {

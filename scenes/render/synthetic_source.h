@@ -4,8 +4,8 @@
 
 #include "engine/graph/runner.h"
 #include "patina/source.h"
-#include "scenes/render/render.h"
 #include "scenes/description/scene.h"
+#include "scenes/render/render.h"
 
 namespace patina::scenes {
 

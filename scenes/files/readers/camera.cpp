@@ -6,8 +6,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "engine/core/error.h"
-#include "sensor/pose.h"
 #include "scenes/files/readers/values.h"
+#include "sensor/pose.h"
 
 namespace patina::scenes {
 namespace {
@@ -33,7 +33,8 @@ Intrinsics read_camera(const sensor::JsonValue& value) {
 ColorCamera read_color_camera(const sensor::JsonValue& value) {
     value.expect_keys({"camera", "color_from_depth"});
     const sensor::JsonValue pose = value.at("color_from_depth");
-    return {read_camera(value.at("camera")), sensor::checked_pose(sensor::matrix_from_rows(pose.numbers(16)), pose.where()).transform};
+    return {read_camera(value.at("camera")),
+            sensor::checked_pose(sensor::matrix_from_rows(pose.numbers(16)), pose.where()).transform};
 }
 
 /// Depth pictures hold 16-bit units.

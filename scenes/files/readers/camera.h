@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sensor/files/json_file.h"
 #include "scenes/description/scene.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "scenes/render/environment.h"
 #include "scenes/files/readers/values.h"
+#include "scenes/render/environment.h"
 
 namespace patina::scenes {
 namespace {

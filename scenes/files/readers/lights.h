@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "sensor/files/json_file.h"
 #include "scenes/description/scene.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 

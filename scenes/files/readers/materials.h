@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "sensor/files/json_file.h"
 #include "scenes/description/scene.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 

@@ -126,7 +126,8 @@ class ObjectReader {
 
 }  // namespace
 
-std::vector<SceneObject> read_objects(const sensor::JsonValue& value, const MaterialReader& materials, const fs::path& mesh) {
+std::vector<SceneObject> read_objects(const sensor::JsonValue& value, const MaterialReader& materials,
+                                      const fs::path& mesh) {
     const std::vector<sensor::JsonValue> elements = value.elements();
     if (elements.empty()) value.fail("must hold at least one object");
     if (elements.size() > UINT16_MAX) {

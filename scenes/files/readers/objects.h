@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "sensor/files/json_file.h"
-#include "scenes/files/readers/materials.h"
 #include "scenes/description/scene.h"
+#include "scenes/files/readers/materials.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 

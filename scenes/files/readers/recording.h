@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sensor/files/json_file.h"
 #include "scenes/description/recording.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::scenes {
 

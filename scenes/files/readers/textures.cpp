@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/files/readers/values.h"
 #include "scenes/description/texture.h"
+#include "scenes/files/readers/values.h"
 
 namespace patina::scenes {
 namespace {
@@ -18,7 +18,8 @@ constexpr uint64_t kLargestPicture_px = 4096;
 Image<glm::vec3> read_pattern(const std::string& name, const sensor::JsonValue& value) {
     value.expect_keys({"colors", "count", "seed", "size"});
     PatternSettings settings;
-    for (const sensor::JsonValue& color : value.at("colors").elements()) settings.colors.emplace_back(read_rgb(color, 1));
+    for (const sensor::JsonValue& color : value.at("colors").elements())
+        settings.colors.emplace_back(read_rgb(color, 1));
     if (const auto count = value.find("count")) {
         const std::vector<sensor::JsonValue> elements = count->elements_of(2);
         settings.count = {elements[0].positive_integer(), elements[1].positive_integer()};

@@ -41,7 +41,9 @@ glm::dvec3 read_rgb(const sensor::JsonValue& value, double most) {
     return rgb;
 }
 
-double read_degrees(const sensor::JsonValue& value) { return glm::radians(value.number_within(-kLargestValue, kLargestValue)); }
+double read_degrees(const sensor::JsonValue& value) {
+    return glm::radians(value.number_within(-kLargestValue, kLargestValue));
+}
 
 RigidTransform read_placement(const sensor::JsonValue& value) {
     RigidTransform placement(1.0);
@@ -57,8 +59,9 @@ std::filesystem::path beside_file(const sensor::JsonValue& name) {
     return std::filesystem::path(name.file()).parent_path() / name.string();
 }
 
-std::pair<std::string, sensor::JsonValue> read_kind(const sensor::JsonValue& value, const std::vector<std::string>& kinds,
-                                            const std::vector<std::string>& others) {
+std::pair<std::string, sensor::JsonValue> read_kind(const sensor::JsonValue& value,
+                                                    const std::vector<std::string>& kinds,
+                                                    const std::vector<std::string>& others) {
     std::vector<std::string> known = kinds;
     known.insert(known.end(), others.begin(), others.end());
     value.expect_keys(known);

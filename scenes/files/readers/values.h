@@ -7,8 +7,8 @@
 
 #include <glm/glm.hpp>
 
-#include "patina/camera.h"
 #include "engine/core/error.h"
+#include "patina/camera.h"
 #include "sensor/files/json_file.h"
 
 namespace patina::scenes {
@@ -47,7 +47,8 @@ std::filesystem::path beside_file(const sensor::JsonValue& name);
 
 /// The one member among `kinds` that an object has, as {"box", ...}, beside those in `others`. Throws Error when it has
 /// none, several, or any other.
-std::pair<std::string, sensor::JsonValue> read_kind(const sensor::JsonValue& value, const std::vector<std::string>& kinds,
-                                            const std::vector<std::string>& others = {});
+std::pair<std::string, sensor::JsonValue> read_kind(const sensor::JsonValue& value,
+                                                    const std::vector<std::string>& kinds,
+                                                    const std::vector<std::string>& others = {});
 
 }  // namespace patina::scenes
