@@ -29,7 +29,8 @@ struct PoolState {
     const char* name;     ///< of what it holds, in the plural: "voxel blocks"
     const char* setting;  ///< the key of its limit
     uint32_t capacity = 0, used = 0;
-    uint32_t refused = 0;  ///< requests that found it full and did not come again after a growth
+    uint32_t refused = 0;  ///< requests that found it full and did not come again after a growth; one that is refused
+                           ///< again after a removal counts again
     uint32_t growths = 0;
     PoolLimit limit = PoolLimit::kNone;  ///< what the last attempt to grow met
 

@@ -271,10 +271,9 @@ constexpr std::array kRows = {
                            "Edge of a voxel of reflectance: 4 or 2 times map.voxel_m."),
     number<&Refl::limit_blocks>("reflectance.capacity_blocks", "blocks", 0, kAnyCount,
                                 "The pool of observed blocks does not grow beyond this; 0 sets no limit."),
-    number<&Refl::reclaim_every>(
-        "reflectance.reclaim_every", "frames", 0, kAnyCount,
-        "Once in this many frames, a quarter of the observed voxels is checked for surface that "
-        "went; 0 keeps all."),
+    number<&Refl::reclaim_every>("reflectance.reclaim_every", "frames", 0, kAnyCount,
+                                 "After this many frames, when segments choose their records anew, a quarter of the "
+                                 "observed voxels is checked for surface that went; 0 keeps all."),
     number<&Refl::limit_records>("reflectance.capacity_records", "records", 0, kAnyCount,
                                  "The pool of observed voxels does not grow beyond this; 0 sets no limit."),
     choice<&Refine::shadows>("reflectance.shadows",

@@ -32,8 +32,8 @@ if(PATINA_TEST_HARDWARE)
     set(PATINA_ENVIRONMENT_hardware PATINA_DEVICE=discrete)
 endif()
 
-# Suites and TESTs that reconstruct whole scenes. They take most of the time on SwiftShader, which is three times slower
-# than lavapipe, so that only PATINA_TEST_FULL runs them there.
+# Suites and TESTs that reconstruct whole scenes. They take most of the time, and what differs between drivers shows in
+# single passes and in the stored results (Golden), so that all but the first driver run them with PATINA_TEST_FULL alone.
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|Relocalisation|SegmentationStageTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
@@ -54,7 +54,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
         set(COST_ALONE 0)
         set(COST 0)
     endif()
-    if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
+    if(LABEL MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
         set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
     endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
@@ -79,7 +79,7 @@ function(patina_test_on_drivers TARGET NAME)
         endif()
         string(MAKE_C_IDENTIFIER "${TARGET}_${DRIVER}_${ARG_FILTER}" LIST)
         set(FILTER "${ARG_FILTER}")
-        if(DRIVER STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
+        if(DRIVER MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
             string(APPEND FILTER "-${PATINA_WHOLE_TESTS}")
         endif()
         gtest_discover_tests(${TARGET} TEST_PREFIX "${NAME}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${FILTER}"

@@ -119,6 +119,8 @@ def arguments():
 
 def main():
     given = arguments()
+    if bpy.app.version >= (4, 0):
+        sys.exit("tools/blender_import.py sets what Blender 3.4's importer makes; this is " + bpy.app.version_string)
     scene = bpy.context.scene
     root = import_scene(given.run / "scene.glb")
     for material in bpy.data.materials:
@@ -128,7 +130,7 @@ def main():
     lights = given.run / "lights.json"
     set_world(scene, json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0))
     poses = [line for line in (given.run / "trajectory.txt").read_text().splitlines() if not line.startswith("#")]
-    add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["color"])
+    add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["depth"])  # whose poses they are
     set_render(scene)
     if given.render:
         scene.render.filepath = str(given.render.absolute())

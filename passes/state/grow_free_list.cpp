@@ -5,10 +5,10 @@
 
 namespace patina {
 
-void add_grow_free_list(graph::FrameGraph& frame, graph::BufferId& free_list, graph::BufferId& counters,
-                        uint32_t before, uint32_t capacity) {
+void add_grow_free_list(graph::FrameGraph& frame, const char* name, graph::BufferId& free_list,
+                        graph::BufferId& counters, uint32_t before, uint32_t capacity) {
     const gpu::GrowParams params{before, capacity - before};
-    auto grow = frame.compute("fusion.grow_free_list", spirv::grow_free_list);
+    auto grow = frame.compute(name, spirv::grow_free_list);
     grow.push(params);
     free_list = grow.modify("FreeList", free_list);
     counters = grow.modify("Counters", counters);

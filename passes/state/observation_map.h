@@ -36,7 +36,7 @@ struct ObservationMapIds {
     graph::BufferId record_counters;  ///< gpu::MapCounters of the records
     graph::BufferId block_arguments;  ///< dispatch over all block ids in use, 64 a group
     graph::BufferId record_table;     ///< u32 per voxel of each block: record id, or kNoRecord, kRefusedRecord
-    graph::BufferId records;          ///< gpu::VoxelRecord per record; of a free one: kEmptyKey, no label
+    graph::BufferId records;          ///< gpu::VoxelRecord per record; of one that was given back: kEmptyKey
     graph::BufferId seen;             ///< u32 per record: the frame that saw it last, index + 1
     graph::BufferId changed;          ///< u32 per record: the frame that changed it last, index + 1; 0: never
     graph::BufferId albedo;           ///< uvec2 per record, zero at first: for the refinement's kd and its weight

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Puts new blocks under those that were free before, which are popped first; and empties the count of the table's keys,
-// which is filled anew.
+// Puts new places of a pool under those that were free before, which are popped first; and empties the count of the
+// table's keys, which is filled anew.
 #include "shared/fusion/voxel_map.h"
 #include "shared/observation/grow_pool.h"
 

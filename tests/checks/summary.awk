@@ -6,6 +6,7 @@
     if (/^[0-9]+: \[----------\]/) next
     if (/^[0-9]+: \[ RUN      \]/) { running[number] = $0 "\n"; next }
     if (/^[0-9]+: \[       OK \]/) { running[number] = ""; next }
+    if (/^[0-9]+: \[  SKIPPED \] .* \(/) skipped[number] = skipped[number] running[number] $0 "\n"
     output[number] = output[number] running[number] $0 "\n"
     running[number] = ""
     if (after_skip[number]) {
@@ -22,7 +23,9 @@
     number = substr($0, RSTART + 1, RLENGTH - 1) + 0
     if (/\*\*\*Skipped/) print "          skipped:" reason[number]
     else if (/\*\*\*/) printf "%s", output[number] running[number]
+    else printf "%s", skipped[number]
     delete output[number]
+    delete skipped[number]
     delete running[number]
     fflush()
     next

@@ -20,6 +20,7 @@ std::unique_ptr<vulkan::Device> open_device() {
 struct SharedDevice {
     std::unique_ptr<vulkan::Device> device = open_device();
     bool lost = false;
+    size_t reported = 0;  ///< messages of the validation layer that failed a test
 };
 
 SharedDevice& shared() {
@@ -27,9 +28,27 @@ SharedDevice& shared() {
     return shared;
 }
 
+/// Fails for what the validation layer said since the last call: before, during and after a test.
+void report_messages() {
+    const auto messages = shared().device->validation_messages();
+    for (; shared().reported < messages.size(); ++shared().reported) ADD_FAILURE() << messages[shared().reported];
+}
+
+/// What the last test's runner caused when it ended.
+class AfterAllTests : public ::testing::Environment {
+  public:
+    void TearDown() override {
+        if (opened) report_messages();
+    }
+    static inline bool opened = false;
+};
+[[maybe_unused]] const auto* const kAfterAllTests = ::testing::AddGlobalTestEnvironment(new AfterAllTests);
+
 /// The shared device for a new test. Nothing of the test before is left, so that a lost one can be replaced.
 vulkan::Device& usable_device() {
+    AfterAllTests::opened = true;
     if (shared().lost) {
+        report_messages();
         shared().device.reset();
         shared() = {};
     }
@@ -50,8 +69,6 @@ GpuTest::GpuTest() : runner_(usable_device()) {}
 
 vulkan::Device& GpuTest::device() { return *shared().device; }
 
-void GpuTest::SetUp() { messages_before_ = device().validation_messages().size(); }
-
 void GpuTest::TearDown() {
     try {
         runner_.wait();
@@ -60,8 +77,7 @@ void GpuTest::TearDown() {
         ADD_FAILURE() << error.what();
         shared().lost = true;
     }
-    const auto messages = device().validation_messages();
-    for (size_t i = messages_before_; i < messages.size(); ++i) ADD_FAILURE() << messages[i];
+    report_messages();
 }
 
 void GpuTest::run(graph::FrameGraph frame) {

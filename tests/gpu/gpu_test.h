@@ -12,14 +12,13 @@
 namespace patina {
 
 /// Opens one device per test program, as PATINA_DEVICE says, with validation and synchronization validation, and fails
-/// any test during which the validation layer reported something. A test that lost the device fails, and the next one
-/// opens it anew. Every kind of frame that tests submit through run() is also shown to the graph's own checker, and
-/// each of its barriers must be needed.
+/// any test during or before which the validation layer reported something. A test that lost the device fails, and the
+/// next one opens it anew. Every kind of frame that tests submit through run() is also shown to the graph's own
+/// checker, and each of its barriers must be needed.
 class GpuTest : public ::testing::Test {
   protected:
     GpuTest();
 
-    void SetUp() override;
     void TearDown() override;
 
     static vulkan::Device& device();
@@ -30,7 +29,6 @@ class GpuTest : public ::testing::Test {
 
   private:
     graph::Runner runner_;
-    size_t messages_before_ = 0;
 };
 
 }  // namespace patina

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "engine/graph/enlargement.h"
+#include "passes/observation/grow_observations.h"
 #include "shared/fusion/remove_empty_blocks.h"
 #include "shared/observation/reclaim.h"
 #include "tests/gpu/gpu_test.h"
@@ -71,6 +73,24 @@ class ReclaimRecordsTest : public GpuTest {
         const double near_m = double{gpu::kSurfaceTruncation} * double{rig.fusion().settings().truncation_m};
         return reference::with_surface(rig.fusion().volume(), voxels_of(before), double{rig.map().settings().voxel_m},
                                        near_m);
+    }
+
+    void grow(ObservationRig& rig, uint32_t blocks, uint32_t records) {
+        ObservationMap& map = rig.map();
+        const uint32_t blocks_before = map.capacity_blocks(), records_before = map.capacity_records();
+        graph::Enlargement enlargement(device());
+        map.enlarge_blocks(enlargement, blocks);
+        map.enlarge_records(enlargement, records);
+        enlargement.allocate();
+        graph::FrameGraph frame = runner().begin();
+        enlargement.commit(frame);
+        ObservationMapIds ids = map.import(frame);
+        add_grow_observed_blocks(frame, map, ids, blocks_before);
+        add_grow_records(frame, map, ids, records_before);
+        ObservationMap::keep(frame, ids);
+        enlargement.keep(frame);
+        run(std::move(frame));
+        enlargement.accept();
     }
 
     static void expect_consistent(ObservationRig& rig) {
@@ -196,6 +216,28 @@ TEST_F(ReclaimRecordsTest, WhatWasRefusedComesAgain) {
         EXPECT_LE(rig.content().size(), large.content().size());
         expect_consistent(rig);
     }
+}
+
+TEST_F(ReclaimRecordsTest, PoolsGrowAfterRecordsWereGivenBack) {
+    ObservationRig small = rig(0.02f, 2500, 6000), large = rig(0.02f, 4096, 16384);
+    for (ObservationRig* rig : {&small, &large}) {
+        rig->fuse(box_frame(0));
+        rig->collect(box_frame(0));
+        ASSERT_EQ(rig->block_counters().refused_blocks + rig->record_counters().refused_blocks, 0u);
+        replace(*rig, wall_frame());
+        reclaim_all(*rig);
+        ASSERT_GT(rig->record_counters().deleted_blocks, 0u);
+    }
+    grow(small, 4096, 16384);
+    expect_consistent(small);
+    EXPECT_EQ(small.content(), large.content());
+    for (ObservationRig* rig : {&small, &large}) {
+        rig->collect(wall_frame());
+        rig->fuse(box_frame(0.3));
+        rig->collect(box_frame(0.3));
+    }
+    EXPECT_EQ(small.content(), large.content());
+    expect_consistent(small);
 }
 
 TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {

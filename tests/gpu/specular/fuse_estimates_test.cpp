@@ -28,7 +28,6 @@ class FuseEstimates : public GpuTest {
     };
 
     void SetUp() override {
-        GpuTest::SetUp();
         graph::FrameGraph frame = runner().begin();
         table_.reset(frame);
         run(std::move(frame));

@@ -36,7 +36,6 @@ class HemiImagesTest : public GpuTest {
     };
 
     void SetUp() override {
-        GpuTest::SetUp();
         graph::FrameGraph frame = runner().begin();
         map_.reset(frame, glm::dvec3(0));
         samples_.reset(frame);
