@@ -58,8 +58,11 @@ void ReflectanceStage::reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxe
     ObservationMapIds records = observations_.import(graph);
     ReflectanceStateIds state = state_.import(graph);
     add_reclaim_records(graph, observations_, records, state, map_, voxels, near_m, reclaim_turn_++);
-    ObservationMap::keep(graph, records);
-    ReflectanceState::keep(graph, state);
+}
+
+void ReflectanceStage::keep(graph::FrameGraph& graph) const {
+    ObservationMap::keep(graph, observations_.import(graph));
+    ReflectanceState::keep(graph, state_.import(graph));
 }
 
 RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,

@@ -72,7 +72,11 @@ class ReflectanceStage {
 
     /// Gives back records whose surface went, where that is due: those in whose voxels nothing was seen within `near_m`
     /// of the surface (observation/reclaim_records.h). Whoever keeps record ids must choose them anew in this frame.
+    /// add() or keep() comes after it.
     void reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m, uint32_t frame_index);
+
+    /// Ends a frame that add() is not called for: what passes wrote of the observations outlives it.
+    void keep(graph::FrameGraph& graph) const;
 
     /// Announce that a pool of the observations grows; see ObservationMap.
     void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);

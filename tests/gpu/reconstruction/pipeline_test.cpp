@@ -277,6 +277,33 @@ TEST_F(PipelineTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
     EXPECT_GT(failures, 10u);
 }
 
+TEST_F(PipelineTest, ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo) {
+    const LabelledCubes cubes(device(), 2);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.segmentation->sample_every = 1;
+    settings.reflectance->reclaim_every = 1;
+    settings.remove_every = 4;
+    for (const bool held_out : {false, true}) {
+        SCOPED_TRACE(held_out);
+        Pipeline pipeline(device(), settings);
+        cubes.prepare(pipeline);
+        pipeline.add(cubes.frame(0));
+        pipeline.wait();
+        const gpu::MapCounters before = pipeline.counters().observations.records;
+        // Nothing is left of the room but a wall behind it.
+        RgbdFrame cleared = cubes.frame(0);
+        const std::vector<uint16_t> wall(cleared.depth.camera.extent.area(), 5500);
+        cleared.depth.pixels = std::span(wall);
+        cleared.held_out = held_out;
+        for (int i = 0; i < 40; ++i) pipeline.add(cleared);
+        expect_sound(pipeline, "a frame that gives observations back");
+        pipeline.wait();
+        const gpu::MapCounters after = pipeline.counters().observations.records;
+        EXPECT_GT(before.capacity - before.free_blocks, 1000u);
+        EXPECT_GT(after.deleted_blocks, (before.capacity - before.free_blocks) / 2);
+    }
+}
+
 TEST_F(PipelineTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
     ReconstructionSettings settings = small_settings();
     settings.fusion.settled_color_every = 2;
