@@ -34,8 +34,12 @@ endif()
 
 # Suites and TESTs that reconstruct whole scenes. They take most of the time, and what differs between drivers shows in
 # single passes and in the stored results (Golden), so that all but the first driver run them with PATINA_TEST_FULL alone.
-set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|Relocalisation|SegmentationStageTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
+set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
+
+# SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
+# kind of its own, and leaves out those that go through many scenes.
+set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|photometry|shading|surface|tracking)$")
 
 # Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
 # there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the
@@ -45,6 +49,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     set(FOLDER tests/${NAME})
     set(ENVIRONMENT ${ARGN})
     set(LEFT_OUT "^$")
+    set(FOLDERS ".")
     if(ENVIRONMENT)  # ctest begins with what takes long
         set(ALONE "${PATINA_WHOLE_SUITES}")
         set(COST_ALONE 1000)
@@ -56,6 +61,9 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
         set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
+    endif()
+    if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
+        set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")
     endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
     configure_file(discover_suites.cmake.in ${DISCOVERY_FILE} @ONLY)
