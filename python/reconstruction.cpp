@@ -21,13 +21,7 @@ std::unique_ptr<Reconstruction> make(Device& device, const std::optional<Setting
                                      const std::filesystem::path& network, std::optional<uint64_t> seed) {
     ReconstructionOptions options;
     options.lighting = Lighting{std::move(lights), {ambient[0], ambient[1], ambient[2]}, "given"};
-    options.labels = to_labels(labels);
-    options.materials = to_materials(materials);
-    options.poses = to_poses(poses);
-    options.gains = to_gains(gains);
-    options.network = network;
-    options.seed = seed;
-    if (settings) options.settings = *settings;
+    set_choices(options, labels, materials, poses, gains, network, seed, settings);
     const py::gil_scoped_release released;
     return std::make_unique<Reconstruction>(device, options);
 }

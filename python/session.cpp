@@ -23,6 +23,7 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
                               uint32_t frames, const GivenLighting& lighting, const std::string& labels,
                               const std::string& materials, const std::string& poses, const std::string& gains,
                               const std::filesystem::path& network, std::optional<uint64_t> seed, uint32_t hold_out,
+                              const std::filesystem::path& map, uint32_t checkpoint_every, bool resume,
                               const std::string& reflectance_for, const std::optional<Settings>& settings,
                               py::object progress, py::object message, py::object stop) {
     const auto callbacks = std::make_shared<Callbacks>(std::move(progress), std::move(message), std::move(stop));
@@ -31,15 +32,12 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
     options.format = format;
     options.frames = frames;
     options.lighting = to_choice(lighting);
-    options.labels = to_labels(labels);
-    options.materials = to_materials(materials);
-    options.poses = to_poses(poses);
-    options.gains = to_gains(gains);
-    options.network = network;
-    options.seed = seed;
+    set_choices(options, labels, materials, poses, gains, network, seed, settings);
     options.hold_out = hold_out;
+    options.map = map;
+    options.checkpoint_every = checkpoint_every;
+    options.resume = resume;
     options.reflectance_for = reflectance_for;
-    if (settings) options.settings = *settings;
     options.callbacks = Callbacks::of(callbacks);
     auto session = callbacks->run([&] { return std::make_unique<Session>(device, options); });
     return std::make_unique<Running>(Running{callbacks, std::move(session)});
@@ -47,6 +45,11 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
 
 bool step(Running& self) {
     return self.callbacks->run([&] { return self.session->step(); });
+}
+
+void checkpoint(Running& self) {
+    const py::gil_scoped_release released;
+    self.session->checkpoint();
 }
 
 py::dict info_of(const SequenceInfo& info) {
@@ -83,10 +86,12 @@ void bind_session(py::module_& m) {
         .def(py::init(&make), py::arg("device"), py::arg("sequence"), py::kw_only(), py::arg("format") = "",
              py::arg("frames") = 0u, py::arg("lighting") = "", py::arg("labels") = "geometry",
              py::arg("materials") = "auto", py::arg("poses") = "auto", py::arg("gains") = "auto",
-             py::arg("network") = "", py::arg("seed") = std::nullopt, py::arg("hold_out") = 0u,
-             py::arg("reflectance_for") = "", py::arg("settings") = std::nullopt, py::arg("progress") = std::nullopt,
-             py::arg("message") = std::nullopt, py::arg("stop") = std::nullopt, py::keep_alive<1, 2>())
+             py::arg("network") = "", py::arg("seed") = std::nullopt, py::arg("hold_out") = 0u, py::arg("map") = "",
+             py::arg("checkpoint_every") = 0u, py::arg("resume") = false, py::arg("reflectance_for") = "",
+             py::arg("settings") = std::nullopt, py::arg("progress") = std::nullopt, py::arg("message") = std::nullopt,
+             py::arg("stop") = std::nullopt, py::keep_alive<1, 2>())
         .def("step", &step)
+        .def("checkpoint", &checkpoint)
         // A copy: the session's own changes with the next step.
         .def_property_readonly("last", [](const Running& self) { return std::optional(self.session->last()); })
         .def_property_readonly("info", [](const Running& self) { return info_of(self.session->info()); })

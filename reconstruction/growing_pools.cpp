@@ -18,7 +18,7 @@ constexpr uint32_t kSmallestShare = 16;
 constexpr uint32_t kFramesBetweenAttempts = 8;
 
 template <class Counters>
-auto count_in(graph::Readback PoolReadbacks::*read) {
+auto counter_of(graph::Readback PoolReadbacks::*read) {
     return [read](const PoolReadbacks& counters) { return count_of((counters.*read).as<Counters>().front()); };
 }
 
@@ -47,7 +47,7 @@ void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation
     };
     pool.keep = [&map](graph::FrameGraph& frame) { VoxelMap::keep(frame, map.import(frame)); };
     pool.reserve = kSurfaceBlockBytes;
-    pool.count = count_in<gpu::MapCounters>(&PoolReadbacks::voxels);
+    pool.count = counter_of<gpu::MapCounters>(&PoolReadbacks::voxels);
     pools_.push_back(std::move(pool));
 }
 
@@ -60,7 +60,7 @@ void GrowingPools::add_observation_pools(ReflectanceStage& reflectance) {
             add_grow(frame, map, ids, before);
         };
         pool.keep = [&map](graph::FrameGraph& frame) { ObservationMap::keep(frame, map.import(frame)); };
-        pool.count = count_in<gpu::MapCounters>(counters);
+        pool.count = counter_of<gpu::MapCounters>(counters);
         return &pool;
     };
     Pool* pool = add({"observed blocks", "reflectance.capacity_blocks"}, map.settings().limit_blocks,
@@ -98,7 +98,7 @@ void GrowingPools::add_label_pool(SegmentationStage& segmentation, ReflectanceSt
         add_grow_labels(frame, table, ids, before);
     };
     pool.keep = [&table](graph::FrameGraph& frame) { SegmentTable::keep(frame, table.import(frame)); };
-    pool.count = count_in<gpu::SegmentCounters>(&PoolReadbacks::labels);
+    pool.count = counter_of<gpu::SegmentCounters>(&PoolReadbacks::labels);
     pools_.push_back(std::move(pool));
 }
 
@@ -112,14 +112,22 @@ void GrowingPools::reset() {
 
 void GrowingPools::await(uint32_t index, const PoolReadbacks& counters) { pending_.push_back({index, counters}); }
 
-void GrowingPools::note(Pool& pool, const Pending& counted) {
-    pool.demand.note(pool.count(counted.counters));
-    if (counted.frame < pool.grown_at) pool.came_again = pool.demand.refused();
+std::vector<PoolCount> GrowingPools::counts_of(const Pending& pending) const {
+    if (!pending.counts.empty()) return pending.counts;
+    std::vector<PoolCount> counts;
+    for (const Pool& pool : pools_) counts.push_back(pool.count(pending.counters));
+    return counts;
+}
+
+void GrowingPools::note(Pool& pool, uint32_t frame, const PoolCount& count) {
+    pool.demand.note(count);
+    if (frame < pool.grown_at) pool.came_again = pool.demand.refused();
 }
 
 void GrowingPools::note_until(uint32_t frame) {
     for (; !pending_.empty() && pending_.front().frame <= frame; pending_.pop_front()) {
-        for (Pool& pool : pools_) note(pool, pending_.front());
+        const std::vector<PoolCount> counts = counts_of(pending_.front());
+        for (size_t i = 0; i < pools_.size(); ++i) note(pools_[i], pending_.front().frame, counts[i]);
     }
 }
 
@@ -188,17 +196,45 @@ std::optional<graph::Enlargement> GrowingPools::try_capacity(graph::FrameGraph& 
 }
 
 std::vector<PoolState> GrowingPools::states() const {
+    std::vector<Pool> pools = pools_;
+    for (const Pending& pending : pending_) {
+        if (!pending.ready()) continue;
+        const std::vector<PoolCount> counts = counts_of(pending);
+        for (size_t i = 0; i < pools.size(); ++i) note(pools[i], pending.frame, counts[i]);
+    }
     std::vector<PoolState> states;
-    for (Pool pool : pools_) {
-        for (const Pending& counted : pending_) {
-            if (counted.counters.voxels.ready()) note(pool, counted);
-        }
+    for (const Pool& pool : pools) {
         PoolState& state = states.emplace_back(pool.state);
         state.capacity = pool.capacity();
         state.used = pool.demand.used();
         state.refused = pool.demand.refused() - pool.came_again;
     }
     return states;
+}
+
+void GrowingPools::visit(graph::StateVisitor& visitor) {
+    std::vector<uint32_t> frames;
+    std::vector<PoolCount> counts;  // by frame and pool
+    for (const Pending& pending : pending_) {
+        frames.push_back(pending.frame);
+        for (const PoolCount& count : counts_of(pending)) counts.push_back(count);
+    }
+    visitor.values("pools.pending_frames", frames);
+    visitor.values("pools.pending_counts", counts);
+    pending_.clear();
+    for (size_t i = 0; i < frames.size(); ++i) {
+        const auto first = counts.begin() + static_cast<std::ptrdiff_t>(i * pools_.size());
+        pending_.push_back({frames[i], {}, {first, first + static_cast<std::ptrdiff_t>(pools_.size())}});
+    }
+    for (Pool& pool : pools_) {
+        const std::string name = text("pools.", pool.state.name);
+        visitor.value(name + ".demand", pool.demand);
+        visitor.value(name + ".growths", pool.state.growths);
+        visitor.value(name + ".limit", pool.state.limit);
+        visitor.value(name + ".grown_at", pool.grown_at);
+        visitor.value(name + ".try_at", pool.try_at);
+        visitor.value(name + ".came_again", pool.came_again);
+    }
 }
 
 }  // namespace patina

@@ -67,6 +67,9 @@ class GrowingPools {
     /// Whether frame 0 found a pool full that can grow. It must have finished.
     bool first_was_refused();
 
+    /// The device must have finished.
+    void visit(graph::StateVisitor& visitor);
+
     /// As of the last frame that finished.
     std::vector<PoolState> states() const;
 
@@ -87,15 +90,21 @@ class GrowingPools {
         std::function<void(graph::FrameGraph&)> keep{};  ///< all that add_grow wrote, in the versions it has by now
         std::function<PoolCount(const PoolReadbacks&)> count{};
     };
+    /// A frame whose counters no decision has followed from yet.
     struct Pending {
         uint32_t frame = 0;
-        PoolReadbacks counters;
+        PoolReadbacks counters{};
+        std::vector<PoolCount> counts{};  ///< by pool; empty until they are taken from the counters
+
+        bool ready() const { return !counts.empty() || counters.voxels.ready(); }
     };
 
     void add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation);
     void add_observation_pools(ReflectanceStage& reflectance);
     void add_label_pool(SegmentationStage& segmentation, ReflectanceStage* reflectance, SpecularStage* specular);
-    static void note(Pool& pool, const Pending& counted);
+    /// The counts of a frame that is ready, by pool.
+    std::vector<PoolCount> counts_of(const Pending& pending) const;
+    static void note(Pool& pool, uint32_t frame, const PoolCount& count);
     void note_until(uint32_t frame);
     std::optional<graph::Enlargement> grow(graph::FrameGraph& frame, Pool& pool, uint32_t index);
     std::optional<graph::Enlargement> try_capacity(graph::FrameGraph& frame, const Pool& pool, uint32_t capacity);

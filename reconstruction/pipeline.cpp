@@ -45,6 +45,13 @@ void Pipeline::wait() {
     runner_.wait();
 }
 
+void Pipeline::visit(graph::StateVisitor& visitor) {
+    wait();
+    stages_.visit(visitor);
+    fusion_.visit(visitor);
+    if (tracked_) tracked_->visit(visitor);
+}
+
 uint32_t Pipeline::frames() const { return fusion_.frames() + (tracked_ && tracked_->has_waiting() ? 1 : 0); }
 
 ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {

@@ -57,6 +57,10 @@ class Pipeline {
     /// Fuses what waits to be, and waits for the device.
     void wait();
 
+    /// Walks over all that later frames depend on; waits. What is brought back was kept by a pipeline with the same
+    /// settings, and takes the place of what there is.
+    void visit(graph::StateVisitor& visitor);
+
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
 

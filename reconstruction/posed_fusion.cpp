@@ -83,6 +83,17 @@ void PosedFusion::take_counters() {
     }
 }
 
+void PosedFusion::visit(graph::StateVisitor& visitor) {
+    take_counters();  // all are there
+    pools_.visit(visitor);
+    visitor.value("frames.history", history_);
+    visitor.value("frames.map_counters", counted_.map);
+    visitor.value("frames.visible_blocks", counted_.visible_blocks);
+    visitor.value("frames.observation_counters", counted_.observations);
+    visitor.value("frames.segment_counters", counted_.segments);
+    visitor.value("frames.label_stability", counted_.label_stability);
+}
+
 PipelineCounters PosedFusion::counters() {
     take_counters();
     PipelineCounters counters = counted_;

@@ -36,6 +36,9 @@ class PosedFusion {
 
     uint32_t frames() const { return history_.frames; }  ///< fused so far
 
+    /// The device must have finished.
+    void visit(graph::StateVisitor& visitor);
+
     /// Of the frames that the device has finished; without tracking.
     PipelineCounters counters();
 

@@ -36,6 +36,9 @@ class TrackedFusion {
     /// the frame tracks is taken.
     void set_relocaliser(Relocaliser relocaliser) { relocaliser_ = std::move(relocaliser); }
 
+    /// Nothing may be waiting.
+    void visit(graph::StateVisitor& visitor) { visitor.value("tracking.weak_frames", weak_frames_); }
+
   private:
     TrackingReport judge_first(const RgbdFrame& frame) const;
     TrackingReport track(const RgbdFrame& frame);

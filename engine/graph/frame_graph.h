@@ -62,6 +62,12 @@ class Readback {
         return values;
     }
 
+    /// The bytes themselves, for as long as this or a copy of it is there. Throws Error before the frame has finished.
+    std::span<const std::byte> bytes() const {
+        require_ready();
+        return state_->bytes;
+    }
+
     /// An image read back: as many T per pixel as fit its format.
     template <class T>
     Image<T> image() const {

@@ -100,7 +100,9 @@ class ChunkedBuffer {
     ChunkedBuffer with_room_for(uint64_t elements) const;
 
     const std::vector<BufferRef>& chunks() const { return chunks_; }
+    const std::string& name() const { return name_; }
     uint64_t elements() const { return elements_; }
+    uint32_t bytes_per_element() const { return bytes_per_element_; }
     uint64_t bytes() const;
     /// Bytes of the chunks that with_room_for(elements) makes.
     uint64_t bytes_to_make(uint64_t elements) const;

@@ -60,6 +60,7 @@ struct SessionHints {
     std::string lights;   ///< to give lights, or have them looked for
     std::string network;  ///< to give the network's weights
     std::string track;    ///< to have the camera tracked
+    std::string resume;   ///< to go on from a map
 };
 
 /// What a session is made with. Whatever is left open is decided once, when it is made.
@@ -76,6 +77,13 @@ struct SessionOptions {
     /// Of everything that is drawn at random, of a synthetic scene noise and samples too; empty: the fixed ones.
     std::optional<uint64_t> seed;
     uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
+    /// A file that keeps the session's state, a map: a session that was stopped or killed goes on from it, and what
+    /// comes out is the same. Empty: none. One that holds a session which has come to its end is replaced.
+    std::filesystem::path map;
+    uint32_t checkpoint_every = 0;  ///< the state is written to the map every so many frames, and at the end; 0: by
+                                    ///< Session::checkpoint() alone
+    bool resume = false;  ///< goes on from the state in the map. All other options must be those that it was made with,
+                          ///< but for lighting, which it holds. A source is read from its beginning again.
     /// What needs reflectance, such as "the viewer": without light that is an error that names it. Empty: nothing does.
     std::string reflectance_for;
     SessionHints hints;
@@ -96,9 +104,14 @@ class Session {
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// Takes one frame: fuses it, or notes why not (last()). False when the source has ended. Throws Error when the
+    /// Takes one frame: fuses it, or notes why not (last()). False when the source has ended. Writes a checkpoint where
+    /// one is due; one that fails is a shortfall. Throws Error when the
     /// device was lost, Interrupted where the caller stops it; what was fused so far is still there.
     bool step();
+
+    /// Writes the state to SessionOptions::map, in place of the one before; whatever happens, one of the two is whole.
+    /// Waits. Throws Error where no map was named, or it cannot be written.
+    void checkpoint();
 
     /// What became of the last frame; empty before the first one.
     const std::optional<FrameResult>& last() const;

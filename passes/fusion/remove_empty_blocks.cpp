@@ -1,7 +1,5 @@
 #include "passes/fusion/remove_empty_blocks.h"
 
-#include <cstddef>
-
 #include "passes/state/rebuild_table.h"
 #include "spirv/shaders.h"
 
@@ -17,12 +15,7 @@ void add_remove_empty_blocks(graph::FrameGraph& frame, const VoxelMap& map, Voxe
     ids.counters = remove.modify("Counters", ids.counters);
     remove.dispatch_indirect(visible.arguments);
 
-    constexpr uint32_t kNone = 0;
-    ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
-    ids.counters = frame.upload_bytes(ids.counters, offsetof(gpu::MapCounters, table_keys),
-                                      std::as_bytes(std::span(&kNone, 1)), false);
-
-    add_rebuild_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.counters, ids.block_arguments}, map.grid());
+    add_refill_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.counters, ids.block_arguments}, map.grid());
 }
 
 }  // namespace patina

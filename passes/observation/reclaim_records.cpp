@@ -1,7 +1,5 @@
 #include "passes/observation/reclaim_records.h"
 
-#include <cstddef>
-
 #include "passes/state/rebuild_table.h"
 #include "shared/observation/reclaim.h"
 #include "spirv/shaders.h"
@@ -30,12 +28,8 @@ void add_reclaim_records(graph::FrameGraph& frame, const ObservationMap& map, Ob
     state.status = reclaim.modify("Status", state.status);
     reclaim.dispatch_indirect(ids.block_arguments);
 
-    constexpr uint32_t kNone = 0;
-    ids.keys = frame.fill(ids.keys, gpu::kEmptyKey);
-    ids.block_counters = frame.upload_bytes(ids.block_counters, offsetof(gpu::MapCounters, table_keys),
-                                            std::as_bytes(std::span(&kNone, 1)), false);
-    add_rebuild_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.block_counters, ids.block_arguments},
-                      map.grid());
+    add_refill_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.block_counters, ids.block_arguments},
+                     map.grid());
 }
 
 }  // namespace patina

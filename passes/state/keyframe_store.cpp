@@ -78,4 +78,8 @@ uint64_t KeyframeStore::bytes() const {
     return ferns_->bytes() + codes_->bytes() + keyframes_->bytes() + counters_->bytes();
 }
 
+void KeyframeStore::visit(graph::StateVisitor& visitor) {
+    for (vulkan::BufferRef* buffer : {&ferns_, &codes_, &keyframes_, &counters_}) visitor.buffer(*buffer);
+}
+
 }  // namespace patina

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/tracking/keyframes.h"
 
@@ -51,6 +52,8 @@ class KeyframeStore {
 
     KeyframeStoreIds import(graph::FrameGraph& frame) const;
     static void keep(graph::FrameGraph& frame, const KeyframeStoreIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     const KeyframeStoreSettings& settings() const { return settings_; }
     uint64_t bytes() const;

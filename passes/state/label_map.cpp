@@ -17,4 +17,9 @@ void LabelMap::keep(graph::FrameGraph& frame, const LabelMapIds& ids) {
     frame.keep(ids.stamps);
 }
 
+void LabelMap::visit(graph::StateVisitor& visitor) {
+    visitor.array(words_);
+    visitor.buffer(stamps_);
+}
+
 }  // namespace patina

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "passes/state/voxel_map.h"
 
@@ -26,6 +27,8 @@ class LabelMap {
 
     LabelMapIds import(graph::FrameGraph& frame) const { return {frame.import(words_), frame.import(stamps_)}; }
     static void keep(graph::FrameGraph& frame, const LabelMapIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint64_t bytes() const { return words_.bytes() + stamps_->bytes(); }
 

@@ -60,4 +60,11 @@ graph::BufferId Lights::upload(graph::FrameGraph& frame) const {
     return frame.upload<Content>("lights", std::span(&content, 1));
 }
 
+void Lights::visit(graph::StateVisitor& visitor) {
+    visitor.values("lights.points", lights_);
+    visitor.value("lights.ambient", ambient_);
+    visitor.value("lights.version", version_);
+    visitor.value("lights.position_version", position_version_);
+}
+
 }  // namespace patina

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "patina/lighting.h"
 #include "shared/lighting/lights.h"
 
@@ -21,6 +22,8 @@ class Lights {
     /// rounded to float; versions change only if something does. Throws Error for too many lights, or values that are
     /// not finite or below zero.
     void set(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
+
+    void visit(graph::StateVisitor& visitor);
 
     const std::vector<gpu::PointLight>& point_lights() const { return lights_; }
     glm::vec3 ambient() const { return ambient_; }

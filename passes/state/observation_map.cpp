@@ -165,4 +165,19 @@ std::vector<VoxelMap::PoolBytes> ObservationMap::memory() const {
                                       free_blocks_->bytes() + record_table_->bytes()}};
 }
 
+void ObservationMap::visit(graph::StateVisitor& visitor) {
+    const uint32_t chunk_shift = grid_.chunk_shift;
+    visitor.value("observations.grid", grid_);
+    grid_.chunk_shift = chunk_shift;  // this device's
+    visitor.value("observations.table_slots", table_slots_);
+    visitor.value("observations.capacity_records", capacity_records_);
+    for (vulkan::BufferRef* buffer :
+         {&keys_, &blocks_, &block_keys_, &free_blocks_, &free_records_, &new_slots_, &block_counters_,
+          &record_counters_, &block_arguments_, &record_table_, &records_, &seen_, &changed_, &albedo_, &visibility_}) {
+        visitor.buffer(*buffer);
+    }
+    visitor.array(directions_);
+    visitor.array(colors_);
+}
+
 }  // namespace patina

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "passes/state/voxel_map.h"
 #include "shared/observation/observations.h"
@@ -74,6 +75,8 @@ class ObservationMap {
     ObservationMapIds import(graph::FrameGraph& frame) const;
     /// Marks all versions as needed after the frame.
     static void keep(graph::FrameGraph& frame, const ObservationMapIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     const ObservationMapSettings& settings() const { return settings_; }
     /// Of voxels; its chunk_shift is that of records.

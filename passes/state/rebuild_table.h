@@ -18,4 +18,7 @@ struct BlockTable {
 /// refused are left out and may come again.
 void add_rebuild_table(graph::FrameGraph& frame, const BlockTable& table, const gpu::VoxelGrid& grid);
 
+/// The same for a table in use, from which blocks were removed: empties it before.
+void add_refill_table(graph::FrameGraph& frame, const BlockTable& table, const gpu::VoxelGrid& grid);
+
 }  // namespace patina

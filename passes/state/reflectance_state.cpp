@@ -28,4 +28,10 @@ void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds&
     frame.keep(ids.cursors);
 }
 
+void ReflectanceState::visit(graph::StateVisitor& visitor) {
+    visitor.value("reflectance.stamp", stamp_);
+    visitor.buffer(status_);
+    visitor.buffer(cursors_);
+}
+
 }  // namespace patina

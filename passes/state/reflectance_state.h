@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "passes/state/observation_map.h"
 #include "shared/reflectance/reflectance.h"
@@ -30,6 +31,8 @@ class ReflectanceState {
 
     ReflectanceStateIds import(graph::FrameGraph& frame) const;
     static void keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     /// Counts updates; the first is 1.
     uint32_t next_stamp() { return ++stamp_; }

@@ -50,4 +50,12 @@ graph::BufferId SegmentMaterials::import(graph::FrameGraph& frame) {
     return id;
 }
 
+void SegmentMaterials::visit(graph::StateVisitor& visitor) {
+    visitor.value("materials.capacity", capacity_);
+    visitor.value("materials.changes", changes_);
+    visitor.value("materials.uploaded", uploaded_);
+    visitor.values("materials.set", materials_);
+    visitor.buffer(buffer_);
+}
+
 }  // namespace patina

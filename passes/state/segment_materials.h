@@ -7,6 +7,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/reflectance/reflectance.h"
 
@@ -30,6 +31,8 @@ class SegmentMaterials {
 
     /// gpu::SegmentMaterial[capacity()], with what was set; uploads it where that is news to the device.
     graph::BufferId import(graph::FrameGraph& frame);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint32_t capacity() const { return capacity_; }
 

@@ -26,4 +26,9 @@ void SegmentSamples::keep(graph::FrameGraph& frame, const SegmentSampleIds& ids)
     frame.keep(ids.kd);
 }
 
+void SegmentSamples::visit(graph::StateVisitor& visitor) {
+    visitor.value("segments.sample_labels", labels_);
+    for (vulkan::BufferRef* buffer : {&counts_, &kept_, &kd_}) visitor.buffer(*buffer);
+}
+
 }  // namespace patina

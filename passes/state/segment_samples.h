@@ -4,6 +4,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/segmentation/segment_samples.h"
 
@@ -35,6 +36,8 @@ class SegmentSamples {
         return {frame.import(counts_), frame.import(kept_), frame.import(kd_)};
     }
     static void keep(graph::FrameGraph& frame, const SegmentSampleIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint32_t labels() const { return labels_; }
     uint64_t bytes() const { return counts_->bytes() + kept_->bytes() + kd_->bytes(); }

@@ -56,4 +56,9 @@ uint64_t SegmentTable::bytes() const {
     return parents_->bytes() + labels_->bytes() + pairs_->bytes() + free_labels_->bytes() + counters_->bytes();
 }
 
+void SegmentTable::visit(graph::StateVisitor& visitor) {
+    visitor.value("segments.capacity", capacity_);
+    for (vulkan::BufferRef* buffer : {&parents_, &labels_, &pairs_, &free_labels_, &counters_}) visitor.buffer(*buffer);
+}
+
 }  // namespace patina

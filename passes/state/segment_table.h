@@ -4,6 +4,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/segmentation/segments.h"
 
@@ -39,6 +40,8 @@ class SegmentTable {
 
     SegmentTableIds import(graph::FrameGraph& frame) const;
     static void keep(graph::FrameGraph& frame, const SegmentTableIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint32_t capacity() const { return capacity_; }
     uint64_t bytes() const;

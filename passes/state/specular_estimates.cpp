@@ -23,4 +23,9 @@ void SpecularEstimates::keep(graph::FrameGraph& frame, const SpecularEstimateIds
     frame.keep(ids.materials);
 }
 
+void SpecularEstimates::visit(graph::StateVisitor& visitor) {
+    visitor.value("specular.estimate_labels", labels_);
+    for (vulkan::BufferRef* buffer : {&means_, &materials_}) visitor.buffer(*buffer);
+}
+
 }  // namespace patina

@@ -4,6 +4,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/specular/specular_estimates.h"
 
@@ -32,6 +33,8 @@ class SpecularEstimates {
         return {frame.import(means_), frame.import(materials_)};
     }
     static void keep(graph::FrameGraph& frame, const SpecularEstimateIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint32_t labels() const { return labels_; }
     uint64_t bytes() const { return means_->bytes() + materials_->bytes(); }

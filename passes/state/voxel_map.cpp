@@ -113,4 +113,17 @@ std::vector<VoxelMap::PoolBytes> VoxelMap::memory() const {
             {"voxel block lists", block_keys_->bytes() + free_list_->bytes()}};
 }
 
+void VoxelMap::visit(graph::StateVisitor& visitor) {
+    const uint32_t chunk_shift = grid_.chunk_shift;
+    visitor.value("map.grid", grid_);
+    grid_.chunk_shift = chunk_shift;  // this device's
+    visitor.value("map.table_slots", table_slots_);
+    for (vulkan::BufferRef* buffer : {&keys_, &blocks_, &block_keys_, &free_list_, &new_slots_, &counters_,
+                                      &assign_arguments_, &block_arguments_}) {
+        visitor.buffer(*buffer);
+    }
+    visitor.array(tsdf_);
+    visitor.array(color_);
+}
+
 }  // namespace patina

@@ -8,6 +8,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -56,6 +57,8 @@ class VoxelMap {
     VoxelMapIds import(graph::FrameGraph& frame) const;
     /// Marks all versions as needed after the frame.
     static void keep(graph::FrameGraph& frame, const VoxelMapIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     const VoxelMapSettings& settings() const { return settings_; }
     gpu::VoxelGrid grid() const { return grid_; }

@@ -33,4 +33,9 @@ void WardFits::keep(graph::FrameGraph& frame, const WardFitIds& ids) {
     frame.keep(ids.progress);
 }
 
+void WardFits::visit(graph::StateVisitor& visitor) {
+    visitor.value("specular.fit_labels", labels_);
+    for (vulkan::BufferRef* buffer : {&fits_, &curves_, &progress_}) visitor.buffer(*buffer);
+}
+
 }  // namespace patina

@@ -4,6 +4,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "engine/graph/frame_graph.h"
+#include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "shared/specular/ward_fit.h"
 
@@ -36,6 +37,8 @@ class WardFits {
         return {frame.import(fits_), frame.import(curves_), frame.import(progress_)};
     }
     static void keep(graph::FrameGraph& frame, const WardFitIds& ids);
+
+    void visit(graph::StateVisitor& visitor);
 
     uint32_t labels() const { return labels_; }
     uint64_t bytes() const { return fits_->bytes() + curves_->bytes() + progress_->bytes(); }

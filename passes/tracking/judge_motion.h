@@ -30,10 +30,9 @@ struct TrackingBounds {
     float lost_motion_degrees = 20;
 };
 
-/// What one search for a frame's pose found.
-struct TrackingReport {
+/// What one search for a frame's pose found, in figures.
+struct TrackingFigures {
     TrackingState state = TrackingState::kLost;
-    std::string reason;                    ///< why it is not tracking, in a few words; empty where it is
     RigidTransform world_from_depth{1.0};  ///< of a lost frame: where it was expected
     double share = 0;                      ///< of the readings that lie on the model, by weight
     double sigmas = 0;                     ///< root mean square distance in sigmas of the sensor
@@ -44,6 +43,11 @@ struct TrackingReport {
     double motion_degrees = 0;
     float mean_depth_m = 2;  ///< of the readings
     float gain = 1;          ///< the frame's shades times this are the model's
+};
+
+/// The same with why it is not tracking, in a few words; empty where it is.
+struct TrackingReport : TrackingFigures {
+    std::string reason;
 };
 
 /// The pose that a state stands for: reference_from_frame.

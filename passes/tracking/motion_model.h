@@ -7,8 +7,6 @@
 
 namespace patina {
 
-;
-
 /// Expects a camera to move on as it did before, a little slower, and after a loss as it did before that.
 class MotionModel {
   public:

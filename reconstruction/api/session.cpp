@@ -22,7 +22,13 @@ Session::Session(Device& device, std::unique_ptr<Source> source, const SessionOp
 
 Session::~Session() = default;
 
-bool Session::step() { return state_->core.step(); }
+bool Session::step() {
+    const bool more = state_->core.step();
+    state_->core.checkpoint_if_due();
+    return more;
+}
+
+void Session::checkpoint() { state_->core.checkpoint(); }
 const std::optional<FrameResult>& Session::last() const { return state_->core.last(); }
 const SequenceInfo& Session::info() const { return state_->core.info(); }
 

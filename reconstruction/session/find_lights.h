@@ -22,8 +22,8 @@ enum class LightsFrom : uint8_t {
 
 /// How lights are looked for.
 struct LightsOptions {
-    std::string
-        sequence;  ///< folder of a recording with or without lighting/, or of a lighting sequence; or "synthetic:SCENE"
+    /// Folder of a recording with or without lighting/, or of a lighting sequence; or "synthetic:SCENE".
+    std::string sequence;
     std::string format;   ///< of the main sequence; empty: recognised
     uint32_t frames = 0;  ///< at most so many frames of the sequence looked at; 0 takes all
     LightsFrom from = LightsFrom::kAny;

@@ -83,19 +83,20 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     open(std::move(source));
     if (needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone) fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
-    take_light(light_of(device_, options_, world_offset_m_));
+    if (!options_.map.empty()) open_map();
+    take_light(find_or_bring_back_light());
     start_pipeline(std::move(network));
+    if (options_.resume) resume();
     if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
 }
 
 void SessionCore::open(std::unique_ptr<Source> given) {
-    const scenes::SyntheticSource* scene = nullptr;
     if (given) {
         source_ = std::move(given);
         expect_poses(options_, *source_);
     } else if (synthetic_scene(options_)) {
         auto rendered = open_scene(options_, device_);
-        scene = rendered.get();
+        scene_ = rendered.get();
         source_ = std::move(rendered);
     } else {
         auto recording = sensor::open_sequence(options_.sequence, options_.format);
@@ -107,10 +108,10 @@ void SessionCore::open(std::unique_ptr<Source> given) {
         for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
         source_ = std::make_unique<sensor::RecentredSource>(std::move(ahead), world_offset_m_);
     }
-    truth_.emplace(options_.sequence, scene);
+    truth_.emplace(options_.sequence, scene_);
     info_ = source_->info();
     if (options_.frames > 0 && info_.frames) info_.frames = std::min(*info_.frames, options_.frames);
-    if (!scene) inspector_.emplace(info_, convention_check(options_));
+    if (!scene_) inspector_.emplace(info_, convention_check(options_));
 }
 
 void SessionCore::start_pipeline(std::optional<NetworkDescription> network) {
@@ -126,8 +127,9 @@ void SessionCore::take_light(SessionLight light) {
     check_light(options_, light);
     illumination_ = std::move(light.illumination);
     shortfalls_ = std::move(light.shortfalls);
-    if (!light.none_because.empty()) {
-        materials_missing_ = "no materials, only geometry and colours: " + light.none_because;
+    no_light_because_ = std::move(light.none_because);
+    if (!no_light_because_.empty()) {
+        materials_missing_ = "no materials, only geometry and colours: " + no_light_because_;
     } else if (illumination_.lights.empty()) {
         materials_missing_ = "materials hold a diffuse albedo alone: there is ambient light, but no lamp to show gloss";
     }
@@ -137,9 +139,12 @@ bool SessionCore::step() {
     fused_.reset();
     stop_if_interrupted();
     const uint32_t limit = info_.frames.value_or(options_.frames);
-    if (limit > 0 && ledger_.read() >= limit) return false;
-    std::optional<Reading> reading = source_->next();
-    if (!reading) return false;
+    std::optional<Reading> reading;
+    if (limit == 0 || ledger_.read() < limit) reading = source_->next();
+    if (!reading) {
+        ended_ = true;
+        return false;
+    }
     ledger_.note(*reading);
     if (inspector_) inspector_->add(*reading);
     if (const auto* skipped = std::get_if<Skipped>(&*reading)) {

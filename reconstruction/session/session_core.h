@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -13,12 +14,21 @@
 #include "reconstruction/session/find_lights.h"
 #include "reconstruction/session/sequence_truth.h"
 #include "reconstruction/session/tracked_frame.h"
+#include "reconstruction/store/map_file.h"
+#include "reconstruction/store/state_files.h"
 #include "sensor/inspect.h"
 #include "sensor/ledger.h"
 
 namespace patina {
 
 struct SessionLight;
+
+namespace scenes {
+class SyntheticSource;
+}
+
+/// What a program keeps in a session's map beside the session's own state.
+using MoreState = std::function<void(graph::StateVisitor& visitor, MapFile& map)>;
 
 /// One sentence on a pool that could not grow: what it holds, how much, and what kept it from growing.
 std::string full_pool_warning(const PoolState& pool);
@@ -35,6 +45,20 @@ class SessionCore {
     /// Takes one reading from the source: fuses it, or notes why not. False at the source's end. Throws Interrupted
     /// when the caller stops it; the device has finished then.
     bool step();
+
+    /// Writes the state to the map (SessionOptions::map) in place of the one before, whole or not at all. Waits. Throws
+    /// Error where the file cannot be written, or there is to be none.
+    void checkpoint(const MoreState& more = {});
+
+    /// The same where there is a map and it is due: every checkpoint_every frames, and once the source has ended. A
+    /// failure is a shortfall: the session goes on, and the state before stays in the map.
+    void checkpoint_if_due(const MoreState& more = {});
+
+    /// Why the last checkpoint that was due could not be written; empty where it was.
+    const std::string& checkpoint_problem() const { return checkpoint_problem_; }
+
+    /// Brings back what a program kept in the map beside the session's state; where the session went on from one.
+    void bring_back(const MoreState& more);
 
     /// Waits for the device. Throws Error when no frame could be used, or the source yielded another number of frames
     /// than it has.
@@ -87,6 +111,11 @@ class SessionCore {
   private:
     bool tracks() const { return settings().tracking.has_value(); }
     void open(std::unique_ptr<Source> given);
+    void open_map();
+    SessionLight find_or_bring_back_light();
+    void resume();
+    void visit(graph::StateVisitor& visitor);
+    void skip_readings();
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
@@ -97,10 +126,16 @@ class SessionCore {
     vulkan::Device& device_;  // outlives the source, which may compute on it
     SessionOptions options_;
     std::unique_ptr<Source> source_;
+    scenes::SyntheticSource* scene_ = nullptr;  ///< the source, where it is one
+    std::unique_ptr<MapFile> map_;              ///< null until there is something in it
+    bool map_is_ours_ = false;                  ///< it holds this session's state, not that of another
+    std::string checkpoint_problem_;
+    bool ended_ = false;  ///< the source has
     std::optional<SequenceTruth> truth_;
     SequenceInfo info_;
     glm::dvec3 world_offset_m_{0};
     Illumination illumination_;
+    std::string no_light_because_;
     std::string materials_missing_;
     std::vector<std::string> shortfalls_;
     std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene

@@ -48,6 +48,7 @@ std::vector<std::string> shortfalls_of(SessionCore& session) {
     std::vector<std::string> list = refusals(session);
     if (std::string lost = lost_for_good(session.tracked()); !lost.empty()) list.push_back(std::move(lost));
     if (std::string unused = unused_frames(session.ledger()); !unused.empty()) list.push_back(std::move(unused));
+    if (!session.checkpoint_problem().empty()) list.push_back(session.checkpoint_problem());
     list.insert(list.end(), session.shortfalls().begin(), session.shortfalls().end());
     return list;
 }

@@ -59,4 +59,10 @@ const std::vector<gpu::ColorGains>& ColorCorrection::gains() {
     return gains_;
 }
 
+void ColorCorrection::visit(graph::StateVisitor& visitor) {
+    gains();  // all are there: the device has finished
+    visitor.values("gains.all", gains_);
+    visitor.buffer(last_);
+}
+
 }  // namespace patina

@@ -29,6 +29,8 @@ class ColorCorrection {
     /// Of the frames so far, in order; of all but the last two at once, of all after Runner::wait().
     const std::vector<gpu::ColorGains>& gains();
 
+    void visit(graph::StateVisitor& visitor);
+
   private:
     const VoxelMap& map_;
     GainSettings settings_;

@@ -72,6 +72,8 @@ class GeometryStage {
     /// The surface of the whole map; waits. The memory that frames keep between them is given back before.
     Mesh extract_surface(graph::Runner& runner) const;
 
+    void visit(graph::StateVisitor& visitor) { map_.visit(visitor); }
+
     /// A voxel that was seen nearer to the surface than this, metres, keeps its block from being removed.
     float near_surface_m() const;
 

@@ -47,6 +47,8 @@ class KeyframeStage {
     /// gpu::KeyframeCounters as of the end of this graph.
     graph::Readback read_counters(graph::FrameGraph& graph) const;
 
+    void visit(graph::StateVisitor& visitor) { store_.visit(visitor); }
+
     const KeyframeSettings& settings() const { return settings_; }
     const KeyframeStore& store() const { return store_; }
 

@@ -130,4 +130,13 @@ graph::BufferId ReflectanceStage::add_sample(graph::FrameGraph& graph, graph::Bu
     return add_sample_reflectance(graph, observations_, records, inputs);
 }
 
+void ReflectanceStage::visit(graph::StateVisitor& visitor) {
+    observations_.visit(visitor);
+    lights_.visit(visitor);
+    materials_.visit(visitor);
+    state_.visit(visitor);
+    visitor.value("reflectance.reclaim_at", reclaim_at_);
+    visitor.value("reflectance.reclaim_turn", reclaim_turn_);
+}
+
 }  // namespace patina

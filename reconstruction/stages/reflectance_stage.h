@@ -109,6 +109,8 @@ class ReflectanceStage {
     graph::BufferId add_sample(graph::FrameGraph& graph, graph::BufferId positions_m, graph::BufferId normals,
                                uint32_t points);
 
+    void visit(graph::StateVisitor& visitor);
+
     std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
     const ReflectanceStageSettings& settings() const { return settings_; }
     const Lights& lights() const { return lights_; }

@@ -163,4 +163,10 @@ std::vector<VoxelMap::PoolBytes> SegmentationStage::memory() const {
     return {{"voxel labels", labels_.bytes()}, {"segments", table_.bytes()}, {"segment samples", samples_.bytes()}};
 }
 
+void SegmentationStage::visit(graph::StateVisitor& visitor) {
+    labels_.visit(visitor);
+    table_.visit(visitor);
+    samples_.visit(visitor);
+}
+
 }  // namespace patina

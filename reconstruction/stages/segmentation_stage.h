@@ -110,6 +110,8 @@ class SegmentationStage {
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::FrameGraph& graph, const SurfaceView& surface) const;
 
+    void visit(graph::StateVisitor& visitor);
+
     std::vector<VoxelMap::PoolBytes> memory() const;
     const SegmentationSettings& settings() const { return settings_; }
     const SegmentTable& table() const { return table_; }

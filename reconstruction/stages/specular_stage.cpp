@@ -75,4 +75,9 @@ std::vector<VoxelMap::PoolBytes> SpecularStage::memory() const {
     return pools;
 }
 
+void SpecularStage::visit(graph::StateVisitor& visitor) {
+    estimates_.visit(visitor);
+    fits_.visit(visitor);
+}
+
 }  // namespace patina

@@ -48,6 +48,8 @@ class SpecularStage {
     /// gpu::PerceptualMaterial per label: the mean of what the network said.
     graph::BufferId means(graph::FrameGraph& graph) const { return estimates_.import(graph).means; }
 
+    void visit(graph::StateVisitor& visitor);
+
     std::vector<VoxelMap::PoolBytes> memory() const;
     const SpecularSettings& settings() const { return settings_; }
     bool has_network() const { return network_.has_value(); }

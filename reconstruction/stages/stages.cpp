@@ -64,4 +64,14 @@ void Stages::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
     if (keyframes) keyframes->reset(graph);
 }
 
+void Stages::visit(graph::StateVisitor& visitor) {
+    geometry.visit(visitor);
+    if (color_correction) color_correction->visit(visitor);
+    if (segmentation) segmentation->visit(visitor);
+    if (reflectance) reflectance->visit(visitor);
+    if (specular) specular->visit(visitor);
+    if (tracking) tracking->visit(visitor);
+    if (keyframes) keyframes->visit(visitor);
+}
+
 }  // namespace patina

@@ -19,6 +19,8 @@ struct Stages {
     /// Empties all of them, for a map around `center_m`; before the first frame.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
 
+    void visit(graph::StateVisitor& visitor);
+
     /// Whether anything needs the model as the depth camera of each frame sees it.
     bool need_raycast() const { return segmentation || reflectance || tracking || settings.view_every_frame; }
     /// Whether tracking compares shades, too.

@@ -58,6 +58,7 @@ void TrackingStage::make_reference(const Intrinsics& camera) {
                  {.name = text("tracking reference ", i), .extent = level.extent, .format = vulkan::Format::kRgba32u}),
              level});
     }
+    reference_camera_ = camera;
 }
 
 void TrackingStage::add_reference(graph::FrameGraph& graph, const RaycastImages& surface,
@@ -137,6 +138,16 @@ std::vector<VoxelMap::PoolBytes> TrackingStage::memory() const {
     for (const ReferenceLevel& level : reference_)
         bytes += level.camera.extent.area() * bytes_per_pixel(vulkan::Format::kRgba32u);
     return {{"tracking reference", bytes}, {"tracked frame", pictures_.bytes()}};
+}
+
+void TrackingStage::visit(graph::StateVisitor& visitor) {
+    visitor.value("tracking.reference_camera", reference_camera_);
+    if (reference_camera_ && !has_reference()) make_reference(*reference_camera_);
+    for (ReferenceLevel& level : reference_) visitor.image(level.pixels);
+    visitor.value("tracking.world_from_reference", world_from_reference_);
+    visitor.value("tracking.motion", motion_);
+    visitor.value<TrackingFigures>("tracking.last", last_);
+    visitor.text("tracking.last_reason", last_.reason);
 }
 
 }  // namespace patina

@@ -75,6 +75,8 @@ class TrackingStage {
     const TrackingSettings& settings() const { return settings_; }
     /// Of the last frame.
     const TrackingReport& last() const { return last_; }
+    void visit(graph::StateVisitor& visitor);
+
     std::vector<VoxelMap::PoolBytes> memory() const;
 
   private:
@@ -89,7 +91,8 @@ class TrackingStage {
         vulkan::ImageRef pixels;  ///< rgba32ui
         Intrinsics camera;
     };
-    std::vector<ReferenceLevel> reference_;  ///< from first_level() on
+    std::vector<ReferenceLevel> reference_;         ///< from first_level() on
+    std::optional<Intrinsics> reference_camera_{};  ///< the depth camera that it was made for
     RigidTransform world_from_reference_{1.0};
     MotionModel motion_;
     TrackingReport last_;

@@ -47,6 +47,9 @@ class SyntheticSource : public Source {
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override;
 
+    /// Leaves out the frames before `index`; to be called before next().
+    void skip_to(uint32_t index) { next_index_ = index; }
+
     /// What is true for all frames: objects with their materials, lights.
     const SyntheticScene& scene() const { return scene_; }
 

@@ -166,3 +166,24 @@ def test_the_interpreter_is_free_while_the_device_works(device):
     assert ticks_within(session.step) > 0
     assert ticks_within(session.finish) > 0
     assert ticks_within(lambda: session.view(session.info["color"], np.eye(4))) > 0
+
+
+def test_a_session_goes_on_from_its_map(device, tmp_path):
+    def session(**more):
+        settings = patina.Settings()
+        settings["map.voxel_m"] = 0.02
+        return patina.Session(device, CUBES, frames=4, lighting="none", settings=settings, map=tmp_path / "map.sqlite",
+                              **more)
+
+    first = session()
+    first.step()
+    first.step()
+    first.checkpoint()
+    with pytest.raises(patina.Error, match="has not come to its end, after 2 frames"):
+        session()
+    onwards = session(resume=True, checkpoint_every=4)
+    for each in (first, onwards):
+        while each.step():
+            pass
+    assert onwards.statistics()["frames"] == 4
+    np.testing.assert_array_equal(onwards.finish().positions, first.finish().positions)

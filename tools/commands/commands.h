@@ -47,7 +47,8 @@ void add_doctor(CLI::App& app);
 void add_info(CLI::App& app);
 void add_synth(CLI::App& app);
 void add_synth_hemi(CLI::App& app);
-void add_run(CLI::App& app, int& exit_code);
+/// `arguments`: the command line after "run".
+void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& arguments);
 void add_render(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);

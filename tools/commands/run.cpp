@@ -1,43 +1,120 @@
 #include "tools/run/run.h"
 
+#include <algorithm>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "reconstruction/store/map_file.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
 
 namespace patina::tools {
 
-void add_run(CLI::App& app, int& exit_code) {
-    CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
-    struct Arguments {
-        RunOptions run;
-        SequenceArguments sequence;
-    };
-    const auto arguments = std::make_shared<Arguments>();
-    RunOptions& run_options = arguments->run;
-    arguments->sequence.add_to(*command, run_options);
-    command->add_option("--out", run_options.out, "Folder for the results")->required();
-    command->add_option("--dump-every", run_options.dump_every, "Write frames/NNNNNN.exr of every so many frames");
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunArguments {
+    RunOptions run;
+    SequenceArguments sequence;
+    fs::path resume;  ///< the folder whose map the run goes on from; empty: it begins
+};
+
+/// Both must live until the command line is parsed.
+void declare(CLI::App& command, RunArguments& arguments) {
+    RunOptions& run = arguments.run;
+    arguments.sequence.add_to(command, run);
+    command.get_option("sequence")->required(false);  // expect_complete()
+    command.add_option("--out", run.out, "Folder for the results");
+    command.add_option("--dump-every", run.dump_every, "Write frames/NNNNNN.exr of every so many frames");
     command
-        ->add_option("--gains", run_options.gains,
-                     "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
-                     "recording does not tell the exposure), on, off")
+        .add_option("--gains", run.gains,
+                    "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
+                    "recording does not tell the exposure), on, off")
         ->transform(one_of<Gains>({{"auto", Gains::kAuto}, {"on", Gains::kOn}, {"off", Gains::kOff}}))
         ->option_text("auto|on|off");
     command
-        ->add_option("--poses", run_options.poses,
-                     "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
-                     "by default given where there are any")
+        .add_option("--poses", run.poses,
+                    "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
+                    "by default given where there are any")
         ->transform(one_of<Poses>({{"given", Poses::kGiven}, {"track", Poses::kTrack}, {"prior", Poses::kPrior}}))
         ->option_text("given|track|prior");
-    command->add_option("--hold-out", run_options.hold_out,
-                        "Keep the colours of every so many-th frame out of the model, and compare them in the end");
-    command->add_option("--dump-graph", run_options.dump_graph,
-                        "Write PATH.dot and PATH.json of the last frame's last graph");
-    command->callback([arguments, &exit_code] {
-        arguments->sequence.finish(arguments->run);
-        arguments->run.hints.track = "--poses track";
-        exit_code = run(arguments->run).exit_code();
+    command.add_option("--hold-out", run.hold_out,
+                       "Keep the colours of every so many-th frame out of the model, and compare them in the end");
+    command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
+    command
+        .add_option("--checkpoint-every", run.checkpoint_every,
+                    "Keep the state of the run in OUT/map.sqlite every so many frames, to go on from after whatever "
+                    "stopped it")
+        ->check(at_least_one());
+    command.add_option("--resume", arguments.resume,
+                       "Go on from the map in this folder; alone: with the arguments that the run was started with");
+}
+
+/// Throws CLI::RequiredError where something is missing.
+void expect_complete(const RunArguments& arguments) {
+    if (arguments.run.sequence.empty()) throw CLI::RequiredError("sequence");
+    if (arguments.run.out.empty()) throw CLI::RequiredError("--out");
+}
+
+fs::path map_in(const fs::path& folder) { return folder / "map.sqlite"; }
+
+/// The arguments of the run that a map is of, as if they were given now, where it was started.
+std::shared_ptr<RunArguments> kept_arguments(const fs::path& folder) {
+    const auto map = MapFile::with_state(map_in(folder));
+    const auto words = nlohmann::json::parse(map->expect_text("arguments")).get<std::vector<std::string>>();
+    const fs::path started_in = map->expect_text("started_in");
+    std::error_code failure;
+    fs::current_path(started_in, failure);
+    if (failure)
+        throw Error("the run in '", folder.string(), "' was started in '", started_in.string(),
+                    "', which cannot be entered: ", failure.message());
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App command;
+    declare(command, *arguments);
+    command.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last comes first
+    arguments->run.arguments = words;
+    return arguments;
+}
+
+/// Takes over what the run in the folder was started with; its results go there.
+std::shared_ptr<RunArguments> resumed(const CLI::App& command, const RunArguments& given) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() > 0 && !option->check_name("--resume") && !option->check_name("--quiet"))
+            throw CLI::RequiredError("sequence");
+    }
+    const fs::path folder = fs::absolute(given.resume);
+    auto arguments = kept_arguments(folder);
+    arguments->resume = arguments->run.out = folder;
+    arguments->run.quiet = given.run.quiet;
+    return arguments;
+}
+
+int start(RunArguments& arguments) {
+    expect_complete(arguments);
+    RunOptions& run_options = arguments.run;
+    arguments.sequence.finish(run_options);
+    run_options.hints.track = "--poses track";
+    run_options.started_in = fs::current_path();
+    run_options.resume = !arguments.resume.empty();
+    run_options.hints.resume = "--resume " + run_options.out.string();
+    if (run_options.resume || run_options.checkpoint_every > 0)
+        run_options.map = map_in(run_options.resume ? arguments.resume : run_options.out);
+    return run(run_options).exit_code();
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& words) {
+    CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
+    const auto given = std::make_shared<RunArguments>();
+    declare(*command, *given);
+    command->callback([command, given, words, &exit_code] {
+        given->run.arguments = words;
+        const bool goes_on = !given->resume.empty() && given->run.sequence.empty();
+        exit_code = start(goes_on ? *resumed(*command, *given) : *given);
     });
 }
 

@@ -111,8 +111,8 @@ struct RunSummary {
 /// are not finite become null; text that is not UTF-8 has its bad bytes replaced.
 std::string run_json(const RunSummary& summary);
 
-/// The run's id, 16 hexadecimal digits: of the summary without id and durations, and of OutputFolder::digest() of the
-/// files it wrote. Runs that did the same have the same id, others another.
+/// The run's id, 16 hexadecimal digits: of the summary without id, durations and memory, and of OutputFolder::digest()
+/// of the files it wrote. Runs that did the same have the same id, others another.
 std::string run_id(const RunSummary& summary, uint64_t files_digest);
 
 }  // namespace patina

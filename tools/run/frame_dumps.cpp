@@ -92,6 +92,24 @@ void FrameDumps::finish() {
     for (; !owed_.empty(); owed_.pop_front()) write(owed_.front());
 }
 
+void FrameDumps::visit(graph::StateVisitor& visitor) {
+    finish();
+    std::vector<uint32_t> preview_at(preview_at_.begin(), preview_at_.end());
+    std::vector<std::string> captions;
+    for (const ReportPicture& preview : previews_) captions.push_back(preview.caption);
+    visitor.values("run.preview_at", preview_at);
+    visitor.texts("run.preview_captions", captions);
+    visitor.texts("run.dumped", dumped_);
+    visitor.text("run.dump_problem", problem_);
+    visitor.value("run.dump_every", dump_every_);
+    preview_at_.assign(preview_at.begin(), preview_at.end());
+    previews_.resize(captions.size());
+    for (size_t i = 0; i < captions.size(); ++i) {
+        previews_[i].caption = captions[i];
+        visitor.text(fmt::format("run.preview_{}", i), previews_[i].png);
+    }
+}
+
 void FrameDumps::stamp(const std::string& run_id) const {
     for (const std::string& name : dumped_) stamp_run_id(folder_.published(name), run_id);
 }

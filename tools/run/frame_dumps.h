@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/state_visitor.h"
 #include "export/write_exr.h"
 #include "patina/frame.h"
 #include "reconstruction/pipeline.h"
@@ -30,6 +31,9 @@ class FrameDumps {
 
     /// Writes the rest; the device must have finished.
     void finish();
+
+    /// Writes the rest before; what is brought back needs the files that were written by then.
+    void visit(graph::StateVisitor& visitor);
 
     /// What could not be written, a sentence; empty where all was. Nothing more is written after that: a run goes on
     /// without its pictures.

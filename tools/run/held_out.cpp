@@ -53,6 +53,41 @@ void HeldOut::keep(const Frame& frame, uint32_t order) {
     kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
 }
 
+void HeldOut::visit(graph::StateVisitor& visitor) {
+    struct Picture {
+        uint32_t index, order;
+        Extent2D extent;
+        RigidTransform world_from_depth;
+        bool linear;
+    };
+    std::vector<Picture> pictures;
+    for (const Kept& kept : kept_) {
+        const auto extent = std::visit([](const auto& image) { return image.extent(); }, kept.color);
+        const bool linear = std::holds_alternative<Image<glm::vec3>>(kept.color);
+        pictures.push_back({kept.index, kept.order, extent, kept.world_from_depth, linear});
+    }
+    visitor.values("run.held_out", pictures);
+    kept_.resize(pictures.size());
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        const Picture& picture = pictures[i];
+        Kept& kept = kept_[i];
+        kept.index = picture.index;
+        kept.order = picture.order;
+        kept.world_from_depth = picture.world_from_depth;
+        const auto visit_pixels = [&]<class Pixel>(Image<Pixel> empty) {
+            auto* held = std::get_if<Image<Pixel>>(&kept.color);
+            std::vector<Pixel> pixels = held ? held->pixels() : empty.pixels();
+            visitor.values(fmt::format("run.held_out_{}", picture.index), pixels);
+            kept.color = Image<Pixel>(picture.extent, std::move(pixels));
+        };
+        if (picture.linear) {
+            visit_pixels(Image<glm::vec3>());
+        } else {
+            visit_pixels(Image<SrgbPixel>());
+        }
+    }
+}
+
 HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const {
     pipeline.wait();
     const std::span<const gpu::ColorGains> gains = pipeline.gains();

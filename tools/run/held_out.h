@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/state_visitor.h"
 #include "patina/frame.h"
 #include "reconstruction/pipeline.h"
 #include "tools/report/output_folder.h"
@@ -20,6 +21,8 @@ class HeldOut {
 
     /// Keeps a frame if it is one of these; `order`: how many frames were added to the reconstruction before it.
     void keep(const Frame& frame, uint32_t order);
+
+    void visit(graph::StateVisitor& visitor);
 
     /// Renders the model from where each picture was taken, at that picture's gains, and scores it. Writes
     /// held_out/NNNNNN.png (picture, rendering, normals) and held_out/scores.txt. Waits for the device.

@@ -1,5 +1,6 @@
 #include "tools/run/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <functional>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/expect_path.h"
+#include "engine/core/input_file.h"
 #include "engine/core/printable.h"
 #include "engine/core/version.h"
 #include "engine/graph/plan/plan.h"
@@ -75,19 +77,30 @@ class Run {
           session_(Access::vulkan(device_), options),
           pipeline_(session_.pipeline()),
           dumps_(folder, session_.info().frames, options.dump_every),
-          held_out_(options.hold_out) {}
+          held_out_(options.hold_out) {
+        session_.bring_back([this](graph::StateVisitor& visitor, MapFile& map) {
+            for (const std::string& name : map.files()) folder_.write(name, map.content_of_file(name));
+            visit(visitor);
+        });
+    }
 
     /// Throws what stopped it before a frame was fused.
     void fuse_all() {
         try {
             while (session_.step()) {
                 if (const Frame* frame = session_.fused()) after(*frame);
+                session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
             }
             session_.end();
+            session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
         } catch (const Interrupted& interrupted) {
             if (session_.ledger().used() == 0) throw;
             console_.end();
             ended_ = interrupted.what();
+            if (options_.checkpoint_every > 0) {
+                attempt("the state, to go on from",
+                        [&] { session_.checkpoint([this](auto& visitor, MapFile& map) { keep(visitor, map); }); });
+            }
             if (!options_.quiet)
                 print_error("{}: what was fused is being written; an interrupt after a second ends that too\n",
                             printable(ended_));
@@ -135,6 +148,24 @@ class Run {
     }
 
   private:
+    /// What later frames, and the results, depend on besides the session.
+    void visit(graph::StateVisitor& visitor) {
+        dumps_.visit(visitor);
+        held_out_.visit(visitor);
+    }
+
+    void keep(graph::StateVisitor& visitor, MapFile& map) {
+        map.set_text("arguments", nlohmann::json(options_.arguments).dump());
+        map.set_text("started_in", options_.started_in.string());
+        visit(visitor);
+        const std::vector<std::string> known = map.files();
+        for (const std::string& name : folder_.files()) {
+            if (std::binary_search(known.begin(), known.end(), name)) continue;
+            const std::vector<uint8_t> bytes = read_file(folder_.published(name), UINT64_MAX);
+            map.set_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        }
+    }
+
     void after(const Frame& frame) {
         if (!options_.dump_graph.empty()) {
             const graph::CompiledFrame& compiled = pipeline_.runner().last_frame();

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tools/program/outcome.h"
 #include "tools/program/sequence_options.h"
@@ -11,6 +13,9 @@ namespace patina::tools {
 /// What `patina run` was asked to do.
 struct RunOptions : SequenceOptions {
     std::filesystem::path out;
+    /// The command line after "run", and the folder it was given in: they are kept in the map.
+    std::vector<std::string> arguments;
+    std::filesystem::path started_in;
     uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     std::filesystem::path
         dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none

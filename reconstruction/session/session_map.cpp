@@ -1,0 +1,125 @@
+// How a session's state goes into its map, and comes back.
+
+#include <fmt/format.h>
+
+#include "reconstruction/session/choices.h"
+#include "reconstruction/session/session_core.h"
+#include "reconstruction/session/session_state.h"
+#include "scenes/render/synthetic_source.h"
+
+namespace patina {
+
+namespace {
+
+/// How far a session is, for people and for open_map().
+nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const SequenceInfo& info, bool ended) {
+    nlohmann::ordered_json json{{"read", ledger.read()}, {"used", ledger.used()}, {"ended", ended}};
+    if (info.frames) json["frames"] = *info.frames;
+    return json;
+}
+
+}  // namespace
+
+void SessionCore::open_map() {
+    if (options_.resume) {
+        map_ = MapFile::with_state(options_.map);
+        return;
+    }
+    std::error_code failure;
+    if (!std::filesystem::exists(options_.map, failure)) return;
+    map_ = std::make_unique<MapFile>(options_.map);
+    if (!map_->has_state()) return;
+    const auto progress = nlohmann::json::parse(map_->expect_text("progress"));
+    if (progress.value("ended", false)) return;
+    throw Error(
+        hinted(patina::text("'", options_.map.string(), "' holds a session that has not come to its end, after ",
+                            progress.value("read", 0), " frames; go on with it, or remove the file"),
+               options_.hints.resume));
+}
+
+SessionLight SessionCore::find_or_bring_back_light() {
+    if (!options_.resume) return light_of(device_, options_, world_offset_m_);
+    SessionLight light;
+    StateReader reader(device_, *map_);
+    patina::visit(reader, light);
+    return light;
+}
+
+void SessionCore::visit(graph::StateVisitor& visitor) {
+    pipeline_->visit(visitor);
+    patina::visit(visitor, ledger_, used_);
+    patina::visit(visitor, tracked_);
+    visitor.values("session.poses", poses_);
+    visitor.value("session.first_given", first_given_);
+}
+
+void SessionCore::resume() {
+    expect_same(options_.map, nlohmann::ordered_json::parse(map_->expect_text("session")),
+                identity_of(options_, info_, settings()));
+    StateReader reader(device_, *map_);
+    visit(reader);
+    reader.finish();
+    map_is_ours_ = true;
+    skip_readings();
+    report(options_.callbacks,
+           fmt::format("goes on after {} frames, from '{}'", ledger_.read(), options_.map.string()));
+}
+
+/// Of a recording they are read again, as it is inspected frame by frame.
+void SessionCore::skip_readings() {
+    if (scene_) return scene_->skip_to(ledger_.read());
+    for (uint32_t index = 0; index < ledger_.read(); ++index) {
+        stop_if_interrupted();
+        const std::optional<Reading> reading = source_->next();
+        if (!reading)
+            throw Error("'", options_.map.string(), "' goes on after frame ", ledger_.read(), ", but '", info_.name,
+                        "' ends after frame ", index);
+        if (inspector_) inspector_->add(*reading);
+    }
+}
+
+void SessionCore::checkpoint(const MoreState& more) {
+    if (options_.map.empty()) throw Error("a checkpoint was asked for, but no file to write it to");
+    pipeline_->wait();
+    if (!map_) {
+        if (options_.map.has_parent_path()) std::filesystem::create_directories(options_.map.parent_path());
+        map_ = std::make_unique<MapFile>(options_.map);
+    }
+    Transaction change(map_->database());
+    if (!map_is_ours_) map_->clear();
+    const vulkan::DeviceCaps& caps = device_.caps();
+    map_->set_text("device", fmt::format("{}, {}", caps.name, caps.driver));
+    map_->set_text("session", identity_of(options_, info_, settings()).dump(2));
+    map_->set_text("lights", lights_json(illumination_).dump(2));
+    map_->set_text("progress", progress_json(ledger_, info_, ended_).dump(2));
+    SessionLight light{illumination_, no_light_because_, shortfalls_};
+    StateWriter writer(device_, *map_);
+    patina::visit(writer, light);
+    visit(writer);
+    if (more) more(writer, *map_);
+    writer.finish();
+    change.commit();
+    map_is_ours_ = true;
+}
+
+void SessionCore::checkpoint_if_due(const MoreState& more) {
+    if (options_.map.empty() || options_.checkpoint_every == 0 || ledger_.used() == 0) return;
+    if (!ended_ && ledger_.read() % options_.checkpoint_every != 0) return;
+    try {
+        checkpoint(more);
+        checkpoint_problem_.clear();
+    } catch (const std::exception& error) {
+        checkpoint_problem_ =
+            fmt::format("the state after {} frames could not be kept: {}", ledger_.read(), reason_of(error));
+        report(options_.callbacks, "warning: " + checkpoint_problem_);
+    }
+}
+
+void SessionCore::bring_back(const MoreState& more) {
+    if (!options_.resume) return;
+    StateReader reader(device_, *map_);
+    more(reader, *map_);
+    reader.finish();
+}
+
+}  // namespace patina

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/graph/state_visitor.h"
+#include "patina/source.h"
+#include "reconstruction/reconstruction_settings.h"
+#include "reconstruction/session/session_lights.h"
+#include "reconstruction/session/tracked_frame.h"
+#include "sensor/ledger.h"
+
+namespace patina {
+
+/// What two sessions must have in common for one to go on where the other was: sequence, choices, settings, network.
+nlohmann::ordered_json identity_of(const SessionOptions& options, const SequenceInfo& info,
+                                   const ReconstructionSettings& settings);
+
+/// Throws Error, naming the map and both values, where a session is not the one that a map is of.
+void expect_same(const std::filesystem::path& map, const nlohmann::ordered_json& kept,
+                 const nlohmann::ordered_json& now);
+
+/// Parts of a session's state on the host, to be kept or brought back.
+void visit(graph::StateVisitor& visitor, SessionLight& light);
+void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked);
+/// `used`: indices of the frames that were used. Brought back, the ledger is made anew of them.
+void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& used);
+
+}  // namespace patina

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace patina {
+
+/// An SQLite database in one file, on one thread. All that it does throws Error, naming the file and the reason, where
+/// the disk refuses, another process is at it, or the file is damaged.
+class Database {
+  public:
+    /// Opens the file, or creates it; what a process that was killed left half done is undone.
+    explicit Database(std::filesystem::path file);
+
+    /// Runs statements without values.
+    void run(const std::string& sql);
+
+    const std::filesystem::path& file() const { return file_; }
+
+  private:
+    friend class Query;
+    struct Close {
+        void operator()(sqlite3* handle) const;
+    };
+    [[noreturn]] void fail(int code) const;
+
+    std::filesystem::path file_;
+    std::unique_ptr<sqlite3, Close> handle_;
+};
+
+/// One statement with values in place of its question marks. Blobs and texts that are given must outlive it.
+class Query {
+  public:
+    Query(Database& database, std::string_view sql);
+
+    /// Sets the next value.
+    Query& with(int64_t number);
+    Query& with(std::string_view text);
+    Query& with(std::span<const std::byte> blob);
+
+    /// Steps to the next row; false after the last.
+    bool next();
+    /// Runs a statement that yields no rows.
+    void run();
+
+    /// Columns of the row, from 0 on. A blob is valid until the next step.
+    int64_t number(int column) const;
+    std::string text(int column) const;
+    std::span<const std::byte> blob(int column) const;
+
+  private:
+    void check(int code) const;
+    struct Finalize {
+        void operator()(sqlite3_stmt* statement) const;
+    };
+
+    Database& database_;
+    std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+    int given_ = 0;
+};
+
+/// Changes that are made together or not at all: without commit() all are undone.
+class Transaction {
+  public:
+    explicit Transaction(Database& database);
+    ~Transaction();
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
+
+    /// Brings the changes to the disk.
+    void commit();
+
+  private:
+    Database& database_;
+    bool open_ = true;
+};
+
+}  // namespace patina

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/graph/runner.h"
+#include "engine/graph/state_visitor.h"
+#include "engine/vulkan/device.h"
+#include "reconstruction/store/map_file.h"
+
+namespace patina {
+
+/// Keeps state in a map: every part is an array of its name. The host holds some MiB of it at a time. Within a
+/// Transaction; what is visited is in the file after finish(). Throws Error where the file cannot be written, two parts
+/// have one name, or the device was lost.
+class StateWriter : public graph::StateVisitor {
+  public:
+    /// All work on the device must have finished. Both must outlive this.
+    StateWriter(vulkan::Device& device, MapFile& map) : runner_(device), map_(map) {}
+
+    void buffer(vulkan::BufferRef& buffer) override;
+    void array(vulkan::ChunkedBuffer& array) override;
+    void image(vulkan::ImageRef& image) override;
+    void bytes(const std::string& name, std::vector<std::byte>& bytes) override;
+
+    void finish() { flush(); }
+
+  private:
+    /// A piece whose parts are on their way from the device.
+    struct Pending {
+        std::string array;
+        uint64_t piece = 0;
+        std::vector<graph::Readback> parts;
+    };
+    void chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks);
+    graph::FrameGraph& frame();
+    void flush();
+
+    graph::Runner runner_;
+    MapFile& map_;
+    std::optional<graph::FrameGraph> frame_;
+    std::deque<Pending> pending_;
+    uint64_t pending_bytes_ = 0;
+};
+
+/// Brings state back from a map, the other way round. Throws Error where the map lacks a part or it does not fit,
+/// memory runs out, or the device was lost; what was visited by then is to be thrown away.
+class StateReader : public graph::StateVisitor {
+  public:
+    StateReader(vulkan::Device& device, MapFile& map) : runner_(device), map_(map) {}
+
+    void buffer(vulkan::BufferRef& buffer) override;
+    void array(vulkan::ChunkedBuffer& array) override;
+    void image(vulkan::ImageRef& image) override;
+    void bytes(const std::string& name, std::vector<std::byte>& bytes) override;
+
+    /// Waits until the device has all.
+    void finish() { flush(); }
+
+  private:
+    void chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks);
+    std::vector<std::byte> all_of(const std::string& name);
+    graph::FrameGraph& frame();
+    void count(uint64_t bytes);
+    void flush();
+
+    graph::Runner runner_;
+    MapFile& map_;
+    std::optional<graph::FrameGraph> frame_;
+    std::vector<vulkan::BufferRef> written_;  ///< in this frame
+    uint64_t pending_bytes_ = 0;
+};
+
+}  // namespace patina

@@ -1,0 +1,70 @@
+#include <csignal>
+#include <thread>
+
+#include "tests/cli/run_folder.h"
+
+// Runs that are killed and go on from their map.
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class Resume : public RunFolderTest {
+  protected:
+    /// `patina run` of the recording, whose results are what `name` holds then.
+    std::vector<std::string> arguments(const std::string& name) const {
+        return {"run", sequence(),     "--out", beside(name),         "--set", "map.voxel_m=0.02", "--hold-out",
+                "2",   "--dump-every", "1",     "--checkpoint-every", "1",     "--quiet"};
+    }
+
+    static std::map<std::string, std::string> results_in(const fs::path& folder) {
+        std::map<std::string, std::string> files = files_in(folder);
+        for (const char* name : {"run.json", "report.html", "map.sqlite"}) files.erase(name);
+        return files;
+    }
+};
+
+TEST_F(Resume, AKilledRunGoesOnToTheSameResults) {
+    const Outcome whole = patina(arguments("whole"));
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    const fs::path map = beside("killed") / "map.sqlite";
+    {
+        Program killed(arguments("killed"));
+        while (killed.running() && patina({"info", map}).exit_code != 0)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        killed.send(SIGKILL);
+        ASSERT_EQ(killed.wait().signal, SIGKILL) << "it was at its end already";
+    }
+    const Outcome info = patina({"info", map});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_THAT(info.out, AllOf(HasSubstr("of 3 read"), HasSubstr("all whole")));
+    const Outcome resumed = patina({"run", "--resume", beside("killed"), "--quiet"});
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_TRUE(results_in(beside("whole")) == results_in(beside("killed")));
+}
+
+TEST_F(Resume, ARecordingIsTakenFurtherThanAtFirst) {
+    auto shorter = arguments("short");
+    shorter.insert(shorter.end(), {"--frames", "2"});
+    ASSERT_EQ(patina(shorter).exit_code, 0);
+    auto onwards = arguments("short");
+    onwards.insert(onwards.end(), {"--resume", beside("short")});
+    const Outcome outcome = patina(onwards);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    ASSERT_EQ(patina(arguments("whole")).exit_code, 0);
+    const auto whole = files_in(beside("whole")), longer = files_in(beside("short"));
+    for (const char* name : {"scene.glb", "trajectory.txt"}) EXPECT_TRUE(whole.at(name) == longer.at(name)) << name;
+}
+
+TEST_F(Resume, WhatIsMissingIsNamed) {
+    EXPECT_THAT(expect_failure(patina({"run", "--resume", beside("nothing")})), HasSubstr("there is no map '"));
+    EXPECT_THAT(expect_failure(patina({"run", "--out", out()}), 2), HasSubstr("sequence"));
+    EXPECT_THAT(expect_failure(patina({"run", sequence()}), 2), HasSubstr("--out"));
+    EXPECT_THAT(expect_failure(patina({"run", "--resume", out(), "--frames", "3"}), 2), HasSubstr("sequence"));
+}
+
+}  // namespace
+}  // namespace patina::testing

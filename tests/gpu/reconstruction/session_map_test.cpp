@@ -1,0 +1,167 @@
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include <gmock/gmock.h>
+
+#include "patina/session.h"
+#include "reconstruction/store/map_file.h"
+#include "tests/export/temporary_folder.h"
+
+// A session that goes on from a map yields what one without a break does.
+
+namespace patina {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+constexpr uint32_t kFrames = 8;
+
+class SessionMapTest : public ::testing::Test {
+  protected:
+    void TearDown() override { EXPECT_THAT(device_.validation_messages(), IsEmpty()); }
+
+    /// A built-in scene at a resolution that makes many of its records change in every frame.
+    SessionOptions options() const {
+        SessionOptions options;
+        options.sequence = "synthetic:cubes";
+        options.frames = kFrames;
+        options.lighting = Lighting{.lights = {{glm::dvec3(0, 2, 0), glm::dvec3(3), 0.05}}};
+        for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"},
+                                         {"map.initial_blocks", "4096"},
+                                         {"reflectance.voxel_m", "0.08"},
+                                         {"reflectance.initial_blocks", "4096"},
+                                         {"reflectance.initial_records", "8192"}})
+            options.settings.set(key, value);
+        options.map = folder_ / "map.sqlite";
+        return options;
+    }
+
+    std::string bytes_of(Session& session) const {
+        session.finish().save_glb(folder_ / "scene.glb");
+        std::ifstream file(folder_ / "scene.glb", std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    std::string straight(SessionOptions options) {
+        options.map.clear();
+        Session session(device_, options);
+        while (session.step()) continue;
+        return bytes_of(session);
+    }
+
+    /// With a break after these frames, in two sessions.
+    std::string broken(SessionOptions options, uint32_t frames) {
+        std::filesystem::remove(options.map);
+        {
+            Session session(device_, options);
+            for (uint32_t i = 0; i < frames; ++i) EXPECT_TRUE(session.step());
+            session.checkpoint();
+            EXPECT_TRUE(session.step());  // what was not kept is done again
+        }
+        options.resume = true;
+        Session session(device_, options);
+        uint32_t steps = 0;
+        while (session.step()) ++steps;
+        EXPECT_EQ(steps, kFrames - frames);
+        return bytes_of(session);
+    }
+
+    Device device_{DeviceChoice{.validation = true}};
+    const test::TemporaryFolder folder_;
+};
+
+TEST_F(SessionMapTest, GoesOnToTheSameBytes) {
+    const std::string whole = straight(options());
+    ASSERT_GT(whole.size(), 10000u);
+    for (const uint32_t frames : {1u, 5u}) EXPECT_TRUE(broken(options(), frames) == whole) << frames;
+}
+
+TEST_F(SessionMapTest, TrackedOnesWithGainsToo) {
+    SessionOptions tracked = options();
+    tracked.poses = Poses::kTrack;
+    tracked.gains = Gains::kOn;
+    EXPECT_TRUE(broken(tracked, 4) == straight(tracked));
+}
+
+TEST_F(SessionMapTest, PoolsThatGrewComeBackAsLarge) {
+    SessionOptions small = options();
+    for (const char* key : {"map.initial_blocks", "reflectance.initial_blocks", "reflectance.initial_records"})
+        small.settings.set(key, "64");
+    small.settings.set("segmentation.initial_labels", "2");
+    EXPECT_TRUE(broken(small, 4) == straight(small));
+}
+
+TEST_F(SessionMapTest, CheckpointsAreWrittenWhenTheyAreDue) {
+    SessionOptions every = options();
+    every.checkpoint_every = 3;
+    const auto progress = [&] { return MapFile(every.map).expect_text("progress"); };
+    Session session(device_, every);
+    for (uint32_t i = 0; i < 2; ++i) session.step();
+    EXPECT_FALSE(std::filesystem::exists(every.map));
+    session.step();
+    EXPECT_THAT(progress(), AllOf(HasSubstr("\"read\": 3"), HasSubstr("\"ended\": false")));
+    while (session.step()) continue;
+    EXPECT_THAT(progress(), AllOf(HasSubstr("\"read\": 8"), HasSubstr("\"ended\": true")));
+}
+
+TEST_F(SessionMapTest, WhatHasNotEndedIsNotReplaced) {
+    {
+        Session session(device_, options());
+        session.step();
+        session.checkpoint();
+    }
+    EXPECT_THAT([&] { Session(device_, options()); },
+                ThrowsMessage<Error>(HasSubstr("has not come to its end, after 1 frames; go on with it, or remove")));
+    SessionOptions onwards = options();
+    onwards.resume = true;
+    onwards.checkpoint_every = kFrames;
+    {
+        Session session(device_, onwards);
+        while (session.step()) continue;
+    }
+    Session again(device_, options());
+    again.step();
+    again.checkpoint();
+    EXPECT_THAT(MapFile(options().map).expect_text("progress"), HasSubstr("\"read\": 1"));
+}
+
+TEST_F(SessionMapTest, OtherOptionsAreRefused) {
+    {
+        Session session(device_, options());
+        session.step();
+        session.checkpoint();
+    }
+    const auto resumed = [&](const std::function<void(SessionOptions&)>& change) {
+        SessionOptions other = options();
+        other.resume = true;
+        change(other);
+        Session session(device_, other);
+    };
+    EXPECT_THAT([&] { resumed([](SessionOptions& o) { o.settings.set("fusion.max_depth_m", "3"); }); },
+                ThrowsMessage<Error>(AllOf(HasSubstr("map.sqlite' was written with settings.fusion.max_depth_m = "),
+                                           HasSubstr("now it is 3"))));
+    EXPECT_THAT([&] { resumed([](SessionOptions& o) { o.labels = Labels::kOff; }); },
+                ThrowsMessage<Error>(HasSubstr("labels = \"geometry\", now it is \"off\"")));
+    EXPECT_THAT([&] { resumed([](SessionOptions& o) { o.map = "/nowhere/map.sqlite"; }); },
+                ThrowsMessage<Error>(HasSubstr("there is no map '/nowhere/map.sqlite'")));
+}
+
+TEST_F(SessionMapTest, ACheckpointThatFailsIsAShortfall) {
+    SessionOptions nowhere = options();
+    std::ofstream(folder_ / "file") << "no folder";
+    nowhere.map = folder_ / "file/map.sqlite";
+    nowhere.checkpoint_every = 2;
+    Session session(device_, nowhere);
+    while (session.step()) continue;
+    EXPECT_THAT(session.shortfalls(), ::testing::Contains(HasSubstr("the state after 8 frames could not be kept: ")));
+    EXPECT_GT(session.finish().mesh.triangles.size(), 0u);
+}
+
+}  // namespace
+}  // namespace patina
