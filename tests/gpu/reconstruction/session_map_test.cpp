@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 
 #include "patina/session.h"
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/session_core.h"
 #include "reconstruction/store/map_file.h"
 #include "tests/export/temporary_folder.h"
 
@@ -42,10 +44,18 @@ class SessionMapTest : public ::testing::Test {
         return options;
     }
 
+    /// All files of the scene; and what the session counted, which later frames would depend on.
     std::string bytes_of(Session& session) const {
-        session.finish().save_glb(folder_ / "scene.glb");
-        std::ifstream file(folder_ / "scene.glb", std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
+        session.finish().save(folder_ / "scene");
+        std::string bytes;
+        for (const char* name : {"scene.glb", "materials.json", "trajectory.txt"}) {
+            std::ifstream file(folder_ / "scene" / name, std::ios::binary);
+            bytes.append(std::istreambuf_iterator<char>(file), {});
+        }
+        SessionCore& core = Access::core(session);
+        for (const PoolState& pool : core.pools())
+            bytes += text(pool.name, ' ', pool.capacity, ' ', pool.used, ' ', pool.refused, ' ', pool.growths, '\n');
+        return bytes + core.gains_text();
     }
 
     std::string straight(SessionOptions options) {
