@@ -221,6 +221,9 @@ void GrowingPools::visit(graph::StateVisitor& visitor) {
     }
     visitor.values("pools.pending_frames", frames);
     visitor.values("pools.pending_counts", counts);
+    if (counts.size() != frames.size() * pools_.size())
+        throw Error("'pools.pending_counts' has ", counts.size(), " counts, not those of ", pools_.size(), " pools in ",
+                    frames.size(), " frames");
     pending_.clear();
     for (size_t i = 0; i < frames.size(); ++i) {
         const auto first = counts.begin() + static_cast<std::ptrdiff_t>(i * pools_.size());

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "sensor/camera_json.h"
 #include "sensor/files/exr_file.h"
 #include "sensor/files/picture_file.h"
 #include "sensor/files/text_file.h"
@@ -57,16 +58,6 @@ void expect_extent(const fs::path& stem, const Picture& picture, Extent2D expect
     const Extent2D extent = std::visit([](const auto& image) { return image.extent(); }, picture);
     if (extent != expected)
         throw Error(stem.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
-}
-
-Json to_json(const Intrinsics& camera) {
-    return {{"width", camera.extent.width},
-            {"height", camera.extent.height},
-            {"fx", camera.fx},
-            {"fy", camera.fy},
-            {"cx", camera.cx},
-            {"cy", camera.cy},
-            {"distortion", camera.distortion}};
 }
 
 Json to_json(const RigidTransform& transform) {
@@ -134,13 +125,13 @@ void SequenceWriter::write_lists() const {
 }
 
 void SequenceWriter::write_sequence_file() const {
-    Json color = to_json(info_.color);
+    Json color = camera_json(info_.color);
     if (info_.exposure_known) {
         color["exposure_s"] = exposures_.front().exposure_s;
         color["gain"] = exposures_.front().gain;
     }
     if (!info_.motion_blur) color["motion_blur"] = false;
-    Json depth = to_json(info_.depth);
+    Json depth = camera_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;
     const Json root{{"format", "patina-sequence"},

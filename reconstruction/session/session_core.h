@@ -116,6 +116,7 @@ class SessionCore {
     void resume();
     void visit(graph::StateVisitor& visitor);
     void skip_readings();
+    void mark_ended();
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
@@ -128,7 +129,7 @@ class SessionCore {
     std::unique_ptr<Source> source_;
     scenes::SyntheticSource* scene_ = nullptr;  ///< the source, where it is one
     std::unique_ptr<MapFile> map_;              ///< null until there is something in it
-    bool map_is_ours_ = false;                  ///< it holds this session's state, not that of another
+    std::optional<uint32_t> kept_after_;  ///< frames read when the state in it was; empty: it is another session's
     std::string checkpoint_problem_;
     bool ended_ = false;  ///< the source has
     std::optional<SequenceTruth> truth_;

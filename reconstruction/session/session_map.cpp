@@ -29,7 +29,7 @@ void SessionCore::open_map() {
     if (!std::filesystem::exists(options_.map, failure)) return;
     map_ = std::make_unique<MapFile>(options_.map);
     if (!map_->has_state()) return;
-    const auto progress = nlohmann::json::parse(map_->expect_text("progress"));
+    const auto progress = map_->expect_json("progress");
     if (progress.value("ended", false)) return;
     throw Error(
         hinted(patina::text("'", options_.map.string(), "' holds a session that has not come to its end, after ",
@@ -54,12 +54,11 @@ void SessionCore::visit(graph::StateVisitor& visitor) {
 }
 
 void SessionCore::resume() {
-    expect_same(options_.map, nlohmann::ordered_json::parse(map_->expect_text("session")),
-                identity_of(options_, info_, settings()));
+    expect_same(options_.map, map_->expect_json("session"), identity_of(options_, info_, settings()));
     StateReader reader(device_, *map_);
     visit(reader);
     reader.finish();
-    map_is_ours_ = true;
+    kept_after_ = ledger_.read();
     skip_readings();
     report(options_.callbacks,
            fmt::format("goes on after {} frames, from '{}'", ledger_.read(), options_.map.string()));
@@ -86,7 +85,7 @@ void SessionCore::checkpoint(const MoreState& more) {
         map_ = std::make_unique<MapFile>(options_.map);
     }
     Transaction change(map_->database());
-    if (!map_is_ours_) map_->clear();
+    if (!kept_after_) map_->clear();
     const vulkan::DeviceCaps& caps = device_.caps();
     map_->set_text("device", fmt::format("{}, {}", caps.name, caps.driver));
     map_->set_text("session", identity_of(options_, info_, settings()).dump(2));
@@ -99,14 +98,24 @@ void SessionCore::checkpoint(const MoreState& more) {
     if (more) more(writer, *map_);
     writer.finish();
     change.commit();
-    map_is_ours_ = true;
+    kept_after_ = ledger_.read();
+}
+
+void SessionCore::mark_ended() {
+    Transaction change(map_->database());
+    map_->set_text("progress", progress_json(ledger_, info_, ended_).dump(2));
+    change.commit();
 }
 
 void SessionCore::checkpoint_if_due(const MoreState& more) {
     if (options_.map.empty() || options_.checkpoint_every == 0 || ledger_.used() == 0) return;
     if (!ended_ && ledger_.read() % options_.checkpoint_every != 0) return;
     try {
-        checkpoint(more);
+        if (ended_ && kept_after_ == ledger_.read()) {
+            mark_ended();
+        } else {
+            checkpoint(more);
+        }
         checkpoint_problem_.clear();
     } catch (const std::exception& error) {
         checkpoint_problem_ =

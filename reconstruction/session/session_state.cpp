@@ -8,20 +8,11 @@
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/session_materials.h"
 #include "reconstruction/setting_table.h"
+#include "sensor/camera_json.h"
 
 namespace patina {
 
 namespace {
-
-nlohmann::ordered_json json_of(const Intrinsics& camera) {
-    return {{"width", camera.extent.width},
-            {"height", camera.extent.height},
-            {"fx", camera.fx},
-            {"fy", camera.fy},
-            {"cx", camera.cx},
-            {"cy", camera.cy},
-            {"distortion", camera.distortion}};
-}
 
 std::string digest_of(const NetworkDescription& network) {
     Digest digest;
@@ -43,8 +34,8 @@ nlohmann::ordered_json identity_of(const SessionOptions& options, const Sequence
     nlohmann::ordered_json json{{"patina", kVersion}, {"sequence", info.name}, {"format", info.format}};
     // A recording may be cut short; a scene's path is as long as its frames.
     if (synthetic_scene(options)) json["frames"] = info.frames.value_or(0);
-    json["color"] = json_of(info.color);
-    json["depth"] = json_of(info.depth);
+    json["color"] = sensor::camera_json(info.color);
+    json["depth"] = sensor::camera_json(info.depth);
     json["labels"] = name_of(options.labels);
     json["specular"] = specular_mode(settings);
     json["truth_materials"] = options.materials == Materials::kTruth;

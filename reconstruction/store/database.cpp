@@ -10,6 +10,9 @@ namespace patina {
 
 namespace {
 
+/// How long to wait for another process: whoever looks into a map reads it for seconds.
+constexpr int kPatienceMs = 20000;
+
 /// What a code means to a person; empty where SQLite's own words do.
 const char* meaning_of(int code) {
     switch (code & 0xff) {
@@ -36,7 +39,8 @@ Database::Database(std::filesystem::path file) : file_(std::move(file)) {
     handle_.reset(handle);
     if (code != SQLITE_OK) fail(code);
     sqlite3_extended_result_codes(handle, 1);
-    // A commit that returned is on the disk. What is written large is not written twice, as it would be to a log.
+    sqlite3_busy_timeout(handle, kPatienceMs);
+    // A commit that returned is on the disk. What is large is not written twice, as a write-ahead log would.
     run("PRAGMA synchronous = FULL; PRAGMA journal_mode = DELETE; PRAGMA temp_store = MEMORY");
 }
 

@@ -18,7 +18,8 @@ namespace patina {
 /// the disk refuses, another process is at it, or the file is damaged.
 class Database {
   public:
-    /// Opens the file, or creates it; what a process that was killed left half done is undone.
+    /// Opens the file, or creates it; what a process that was killed left half done is undone. Whatever is done with
+    /// it waits some seconds for another process that is at it.
     explicit Database(std::filesystem::path file);
 
     /// Runs statements without values.

@@ -94,6 +94,12 @@ std::string MapFile::expect_text(std::string_view key) {
     return *std::move(found);
 }
 
+nlohmann::ordered_json MapFile::expect_json(std::string_view key) {
+    auto json = nlohmann::ordered_json::parse(expect_text(key), nullptr, false);
+    if (json.is_discarded()) throw Error("'", file().string(), "': the text '", std::string(key), "' is no JSON");
+    return json;
+}
+
 void MapFile::set_bytes(std::string_view array, uint64_t bytes) {
     Query(database_, "INSERT OR REPLACE INTO arrays VALUES (?, ?)").with(array).with(static_cast<int64_t>(bytes)).run();
     const auto pieces = static_cast<int64_t>((bytes + kPieceBytes - 1) / kPieceBytes);

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "reconstruction/store/database.h"
 
 struct ZSTD_CCtx_s;
@@ -47,6 +49,8 @@ class MapFile {
     std::optional<std::string> text(std::string_view key);
     /// Throws Error where there is none.
     std::string expect_text(std::string_view key);
+    /// A text as JSON. Throws Error, too, where it is none.
+    nlohmann::ordered_json expect_json(std::string_view key);
 
     /// Sets the size of an array in bytes; pieces beyond it go.
     void set_bytes(std::string_view array, uint64_t bytes);

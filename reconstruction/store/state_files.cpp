@@ -35,16 +35,25 @@ void for_each_part(const std::vector<vulkan::BufferRef>& chunks, uint64_t begin,
 
 }  // namespace
 
-graph::FrameGraph& StateWriter::frame() {
+graph::FrameGraph& StateTransfer::frame() {
     if (!frame_) frame_.emplace(runner_.begin());
     return *frame_;
 }
 
-void StateWriter::flush() {
-    if (!frame_) return;
+bool StateTransfer::is_full_with(uint64_t bytes) { return (frame_bytes_ += bytes) >= kWindowBytes; }
+
+bool StateTransfer::submit() {
+    if (!frame_) return false;
     runner_.submit(*std::move(frame_));
     frame_.reset();
+    frame_bytes_ = 0;
     runner_.wait();
+    runner_.forget_shapes();
+    return true;
+}
+
+void StateWriter::flush() {
+    if (!submit()) return;
     for (; !pending_.empty(); pending_.pop_front()) {
         const Pending& pending = pending_.front();
         if (pending.parts.size() == 1) {
@@ -56,21 +65,23 @@ void StateWriter::flush() {
             content.insert(content.end(), part.bytes().begin(), part.bytes().end());
         map_.set_piece(pending.array, pending.piece, content);
     }
-    pending_bytes_ = 0;
-    runner_.forget_shapes();
+}
+
+void StateWriter::begin(const std::string& name, uint64_t bytes) {
+    if (!names_.insert(name).second) throw Error("two parts of the state are called '", name, "'");
+    map_.set_bytes(name, bytes);
 }
 
 void StateWriter::chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks) {
     const uint64_t bytes = total_bytes(chunks);
-    map_.set_bytes(name, bytes);
+    begin(name, bytes);
     for (uint64_t piece = 0; piece < piece_count(bytes); ++piece) {
         Pending& pending = pending_.emplace_back(Pending{name, piece, {}});
         for_each_part(chunks, piece * MapFile::kPieceBytes, piece_bytes(bytes, piece),
                       [&](const vulkan::BufferRef& chunk, uint64_t begin, uint64_t size) {
                           pending.parts.push_back(frame().read_back(frame().import(chunk), begin, size));
                       });
-        pending_bytes_ += piece_bytes(bytes, piece);
-        if (pending_bytes_ >= kWindowBytes) flush();
+        if (is_full_with(piece_bytes(bytes, piece))) flush();
     }
 }
 
@@ -86,32 +97,17 @@ void StateWriter::image(vulkan::ImageRef& image) {
 }
 
 void StateWriter::bytes(const std::string& name, std::vector<std::byte>& bytes) {
-    map_.set_bytes(name, bytes.size());
+    begin(name, bytes.size());
     for (uint64_t piece = 0; piece < piece_count(bytes.size()); ++piece) {
         map_.set_piece(name, piece,
                        std::span(bytes).subspan(piece * MapFile::kPieceBytes, piece_bytes(bytes.size(), piece)));
     }
 }
 
-graph::FrameGraph& StateReader::frame() {
-    if (!frame_) frame_.emplace(runner_.begin());
-    return *frame_;
-}
-
 void StateReader::flush() {
-    if (!frame_) return;
-    for (const vulkan::BufferRef& buffer : written_) frame_->keep(frame_->import(buffer));
+    for (const vulkan::BufferRef& buffer : written_) frame().keep(frame().import(buffer));
     written_.clear();
-    runner_.submit(*std::move(frame_));
-    frame_.reset();
-    runner_.wait();
-    pending_bytes_ = 0;
-    runner_.forget_shapes();
-}
-
-void StateReader::count(uint64_t bytes) {
-    pending_bytes_ += bytes;
-    if (pending_bytes_ >= kWindowBytes) flush();
+    submit();
 }
 
 void StateReader::chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks) {
@@ -129,7 +125,7 @@ void StateReader::chunks(const std::string& name, const std::vector<vulkan::Buff
                           if (written_.empty() || written_.back() != chunk) written_.push_back(chunk);
                           taken += size;
                       });
-        count(content.size());
+        if (is_full_with(content.size())) flush();
     }
 }
 

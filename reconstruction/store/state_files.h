@@ -2,7 +2,7 @@
 
 #include <deque>
 #include <optional>
-#include <span>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,13 +13,31 @@
 
 namespace patina {
 
-/// Keeps state in a map: every part is an array of its name. The host holds some MiB of it at a time. Within a
-/// Transaction; what is visited is in the file after finish(). Throws Error where the file cannot be written, two parts
-/// have one name, or the device was lost.
-class StateWriter : public graph::StateVisitor {
+/// The device's part of both: graphs of its own, each with some MiB of transfers.
+class StateTransfer : public graph::StateVisitor {
+  protected:
+    StateTransfer(vulkan::Device& device, MapFile& map) : runner_(device), map_(map) {}
+
+    graph::FrameGraph& frame();
+    /// Counts transfers of the frame; whether it is time to flush.
+    bool is_full_with(uint64_t bytes);
+    /// Submits the frame, where there is one, and waits; whether there was one.
+    bool submit();
+
+    graph::Runner runner_;
+    MapFile& map_;
+
+  private:
+    std::optional<graph::FrameGraph> frame_;
+    uint64_t frame_bytes_ = 0;
+};
+
+/// Keeps state in a map: every part is an array of its name. Within a Transaction; what is visited is in the file after
+/// finish(). Throws Error where the file cannot be written, two parts have one name, or the device was lost.
+class StateWriter : public StateTransfer {
   public:
     /// All work on the device must have finished. Both must outlive this.
-    StateWriter(vulkan::Device& device, MapFile& map) : runner_(device), map_(map) {}
+    StateWriter(vulkan::Device& device, MapFile& map) : StateTransfer(device, map) {}
 
     void buffer(vulkan::BufferRef& buffer) override;
     void array(vulkan::ChunkedBuffer& array) override;
@@ -35,22 +53,19 @@ class StateWriter : public graph::StateVisitor {
         uint64_t piece = 0;
         std::vector<graph::Readback> parts;
     };
+    void begin(const std::string& name, uint64_t bytes);
     void chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks);
-    graph::FrameGraph& frame();
     void flush();
 
-    graph::Runner runner_;
-    MapFile& map_;
-    std::optional<graph::FrameGraph> frame_;
+    std::set<std::string> names_;
     std::deque<Pending> pending_;
-    uint64_t pending_bytes_ = 0;
 };
 
 /// Brings state back from a map, the other way round. Throws Error where the map lacks a part or it does not fit,
 /// memory runs out, or the device was lost; what was visited by then is to be thrown away.
-class StateReader : public graph::StateVisitor {
+class StateReader : public StateTransfer {
   public:
-    StateReader(vulkan::Device& device, MapFile& map) : runner_(device), map_(map) {}
+    StateReader(vulkan::Device& device, MapFile& map) : StateTransfer(device, map) {}
 
     void buffer(vulkan::BufferRef& buffer) override;
     void array(vulkan::ChunkedBuffer& array) override;
@@ -63,15 +78,9 @@ class StateReader : public graph::StateVisitor {
   private:
     void chunks(const std::string& name, const std::vector<vulkan::BufferRef>& chunks);
     std::vector<std::byte> all_of(const std::string& name);
-    graph::FrameGraph& frame();
-    void count(uint64_t bytes);
     void flush();
 
-    graph::Runner runner_;
-    MapFile& map_;
-    std::optional<graph::FrameGraph> frame_;
     std::vector<vulkan::BufferRef> written_;  ///< in this frame
-    uint64_t pending_bytes_ = 0;
 };
 
 }  // namespace patina

@@ -1,6 +1,9 @@
 #include "reconstruction/store/map_file.h"
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -71,7 +74,11 @@ TEST_F(MapFileTest, NamesWhatItLacks) {
     EXPECT_THAT([&] { map.check(); }, ThrowsMessage<Error>(HasSubstr("is missing")));
     EXPECT_THAT([&] { MapFile::with_state(folder_ / "other"); }, ThrowsMessage<Error>(HasSubstr("there is no map")));
     EXPECT_THAT([&] { MapFile::with_state(file_); }, ThrowsMessage<Error>(HasSubstr("holds no state yet")));
+    map.set_text("progress", "{");
+    EXPECT_THAT([&] { map.expect_json("progress"); },
+                ThrowsMessage<Error>(HasSubstr("the text 'progress' is no JSON")));
     map.set_text("progress", "{}");
+    EXPECT_TRUE(map.expect_json("progress").empty());
     EXPECT_EQ(MapFile::with_state(file_)->text("progress"), "{}");
 }
 
@@ -148,9 +155,26 @@ TEST_F(MapFileTest, RefusesWhatIsNoMap) {
 
 TEST_F(MapFileTest, OneWriterAtATime) {
     MapFile map(file_), other(file_);
+    other.database().run("PRAGMA busy_timeout = 0");
     const Transaction change(map.database());
     EXPECT_THAT([&] { const Transaction second(other.database()); },
                 ThrowsMessage<Error>(HasSubstr("another process is writing to it")));
+}
+
+TEST_F(MapFileTest, AWriterWaitsForWhoReads) {
+    MapFile map(file_);
+    map.set_text("a", "before");
+    std::atomic<bool> is_read = false;
+    std::jthread reader([&] {
+        MapFile other(file_);
+        Query query(other.database(), "SELECT text FROM texts");
+        query.next();
+        is_read = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    });
+    while (!is_read) std::this_thread::yield();
+    map.set_text("a", "after");
+    EXPECT_EQ(map.text("a"), "after");
 }
 
 TEST_F(MapFileTest, AFullDiskChangesNothing) {

@@ -1,9 +1,6 @@
 #include "tools/run/run.h"
 
-#include <algorithm>
 #include <memory>
-
-#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
 #include "reconstruction/store/map_file.h"
@@ -64,13 +61,14 @@ fs::path map_in(const fs::path& folder) { return folder / "map.sqlite"; }
 /// The arguments of the run that a map is of, as if they were given now, where it was started.
 std::shared_ptr<RunArguments> kept_arguments(const fs::path& folder) {
     const auto map = MapFile::with_state(map_in(folder));
-    const auto words = nlohmann::json::parse(map->expect_text("arguments")).get<std::vector<std::string>>();
+    std::vector<std::string> words;
+    for (const auto& word : map->expect_json("arguments")) words.push_back(word.get<std::string>());
     const fs::path started_in = map->expect_text("started_in");
     std::error_code failure;
     fs::current_path(started_in, failure);
     if (failure)
         throw Error("the run in '", folder.string(), "' was started in '", started_in.string(),
-                    "', which cannot be entered: ", failure.message());
+                    "', which cannot be entered: ", failure.message(), "; give its sequence and options again");
     auto arguments = std::make_shared<RunArguments>();
     CLI::App command;
     declare(command, *arguments);
@@ -79,11 +77,13 @@ std::shared_ptr<RunArguments> kept_arguments(const fs::path& folder) {
     return arguments;
 }
 
-/// Takes over what the run in the folder was started with; its results go there.
-std::shared_ptr<RunArguments> resumed(const CLI::App& command, const RunArguments& given) {
-    for (const CLI::Option* option : command.get_options()) {
-        if (option->count() > 0 && !option->check_name("--resume") && !option->check_name("--quiet"))
-            throw CLI::RequiredError("sequence");
+/// Takes over what the run in the folder was started with; its results go there. Throws CLI::RequiredError where more
+/// was given than that: such words are for a run whose sequence is given.
+std::shared_ptr<RunArguments> resumed(const RunArguments& given) {
+    for (size_t i = 0; i < given.run.arguments.size(); ++i) {
+        const std::string& word = given.run.arguments[i];
+        if (word == "--resume") ++i;  // its folder
+        if (!word.starts_with("--resume") && word != "--quiet") throw CLI::RequiredError("sequence");
     }
     const fs::path folder = fs::absolute(given.resume);
     auto arguments = kept_arguments(folder);
@@ -111,10 +111,10 @@ void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& word
     CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
     const auto given = std::make_shared<RunArguments>();
     declare(*command, *given);
-    command->callback([command, given, words, &exit_code] {
+    command->callback([given, words, &exit_code] {
         given->run.arguments = words;
         const bool goes_on = !given->resume.empty() && given->run.sequence.empty();
-        exit_code = start(goes_on ? *resumed(*command, *given) : *given);
+        exit_code = start(goes_on ? *resumed(*given) : *given);
     });
 }
 

@@ -1,12 +1,12 @@
 #include "tools/program/map_text.h"
 
 #include <array>
-#include <cstring>
 #include <fstream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "reconstruction/store/map_file.h"
 
 namespace patina::tools {
@@ -39,26 +39,30 @@ fs::path map_at(const fs::path& path) {
 
 std::string describe_map(const fs::path& file) {
     const auto map = MapFile::with_state(file);
-    const auto progress = nlohmann::json::parse(map->expect_text("progress"));
-    const auto session = nlohmann::json::parse(map->expect_text("session"));
-    const auto lights = nlohmann::json::parse(map->expect_text("lights"));
     map->check();
     const MapFile::Size size = map->size();
-    const std::string of = progress.contains("frames") ? fmt::format(" of {}", progress["frames"].get<uint32_t>()) : "";
-    std::string lines =
-        fmt::format("map       {}, of patina {}\n", file.string(), session["patina"].get<std::string>());
-    lines += fmt::format("sequence  {} ({})\n", session["sequence"].get<std::string>(),
-                         session["format"].get<std::string>());
-    lines += fmt::format("frames    {}{} read, {} used; {}\n", progress["read"].get<uint32_t>(), of,
-                         progress["used"].get<uint32_t>(),
-                         progress["ended"].get<bool>() ? "the run came to its end" : "the run can go on");
-    lines += fmt::format("lights    {} lamps, found by: {}\n", lights["lamps"].size(),
-                         lights["found_by"].get<std::string>());
-    lines += fmt::format("device    {}\n", map->expect_text("device"));
-    lines += fmt::format("state     {} arrays of {:.1f} MiB, {:.1f} MiB compressed, all whole\n", size.arrays,
-                         mebibytes(size.bytes), mebibytes(size.compressed_bytes));
-    if (const size_t files = map->files().size(); files > 0)
-        lines += fmt::format("pictures  {} files of results\n", files);
+    std::string lines;
+    const auto add = [&](const char* label, const std::string& value) {
+        lines += fmt::format("{:<10}{}\n", label, printable(value));
+    };
+    try {
+        const auto progress = map->expect_json("progress"), session = map->expect_json("session"),
+                   lights = map->expect_json("lights");
+        const auto word = [](const auto& json, const char* key) { return json.at(key).template get<std::string>(); };
+        const auto count = [&](const char* key) { return progress.at(key).get<uint32_t>(); };
+        const std::string of = progress.contains("frames") ? fmt::format(" of {}", count("frames")) : "";
+        add("map", fmt::format("{}, of patina {}", file.string(), word(session, "patina")));
+        add("sequence", fmt::format("{} ({})", word(session, "sequence"), word(session, "format")));
+        add("frames", fmt::format("{}{} read, {} used; {}", count("read"), of, count("used"),
+                                  progress.at("ended").get<bool>() ? "the run came to its end" : "the run can go on"));
+        add("lights", fmt::format("{} lamps, found by: {}", lights.at("lamps").size(), word(lights, "found_by")));
+    } catch (const nlohmann::json::exception& failure) {
+        throw Error("'", file.string(), "' does not say what it holds: ", failure.what());
+    }
+    add("device", map->expect_text("device"));
+    add("state", fmt::format("{} arrays of {:.1f} MiB, {:.1f} MiB compressed, all whole", size.arrays,
+                             mebibytes(size.bytes), mebibytes(size.compressed_bytes)));
+    if (const size_t files = map->files().size(); files > 0) add("pictures", fmt::format("{} files of results", files));
     return lines;
 }
 

@@ -1,29 +1,20 @@
 #include "tools/report/run_summary.h"
 
 #include "engine/core/digest.h"
+#include "sensor/camera_json.h"
 
 namespace patina {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json camera_json(const Intrinsics& camera) {
-    return {{"width", camera.extent.width},
-            {"height", camera.extent.height},
-            {"fx", camera.fx},
-            {"fy", camera.fy},
-            {"cx", camera.cx},
-            {"cy", camera.cy},
-            {"distortion", camera.distortion}};
-}
-
 Json sequence_json(const SequenceInfo& sequence) {
     return {{"name", sequence.name},
             {"format", sequence.format},
             {"fps", sequence.fps},
             {"frames", sequence.frames.value_or(0)},
-            {"color", camera_json(sequence.color)},
-            {"depth", camera_json(sequence.depth)},
+            {"color", sensor::camera_json(sequence.color)},
+            {"depth", sensor::camera_json(sequence.depth)},
             {"max_metres", sequence.max_metres},
             {"has_poses", sequence.has_poses}};
 }
