@@ -65,6 +65,11 @@ TEST_F(Resume, WhatIsMissingIsNamed) {
     EXPECT_THAT(expect_failure(patina({"run", "--out", out()}), 2), HasSubstr("sequence"));
     EXPECT_THAT(expect_failure(patina({"run", sequence()}), 2), HasSubstr("--out"));
     EXPECT_THAT(expect_failure(patina({"run", "--resume", out(), "--frames", "3"}), 2), HasSubstr("sequence"));
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {sequence(), "--out", out()}}) {
+        std::vector<std::string> words{"run", "--resume", ""};
+        words.insert(words.end(), more.begin(), more.end());
+        EXPECT_THAT(expect_failure(patina(words)), HasSubstr("--resume is empty"));
+    }
 }
 
 }  // namespace

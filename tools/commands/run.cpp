@@ -1,6 +1,8 @@
 #include "tools/run/run.h"
 
 #include <memory>
+#include <optional>
+#include <system_error>
 
 #include "engine/core/error.h"
 #include "reconstruction/store/map_file.h"
@@ -16,7 +18,7 @@ namespace fs = std::filesystem;
 struct RunArguments {
     RunOptions run;
     SequenceArguments sequence;
-    fs::path resume;  ///< the folder whose map the run goes on from; empty: it begins
+    std::optional<fs::path> resume;  ///< the folder whose map the run goes on from; none: it begins
 };
 
 /// Both must live until the command line is parsed.
@@ -50,10 +52,10 @@ void declare(CLI::App& command, RunArguments& arguments) {
                        "Go on from the map in this folder; alone: with the arguments that the run was started with");
 }
 
-/// Throws CLI::RequiredError where something is missing.
-void expect_complete(const RunArguments& arguments) {
-    if (arguments.run.sequence.empty()) throw CLI::RequiredError("sequence");
-    if (arguments.run.out.empty()) throw CLI::RequiredError("--out");
+/// Throws CLI::RequiredError where something is missing that a run begins with.
+void expect_complete(const CLI::App& command) {
+    for (const char* option : {"sequence", "--out"})
+        if (command.count(option) == 0) throw CLI::RequiredError(option);
 }
 
 fs::path map_in(const fs::path& folder) { return folder / "map.sqlite"; }
@@ -85,23 +87,30 @@ std::shared_ptr<RunArguments> resumed(const RunArguments& given) {
         if (word == "--resume") ++i;  // its folder
         if (!word.starts_with("--resume") && word != "--quiet") throw CLI::RequiredError("sequence");
     }
-    const fs::path folder = fs::absolute(given.resume);
+    const fs::path folder = fs::absolute(*given.resume);
     auto arguments = kept_arguments(folder);
     arguments->resume = arguments->run.out = folder;
     arguments->run.quiet = given.run.quiet;
     return arguments;
 }
 
+fs::path working_folder() {
+    std::error_code failure;
+    const fs::path folder = fs::current_path(failure);
+    if (failure) throw Error("the folder that this program was started in is gone: ", failure.message());
+    return folder;
+}
+
 int start(RunArguments& arguments) {
-    expect_complete(arguments);
     RunOptions& run_options = arguments.run;
     arguments.sequence.finish(run_options);
     run_options.hints.track = "--poses track";
-    run_options.started_in = fs::current_path();
-    run_options.resume = !arguments.resume.empty();
+    run_options.resume = arguments.resume.has_value();
     run_options.hints.resume = "--resume " + run_options.out.string();
-    if (run_options.resume || run_options.checkpoint_every > 0)
-        run_options.map = map_in(run_options.resume ? arguments.resume : run_options.out);
+    if (run_options.resume || run_options.checkpoint_every > 0) {
+        run_options.map = map_in(arguments.resume.value_or(run_options.out));
+        run_options.started_in = working_folder();
+    }
     return run(run_options).exit_code();
 }
 
@@ -111,10 +120,12 @@ void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& word
     CLI::App* command = app.add_subcommand("run", "Reconstruct a sequence into a scene");
     const auto given = std::make_shared<RunArguments>();
     declare(*command, *given);
-    command->callback([given, words, &exit_code] {
+    command->callback([given, words, command, &exit_code] {
         given->run.arguments = words;
-        const bool goes_on = !given->resume.empty() && given->run.sequence.empty();
-        exit_code = start(goes_on ? *resumed(*given) : *given);
+        if (given->resume && given->resume->empty()) throw Error("--resume is empty, but must name a run's folder");
+        const bool alone = given->resume && command->count("sequence") == 0;
+        if (!alone) expect_complete(*command);
+        exit_code = start(alone ? *resumed(*given) : *given);
     });
 }
 
