@@ -149,8 +149,8 @@ class Session:
     def __init__(self, device: Device, sequence: Path, *, format: str = "", frames: int = 0,
                  lighting: LightingChoice = "", labels: str = "geometry", materials: str = "auto", poses: str = "auto",
                  gains: str = "auto", network: Path = "", seed: Optional[int] = None, hold_out: int = 0,
-                 map: Path = "", checkpoint_every: int = 0, resume: bool = False, reflectance_for: str = "",
-                 settings: Optional[Settings] = None,
+                 map: Path = "", checkpoint_every: int = 0, resume: bool = False, extends: Path = "",
+                 reflectance_for: str = "", settings: Optional[Settings] = None,
                  progress: Optional[Callable[[str, int, Optional[int], str], object]] = None,
                  message: Optional[Callable[[str], object]] = None,
                  stop: Optional[Callable[[], object]] = None) -> None: ...

@@ -24,8 +24,9 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
                               const std::string& materials, const std::string& poses, const std::string& gains,
                               const std::filesystem::path& network, std::optional<uint64_t> seed, uint32_t hold_out,
                               const std::filesystem::path& map, uint32_t checkpoint_every, bool resume,
-                              const std::string& reflectance_for, const std::optional<Settings>& settings,
-                              py::object progress, py::object message, py::object stop) {
+                              const std::filesystem::path& extends, const std::string& reflectance_for,
+                              const std::optional<Settings>& settings, py::object progress, py::object message,
+                              py::object stop) {
     const auto callbacks = std::make_shared<Callbacks>(std::move(progress), std::move(message), std::move(stop));
     SessionOptions options;
     options.sequence = sequence.string();
@@ -37,6 +38,7 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
     options.map = map;
     options.checkpoint_every = checkpoint_every;
     options.resume = resume;
+    options.extends = extends;
     options.reflectance_for = reflectance_for;
     options.callbacks = Callbacks::of(callbacks);
     auto session = callbacks->run([&] { return std::make_unique<Session>(device, options); });
@@ -87,9 +89,9 @@ void bind_session(py::module_& m) {
              py::arg("frames") = 0u, py::arg("lighting") = "", py::arg("labels") = "geometry",
              py::arg("materials") = "auto", py::arg("poses") = "auto", py::arg("gains") = "auto",
              py::arg("network") = "", py::arg("seed") = std::nullopt, py::arg("hold_out") = 0u, py::arg("map") = "",
-             py::arg("checkpoint_every") = 0u, py::arg("resume") = false, py::arg("reflectance_for") = "",
-             py::arg("settings") = std::nullopt, py::arg("progress") = std::nullopt, py::arg("message") = std::nullopt,
-             py::arg("stop") = std::nullopt, py::keep_alive<1, 2>())
+             py::arg("checkpoint_every") = 0u, py::arg("resume") = false, py::arg("extends") = "",
+             py::arg("reflectance_for") = "", py::arg("settings") = std::nullopt, py::arg("progress") = std::nullopt,
+             py::arg("message") = std::nullopt, py::arg("stop") = std::nullopt, py::keep_alive<1, 2>())
         .def("step", &step)
         .def("checkpoint", &checkpoint)
         // A copy: the session's own changes with the next step.

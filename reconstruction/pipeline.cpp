@@ -52,6 +52,10 @@ void Pipeline::visit(graph::StateVisitor& visitor) {
     if (tracked_) tracked_->visit(visitor);
 }
 
+void Pipeline::begin_recording() {
+    if (tracked_) tracked_->begin_recording();
+}
+
 uint32_t Pipeline::frames() const { return fusion_.frames() + (tracked_ && tracked_->has_waiting() ? 1 : 0); }
 
 ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {

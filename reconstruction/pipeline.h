@@ -61,6 +61,10 @@ class Pipeline {
     /// settings, and takes the place of what there is.
     void visit(graph::StateVisitor& visitor);
 
+    /// The next frame is of another recording: where it was taken is looked for in the keyframes, in no relation to the
+    /// frame before. Without tracking nothing changes.
+    void begin_recording();
+
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
 

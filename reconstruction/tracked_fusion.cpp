@@ -41,6 +41,7 @@ void TrackedFusion::add_posed(const RgbdFrame& frame) {
     report.state = TrackingState::kTracking;
     report.world_from_depth = frame.world_from_depth;
     tracking_.accept(report, frame.time, true);
+    elsewhere_ = false;
     fusion_.add(frame);
 }
 
@@ -80,6 +81,7 @@ TrackingReport TrackedFusion::judge_first(const RgbdFrame& frame) const {
 }
 
 TrackingReport TrackedFusion::track(const RgbdFrame& frame) {
+    if (elsewhere_) return find(frame);
     TrackingReport best = best_search(frame);
     bool jumped = false;
     weak_frames_ = best.state == TrackingState::kWeak ? weak_frames_ + 1 : 0;
@@ -93,6 +95,23 @@ TrackingReport TrackedFusion::track(const RgbdFrame& frame) {
     // What is fused brings its own reference.
     if (best.state == TrackingState::kWeak) cast_reference(frame.depth.camera, best.world_from_depth);
     return best;
+}
+
+/// Wherever in the model it was taken.
+TrackingReport TrackedFusion::find(const RgbdFrame& frame) {
+    graph::FrameGraph graph = runner_.begin();
+    tracking_.pictures().add(graph, frame.depth, frame.color);
+    runner_.submit(std::move(graph));
+    TrackingReport report;
+    report.state = TrackingState::kLost;
+    report.world_from_depth = tracking_.world_from_reference();
+    report.reason = "no keyframe of the map that is extended shows what it does";
+    if (const auto found = relocalised(frame)) {
+        report = *found;
+        elsewhere_ = false;
+    }
+    tracking_.accept(report, frame.time, true);
+    return report;
 }
 
 /// From where the motion so far leads to.

@@ -37,11 +37,19 @@ class TrackedFusion {
     void set_relocaliser(Relocaliser relocaliser) { relocaliser_ = std::move(relocaliser); }
 
     /// Nothing may be waiting.
-    void visit(graph::StateVisitor& visitor) { visitor.value("tracking.weak_frames", weak_frames_); }
+    void visit(graph::StateVisitor& visitor) {
+        visitor.value("tracking.weak_frames", weak_frames_);
+        visitor.value("tracking.elsewhere", elsewhere_);
+    }
+
+    /// Frames to come were taken elsewhere: until one is found by relocalisation, none is searched for from the poses
+    /// before it.
+    void begin_recording() { elsewhere_ = true; }
 
   private:
     TrackingReport judge_first(const RgbdFrame& frame) const;
     TrackingReport track(const RgbdFrame& frame);
+    TrackingReport find(const RgbdFrame& frame);
     TrackingReport best_search(const RgbdFrame& frame);
     TrackingReport first_search(const RgbdFrame& frame, const RigidTransform& start);
     TrackingReport search_again(const RgbdFrame& frame, const RigidTransform& start);
@@ -66,6 +74,7 @@ class TrackedFusion {
     Relocaliser relocaliser_;
     std::optional<Waiting> waiting_;
     uint32_t weak_frames_ = 0;  ///< the last ones, in a row
+    bool elsewhere_ = false;    ///< no frame of this recording was found yet
 };
 
 }  // namespace patina

@@ -82,6 +82,11 @@ struct SessionOptions {
     std::filesystem::path map;
     uint32_t checkpoint_every = 0;  ///< the state is written to the map every so many frames, and at the end; 0: by
                                     ///< Session::checkpoint() alone
+    /// The map of another session, which this one begins from, such as one of the same room on another day: its model,
+    /// its world and its lights (`lighting` is not used). Given poses must be in that world. A camera that is tracked
+    /// is looked for in the map's keyframes; frames until it is found are lost. Options that the model depends on must
+    /// be those of that session. The file is only read. Empty: none.
+    std::filesystem::path extends;
     bool resume = false;  ///< goes on from the state in the map. All other options must be those that it was made with,
                           ///< but for lighting, which it holds. A source is read from its beginning again.
     /// What needs reflectance, such as "the viewer": without light that is an error that names it. Empty: nothing does.

@@ -11,6 +11,7 @@
 #include "reconstruction/session/rgbd_frame.h"
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/session_materials.h"
+#include "reconstruction/session/session_state.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "sensor/look_ahead_source.h"
@@ -80,20 +81,30 @@ std::string full_pool_warning(const PoolState& pool) {
 /// Wrong paths and options are found before lights are looked for, which takes time.
 SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source)
     : device_(device), options_(options) {
-    open(std::move(source));
-    if (needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone) fail_without_lights(options_);
-    std::optional<NetworkDescription> network = read_network(options_);
     if (!options_.map.empty()) open_map();
-    take_light(find_or_bring_back_light());
+    const std::shared_ptr<MapFile> earlier = earlier_map();
+    open(std::move(source), earlier ? std::optional(world_offset_in(device_, *earlier)) : std::nullopt);
+    if (!earlier && needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone)
+        fail_without_lights(options_);
+    std::optional<NetworkDescription> network = read_network(options_);
+    take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
     start_pipeline(std::move(network));
-    if (options_.resume) resume();
+    if (options_.resume) {
+        resume();
+    } else if (earlier) {
+        extend(*earlier);
+    }
     if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
 }
 
-void SessionCore::open(std::unique_ptr<Source> given) {
+/// In the world of a map that it goes on from, where `world_offset_m` is given.
+void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::dvec3>& world_offset_m) {
     if (given) {
         source_ = std::move(given);
         expect_poses(options_, *source_);
+        world_offset_m_ = world_offset_m.value_or(glm::dvec3(0));
+        if (world_offset_m_ != glm::dvec3(0))
+            source_ = std::make_unique<sensor::RecentredSource>(std::move(source_), world_offset_m_);
     } else if (synthetic_scene(options_)) {
         auto rendered = open_scene(options_, device_);
         scene_ = rendered.get();
@@ -104,7 +115,7 @@ void SessionCore::open(std::unique_ptr<Source> given) {
         auto ahead =
             std::make_unique<sensor::LookAheadSource>(std::make_unique<sensor::PrefetchSource>(std::move(recording)));
         const Preflight seen = look_ahead(*ahead, options_);
-        world_offset_m_ = seen.world_offset_m;
+        world_offset_m_ = world_offset_m.value_or(seen.world_offset_m);
         for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
         source_ = std::make_unique<sensor::RecentredSource>(std::move(ahead), world_offset_m_);
     }
@@ -238,9 +249,10 @@ void SessionCore::stop_if_interrupted() {
 std::string SessionCore::gains_text() {
     std::string lines = "# index, then the gains of red, green and blue over the first frame's\n";
     const auto gains = pipeline_->gains();
-    for (size_t i = 0; i < gains.size(); ++i) {
+    const size_t earlier = pipeline_->frames() - used_.size();  // those of a map that is extended
+    for (size_t i = earlier; i < gains.size(); ++i) {
         const glm::vec4 gain = gains[i].gain;
-        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i], gain.r, gain.g, gain.b);
+        lines += fmt::format("{} {:.4f} {:.4f} {:.4f}\n", used_[i - earlier], gain.r, gain.g, gain.b);
     }
     return lines;
 }

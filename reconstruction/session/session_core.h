@@ -110,9 +110,10 @@ class SessionCore {
 
   private:
     bool tracks() const { return settings().tracking.has_value(); }
-    void open(std::unique_ptr<Source> given);
+    void open(std::unique_ptr<Source> given, const std::optional<glm::dvec3>& world_offset_m);
     void open_map();
-    SessionLight find_or_bring_back_light();
+    std::shared_ptr<MapFile> earlier_map() const;
+    void extend(MapFile& earlier);
     void resume();
     void visit(graph::StateVisitor& visitor);
     void skip_readings();
@@ -128,7 +129,7 @@ class SessionCore {
     SessionOptions options_;
     std::unique_ptr<Source> source_;
     scenes::SyntheticSource* scene_ = nullptr;  ///< the source, where it is one
-    std::unique_ptr<MapFile> map_;              ///< null until there is something in it
+    std::shared_ptr<MapFile> map_;              ///< null until there is something in it
     std::optional<uint32_t> kept_after_;  ///< frames read when the state in it was; empty: it is another session's
     std::string checkpoint_problem_;
     bool ended_ = false;  ///< the source has

@@ -18,7 +18,23 @@ nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const Sequenc
     return json;
 }
 
+constexpr const char* kWorldOffset = "session.world_offset_m";
+
 }  // namespace
+
+glm::dvec3 world_offset_in(vulkan::Device& device, MapFile& map) {
+    glm::dvec3 offset_m{0};
+    StateReader reader(device, map);
+    reader.value(kWorldOffset, offset_m);
+    return offset_m;
+}
+
+SessionLight light_in(vulkan::Device& device, MapFile& map) {
+    SessionLight light;
+    StateReader reader(device, map);
+    visit(reader, light);
+    return light;
+}
 
 void SessionCore::open_map() {
     if (options_.resume) {
@@ -37,12 +53,10 @@ void SessionCore::open_map() {
                options_.hints.resume));
 }
 
-SessionLight SessionCore::find_or_bring_back_light() {
-    if (!options_.resume) return light_of(device_, options_, world_offset_m_);
-    SessionLight light;
-    StateReader reader(device_, *map_);
-    patina::visit(reader, light);
-    return light;
+std::shared_ptr<MapFile> SessionCore::earlier_map() const {
+    if (options_.resume) return map_;
+    if (!options_.extends.empty()) return MapFile::with_state(options_.extends);
+    return nullptr;
 }
 
 void SessionCore::visit(graph::StateVisitor& visitor) {
@@ -51,6 +65,17 @@ void SessionCore::visit(graph::StateVisitor& visitor) {
     patina::visit(visitor, tracked_);
     visitor.values("session.poses", poses_);
     visitor.value("session.first_given", first_given_);
+}
+
+void SessionCore::extend(MapFile& earlier) {
+    expect_same(options_.extends, model_of(earlier.expect_json("session")),
+                model_of(identity_of(options_, info_, settings())));
+    StateReader reader(device_, earlier);
+    pipeline_->visit(reader);
+    reader.finish();
+    pipeline_->begin_recording();
+    report(options_.callbacks,
+           fmt::format("extends the map of {} frames in '{}'", pipeline_->frames(), options_.extends.string()));
 }
 
 void SessionCore::resume() {
@@ -94,6 +119,7 @@ void SessionCore::checkpoint(const MoreState& more) {
     SessionLight light{illumination_, no_light_because_, shortfalls_};
     StateWriter writer(device_, *map_);
     patina::visit(writer, light);
+    writer.value(kWorldOffset, world_offset_m_);
     visit(writer);
     if (more) more(writer, *map_);
     writer.finish();

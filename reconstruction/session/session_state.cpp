@@ -46,6 +46,13 @@ nlohmann::ordered_json identity_of(const SessionOptions& options, const Sequence
     return json;
 }
 
+nlohmann::ordered_json model_of(const nlohmann::ordered_json& identity) {
+    nlohmann::ordered_json model = identity;
+    for (const char* of_sequence : {"sequence", "format", "frames", "color", "depth", "poses", "hold_out"})
+        model.erase(of_sequence);
+    return model;
+}
+
 void expect_same(const std::filesystem::path& map, const nlohmann::ordered_json& kept,
                  const nlohmann::ordered_json& now) {
     const auto was = kept.flatten(), is = now.flatten();

@@ -11,6 +11,7 @@
 #include "reconstruction/reconstruction_settings.h"
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/tracked_frame.h"
+#include "reconstruction/store/map_file.h"
 #include "sensor/ledger.h"
 
 namespace patina {
@@ -19,9 +20,17 @@ namespace patina {
 nlohmann::ordered_json identity_of(const SessionOptions& options, const SequenceInfo& info,
                                    const ReconstructionSettings& settings);
 
+/// Of identity_of(), what must be the same for a session of another sequence to extend a map.
+nlohmann::ordered_json model_of(const nlohmann::ordered_json& identity);
+
 /// Throws Error, naming the map and both values, where a session is not the one that a map is of.
 void expect_same(const std::filesystem::path& map, const nlohmann::ordered_json& kept,
                  const nlohmann::ordered_json& now);
+
+/// What was taken from all positions of the session in a map.
+glm::dvec3 world_offset_in(vulkan::Device& device, MapFile& map);
+
+SessionLight light_in(vulkan::Device& device, MapFile& map);
 
 /// Parts of a session's state on the host, to be kept or brought back.
 void visit(graph::StateVisitor& visitor, SessionLight& light);

@@ -60,6 +60,29 @@ TEST_F(Resume, ARecordingIsTakenFurtherThanAtFirst) {
     for (const char* name : {"scene.glb", "trajectory.txt"}) EXPECT_TRUE(whole.at(name) == longer.at(name)) << name;
 }
 
+TEST_F(Resume, AnotherRunExtendsAMapAndLeavesItAsItIs) {
+    ASSERT_EQ(patina(arguments("first")).exit_code, 0);
+    const auto before = files_in(beside("first"));
+    const auto extending = [&](const fs::path& map, const std::string& to, std::vector<std::string> more = {}) {
+        std::vector<std::string> words = arguments(to);
+        words.insert(words.end(), {"--extend", map.string()});
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const Outcome outcome = patina(extending(beside("first"), "second"));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(files_in(beside("first")) == before);
+    EXPECT_THAT(patina({"info", beside("second")}).out, HasSubstr("3 of 3 read"));
+    EXPECT_FALSE(files_in(beside("second")).at("scene.glb") == before.at("scene.glb")) << "more frames, less noise";
+
+    EXPECT_THAT(expect_failure(patina(extending(beside("nothing"), "third"))), HasSubstr("there is no map '"));
+    EXPECT_THAT(expect_failure(patina(extending("", "third"))), HasSubstr("--extend is empty"));
+    EXPECT_THAT(expect_failure(patina(extending(beside("first"), "first"))), HasSubstr("first"));
+    EXPECT_THAT(expect_failure(patina(extending(beside("first"), "third", {"--lighting", "none"})), 2),
+                HasSubstr("--lighting"));
+    EXPECT_TRUE(files_in(beside("first")) == before);
+}
+
 TEST_F(Resume, WhatIsMissingIsNamed) {
     EXPECT_THAT(expect_failure(patina({"run", "--resume", beside("nothing")})), HasSubstr("there is no map '"));
     EXPECT_THAT(expect_failure(patina({"run", "--out", out()}), 2), HasSubstr("sequence"));

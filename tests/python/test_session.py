@@ -187,3 +187,12 @@ def test_a_session_goes_on_from_its_map(device, tmp_path):
             pass
     assert onwards.statistics()["frames"] == 4
     np.testing.assert_array_equal(onwards.finish().positions, first.finish().positions)
+
+    settings = patina.Settings()
+    settings["map.voxel_m"] = 0.02
+    further = patina.Session(device, CUBES, frames=2, lighting="none", settings=settings,
+                             extends=tmp_path / "map.sqlite")
+    while further.step():
+        pass
+    assert further.statistics()["frames"] == 6
+    assert len(further.finish().trajectory) == 2

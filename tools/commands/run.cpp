@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "reconstruction/store/map_file.h"
@@ -18,7 +19,8 @@ namespace fs = std::filesystem;
 struct RunArguments {
     RunOptions run;
     SequenceArguments sequence;
-    std::optional<fs::path> resume;  ///< the folder whose map the run goes on from; none: it begins
+    std::optional<fs::path> extends;  ///< the folder whose map the run begins from
+    std::optional<fs::path> resume;   ///< the folder whose map the run goes on from; none: it begins
 };
 
 /// Both must live until the command line is parsed.
@@ -48,6 +50,11 @@ void declare(CLI::App& command, RunArguments& arguments) {
                     "Keep the state of the run in OUT/map.sqlite every so many frames, to go on from after whatever "
                     "stopped it")
         ->check(at_least_one());
+    command
+        .add_option("--extend", arguments.extends,
+                    "Begin from the map that another run left in this folder: its model, its world, its lights")
+        ->excludes("--lights")
+        ->excludes("--lighting");
     command.add_option("--resume", arguments.resume,
                        "Go on from the map in this folder; alone: with the arguments that the run was started with");
 }
@@ -104,6 +111,7 @@ fs::path working_folder() {
 int start(RunArguments& arguments) {
     RunOptions& run_options = arguments.run;
     arguments.sequence.finish(run_options);
+    if (arguments.extends) run_options.extends = map_in(*arguments.extends);
     run_options.hints.track = "--poses track";
     run_options.resume = arguments.resume.has_value();
     run_options.hints.resume = "--resume " + run_options.out.string();
@@ -122,7 +130,8 @@ void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& word
     declare(*command, *given);
     command->callback([given, words, command, &exit_code] {
         given->run.arguments = words;
-        if (given->resume && given->resume->empty()) throw Error("--resume is empty, but must name a run's folder");
+        for (const auto& [option, folder] : {std::pair("--resume", given->resume), {"--extend", given->extends}})
+            if (folder && folder->empty()) throw Error(option, " is empty, but must name a run's folder");
         const bool alone = given->resume && command->count("sequence") == 0;
         if (!alone) expect_complete(*command);
         exit_code = start(alone ? *resumed(*given) : *given);

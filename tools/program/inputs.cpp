@@ -36,7 +36,7 @@ std::vector<fs::path> inputs_of(const SequenceOptions& options) {
         for (fs::path& each : sequence_inputs(elsewhere->sequence)) inputs.push_back(std::move(each));
     }
     if (const auto* lights = std::get_if<LightsFromFile>(&options.lighting)) inputs.push_back(lights->file);
-    for (const fs::path& file : {options.network, options.settings_file}) {
+    for (const fs::path& file : {options.network, options.settings_file, options.extends}) {
         if (!file.empty()) inputs.push_back(file);
     }
     return inputs;
