@@ -42,8 +42,8 @@ class Source {
 std::unique_ptr<Source> open_recording(const std::filesystem::path& path, const std::string& format = "");
 
 /// Renders a synthetic scene on the device as it is read. `scene` is the name of a built-in one ("cubes", "bunnies",
-/// "office", "balls") or a JSON file; `frames`: how many, 0 takes 120. The device must outlive the source. Throws Error
-/// when there is no such scene, or its file is wrong.
+/// "office", "balls", "halls") or a JSON file; `frames`: how many, 0 takes 120. The device must outlive the source.
+/// Throws Error when there is no such scene, or its file is wrong.
 std::unique_ptr<Source> open_synthetic(Device& device, const std::string& scene, uint32_t frames = 0);
 
 }  // namespace patina

@@ -14,6 +14,7 @@
 #include "scenes/description/vary.h"
 #include "scenes/files/readers/camera.h"
 #include "scenes/files/readers/environment.h"
+#include "scenes/files/readers/include.h"
 #include "scenes/files/readers/lights.h"
 #include "scenes/files/readers/materials.h"
 #include "scenes/files/readers/objects.h"
@@ -62,14 +63,20 @@ fs::path file_of(const std::string& name_or_file) {
     return file;
 }
 
-SyntheticScene read_scene(const fs::path& file, const fs::path& mesh) {
+/// `included`: within another scene, which takes its objects and lamps.
+SyntheticScene read_scene(const fs::path& file, const fs::path& mesh, bool included = false) {
     const sensor::JsonValue root = sensor::JsonValue::read(file);
-    root.expect_keys({"name", "fps", "camera", "color_camera", "depth", "textures", "materials", "objects", "lights",
-                      "environment", "path", "lighting", "recording"});
+    root.expect_keys({"name", "fps", "camera", "color_camera", "depth", "textures", "materials", "objects", "include",
+                      "lights", "environment", "path", "lighting", "recording"});
     SyntheticScene scene;
     scene.name = root.find("name") ? root.at("name").string() : file.stem().string();
     scene.objects = read_objects(root.at("objects"), MaterialReader(root), mesh);
     if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights);
+    if (const auto include = root.find("include")) {
+        if (included) include->fail("but this scene is included itself");
+        add_included(
+            *include, [&](const fs::path& other) { return read_scene(other, mesh, true); }, scene);
+    }
     if (const auto environment = root.find("environment")) scene.environment = read_environment(*environment);
     read_cameras(root, scene);
     if (const auto recording = root.find("recording")) scene.recording = read_recording(*recording);

@@ -26,7 +26,7 @@ std::optional<std::string> scene_name(const std::string& sequence);
 /// What ships with the source: assets/, or where the environment's PATINA_ASSETS says.
 std::filesystem::path assets_folder();
 
-/// The names of the built-in scenes, as "balls, bunnies, cubes, office".
+/// The names of the built-in scenes, as "balls, bunnies, cubes, halls, office".
 std::string scene_names();
 
 }  // namespace patina::scenes

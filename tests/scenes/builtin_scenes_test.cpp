@@ -19,7 +19,7 @@ namespace patina::scenes {
 namespace {
 
 constexpr double kContact_m = 1e-3;  // what stands on something touches it up to the rounding of written positions
-constexpr std::array kNames{"balls", "bunnies", "cubes", "office"};
+constexpr std::array kNames{"balls", "bunnies", "cubes", "halls", "office"};
 
 /// Each scene is loaded once.
 const SyntheticScene& loaded(const std::string& name) {
@@ -73,7 +73,7 @@ class BuiltinScenes : public ::testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes, ::testing::ValuesIn(kNames),
                          [](const auto& p) { return std::string(p.param); });
 
-TEST(BuiltinSceneNames, AreThoseTestedHere) { EXPECT_EQ(scene_names(), "balls, bunnies, cubes, office"); }
+TEST(BuiltinSceneNames, AreThoseTestedHere) { EXPECT_EQ(scene_names(), "balls, bunnies, cubes, halls, office"); }
 
 TEST_P(BuiltinScenes, MaterialsAreLikeMeasuredOnes) {
     std::set<std::string> names;
@@ -92,7 +92,7 @@ TEST_P(BuiltinScenes, MaterialsAreLikeMeasuredOnes) {
 }
 
 TEST_P(BuiltinScenes, LampsAreSpheresOfAHandsBreadthInFreeAir) {
-    EXPECT_EQ(scene().lights.size(), 3u);
+    EXPECT_EQ(scene().lights.size(), scene().name == "halls" ? 8u : 3u);
     const Clearance clearance(scene().objects);
     for (const Light& lamp : scene().lights) {
         EXPECT_GE(lamp.radius_m, 0.05);
@@ -230,6 +230,38 @@ TEST(Office, EverythingIsWithinTheClosedRoom) {
         const glm::dvec3 expected = glm::dvec3(3, 1.3, 2.5) * (1.0 - glm::abs(outward));
         EXPECT_LT(glm::distance(reach, expected), 1e-9) << side;
     }
+}
+
+TEST(Halls, AreSixOfficesRoundAHall) {
+    const SyntheticScene &halls = loaded("halls"), &office = loaded("office");
+    double floor_m2 = 0;
+    size_t rooms = 0, own = 0;
+    for (const SceneObject& object : halls.objects) {
+        const std::string& name = object.material.name;
+        own += name.find(": ") == std::string::npos;
+        rooms += name.ends_with(": floor");
+        if (name != "floor" && !name.ends_with(": floor")) continue;
+        const glm::dvec2 half_m = std::get<RectangleShape>(object.parts.front().shape).half_size_m;
+        floor_m2 += 4 * half_m.x * half_m.y;
+    }
+    EXPECT_EQ(rooms, 6u);
+    EXPECT_EQ(halls.objects.size(), own + rooms * (office.objects.size() - 3)) << "without the wall with the door";
+    EXPECT_NEAR(floor_m2, 300, 10);
+}
+
+TEST(Halls, TheTourGoesIntoEveryRoomAndIntoTheFirstOneTwice) {
+    const SyntheticScene& halls = loaded("halls");
+    std::string visits;  // a letter for each room that is entered
+    char before = '.';
+    for (double t = 0; t < period_s(halls.path); t += 0.1) {
+        const glm::dvec3 camera(world_from_camera(halls.path, t)[3]);
+        const char room =
+            std::abs(camera.z) < 3.1 ? '.' : (camera.z < 0 ? "abc" : "def")[static_cast<int>((camera.x + 9.75) / 6.5)];
+        if (room != before && room != '.') visits += room;
+        before = room;
+    }
+    EXPECT_EQ(visits, "abcafed");
+    EXPECT_EQ(period_s(halls.path) * halls.fps, 5000);
 }
 
 TEST(PartBoxes, OverlapIsTheLeastPushThatPartsThem) {

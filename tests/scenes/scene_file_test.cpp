@@ -350,6 +350,69 @@ TEST(SceneFile, MoreObjectsThanLabelsAreAnError) {
                 HasSubstr(": objects holds 65536 objects, but label images tell apart 65535"));
 }
 
+class IncludedScenes : public ::testing::Test {
+  protected:
+    /// The small scene, with two places of another like it, less its table.
+    json including() {
+        json other = small_scene();
+        other["name"] = "part";
+        other["lights"] = {{{"position", {0, -2, 1}}, {"intensity", 3}}, {{"position", {0, -2, 2}}, {"intensity", 4}}};
+        write_text(folder_ / "other.json", other.dump());
+        json scene = small_scene();
+        scene["lights"] = {{{"position", {9, 9, 9}}, {"intensity", 1}}};
+        scene["include"] = {{{"scene", "other.json"},
+                             {"without", {"table"}},
+                             {"lights", {1}},
+                             {"places",
+                              {{{"name", "left"}, {"position", {-10, 0, 0}}},
+                               {{"name", "right"},
+                                {"position", {10, 0, 0}},
+                                {"rotations", {{{"axis", {0, 1, 0}}, {"degrees", 180}}}}}}}}};
+        return scene;
+    }
+
+    std::string error_of(const json& scene) { return load_error(folder_ / "a.json", scene.dump()); }
+
+    const TemporaryFolder folder_;
+};
+
+TEST_F(IncludedScenes, AreCopiedToTheirPlaces) {
+    const SyntheticScene scene = load(folder_ / "a.json", including());
+    std::vector<std::string> names;
+    for (const SceneObject& object : scene.objects) {
+        EXPECT_EQ(object.material.id, names.size() + 1);
+        names.push_back(object.material.name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"ground", "table", "ball", "left: ground", "left: ball", "right: ground",
+                                               "right: ball"}));
+    const glm::dvec3 ball = center_of(scene.objects[2].parts[0]);
+    EXPECT_LT(glm::distance(center_of(scene.objects[4].parts[0]), ball + glm::dvec3(-10, 0, 0)), 1e-12);
+    EXPECT_LT(glm::distance(center_of(scene.objects[6].parts[0]), glm::dvec3(10 - ball.x, ball.y, -ball.z)), 1e-12);
+    EXPECT_EQ(scene.objects[6].material.kd, scene.objects[2].material.kd);
+    ASSERT_EQ(scene.lights.size(), 3u);
+    EXPECT_EQ(scene.lights[0].position_m, glm::dvec3(9));
+    EXPECT_LT(glm::distance(scene.lights[2].position_m, glm::dvec3(10, -2, -2)), 1e-12);
+    EXPECT_EQ(scene.lights[2].intensity, glm::dvec3(4));
+}
+
+TEST_F(IncludedScenes, WhatTheyDoNotHaveIsNamed) {
+    const auto error_with = [&](const char* key, const json& value) {
+        json scene = including();
+        scene["include"][0][key] = value;
+        return error_of(scene);
+    };
+    EXPECT_THAT(error_with("scene", "none.json"), HasSubstr("include[0].scene: "));
+    EXPECT_THAT(error_with("without", {"sofa"}),
+                HasSubstr(R"(include[0].without[0] is "sofa", which is no object of part)"));
+    EXPECT_THAT(error_with("lights", {2}), HasSubstr("include[0].lights[0] is 2, but part has 2 lamps"));
+    EXPECT_THAT(error_with("lights", {-1}), HasSubstr("include[0].lights[0] is -1, must be a whole number"));
+    EXPECT_THAT(error_with("places", {{{"name", "a"}}, {{"name", "a"}}}),
+                HasSubstr(R"(include[0].places[1].name is "a", which is the name of another place)"));
+    EXPECT_THAT(error_with("scale", 2), HasSubstr("include[0].scale is 2, an unknown key"));
+    write_text(folder_ / "nested.json", including().dump());
+    EXPECT_THAT(error_with("scene", "nested.json"), HasSubstr("but this scene is included itself"));
+}
+
 TEST(SceneFile, WhatIsNoJsonIsNamedWithItsLine) {
     const TemporaryFolder folder;
     const std::string file = (folder / "a.json").string();
