@@ -35,10 +35,12 @@ void SegmentMaterials::set(uint32_t label, glm::vec3 ks, float alpha) {
 }
 
 void SegmentMaterials::enlarge(graph::Enlargement& enlargement, uint32_t capacity) {
-    enlargement.add(buffer_, capacity * sizeof(gpu::SegmentMaterial), {.kept = false});
+    if (capacity <= capacity_) return;
+    enlargement.add(buffer_, capacity * sizeof(gpu::SegmentMaterial), {.fill = 0});
+    // The device holds what it estimated itself, which must not be replaced.
+    if (materials_.size() > capacity_) enlargement.set(uploaded_, false);
     if (materials_.size() < capacity) materials_.resize(capacity);
     enlargement.set(capacity_, capacity);
-    enlargement.set(uploaded_, false);
 }
 
 graph::BufferId SegmentMaterials::import(graph::FrameGraph& frame) {

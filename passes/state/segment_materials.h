@@ -26,7 +26,7 @@ class SegmentMaterials {
     /// of kMaxCapacity or more, ks that are negative or not finite, or an alpha that is not above 0.
     void set(uint32_t label, glm::vec3 ks, float alpha);
 
-    /// Announces that there will be `capacity` labels; new ones have no material.
+    /// Announces that there will be at least `capacity` labels; new ones have no material but what was set before.
     void enlarge(graph::Enlargement& enlargement, uint32_t capacity);
 
     /// gpu::SegmentMaterial[capacity()], with what was set; uploads it where that is news to the device.

@@ -148,6 +148,44 @@ TEST_F(GrowingPoolsTest, GivenLabelsBeyondTheCapacityAreTaken) {
     for (const PoolState& pool : counters.pools) EXPECT_FALSE(pool.is_full()) << pool.name;
 }
 
+TEST_F(GrowingPoolsTest, MaterialsThatWereEstimatedStayWhenLabelsGrow) {
+    const auto with_labels = [](uint32_t labels) {
+        ReconstructionSettings specular = settings(16384, 32768, 65536, labels);
+        specular.reflectance->capacity_labels = labels;
+        specular.specular.emplace();
+        return specular;
+    };
+    const auto labels_of = [](Pipeline& pipeline) {
+        pipeline.wait();
+        return pipeline.counters().pools.back();
+    };
+    std::vector<SegmentReflectance> segments[2];
+    uint32_t labels = 4096;
+    for (const size_t grown : {0u, 1u}) {
+        Pipeline pipeline(device(), with_labels(labels));
+        pipeline.set_lights(cubes_.lights);
+        for (const Frame& frame : cubes_.frames) {
+            pipeline.add(patina::to_rgbd(cubes_.info, frame));
+            if (frame.index > 0) continue;
+            ASSERT_EQ(labels_of(pipeline).growths, 0u) << "it is to grow later";
+            labels = labels_of(pipeline).used + 2;  // room for the first frame, not for two more
+        }
+        ASSERT_STREQ(labels_of(pipeline).name, "labels");
+        EXPECT_EQ(labels_of(pipeline).growths > 0, grown > 0);
+        segments[grown] = pipeline.sample_reflectance(pipeline.extract_surface()).segments;
+    }
+    size_t glossy = 0;
+    for (size_t label = 0; label < segments[1].size(); ++label) {
+        const auto &grown = segments[1][label].gloss, &large = segments[0][label].gloss;
+        ASSERT_EQ(grown.has_value(), large.has_value()) << label;
+        if (!grown) continue;
+        ++glossy;
+        EXPECT_EQ(grown->ks, large->ks) << label;
+        EXPECT_EQ(grown->alpha, large->alpha) << label;
+    }
+    EXPECT_GT(glossy, 0u);
+}
+
 TEST_F(GrowingPoolsTest, ALimitInTheSettingsIsKeptAndNamed) {
     ReconstructionSettings limited = settings(64, 64, 64);
     limited.map.limit_blocks = 300;
