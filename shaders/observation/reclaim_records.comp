@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Of the observations' blocks, those whose keys have their turn: gives back the records of voxels in which the voxel
-// map has no surface any more, then the blocks that are left without any. A group looks at kReclaimGroup block ids.
+// map has no surface any more, then the blocks that are left without any. A group looks at kReclaimGroup block ids; an
+// invocation at one of those that are due, side by side in the list, so that those beside it have work, too.
 #include "lib/map/voxel_chunks.glsl"
 #include "lib/map/voxel_map.glsl"
 #include "shared/observation/observations.h"
@@ -29,25 +30,31 @@ layout(push_constant) uniform Push { ReclaimParams params; };
 
 shared uint due[kReclaimGroup];
 shared uint due_count;
-shared uint near[2];  // a bit per observation voxel of a block: it holds surface
-shared uint left;     // records of a block that stay
 
 bool is_near(uint voxel) { return voxel_weight(voxel) > 0u && abs(voxel_sdf(voxel)) < params.surface_limit; }
 
-// Which observation voxels hold the four voxels of a quad that are near the surface. A quad is a row along x.
-void mark_near(uint voxel_block, uint quad) {
-    const uint at = index_in_chunk(params.voxels.chunk_shift, voxel_block) * (kBlockVoxels / 4u) + quad;
-    uvec4 voxels;
-#define LOAD_TSDF(C) voxels = tsdf[C].quads[at]
-    WITH_CHUNK(params.voxels.chunk_shift, voxel_block, LOAD_TSDF)
+// Whether an observation voxel of a block, `number` in the order of the record table, holds a voxel near the surface.
+// A quad is a row of four voxels along x; what has surface is known by its first one near it.
+bool holds_surface(uint voxel_block, uint number) {
     const uint within = 3u - params.edge_shift;  // log2 of the voxels along an observation voxel's edge
-    const uint y = quad >> 1u & 7u, z = quad >> 4u;
-    const uint row = (y >> within) << params.edge_shift | (z >> within) << 2u * params.edge_shift;
-    for (uint i = 0u; i < 4u; ++i) {
-        if (!is_near(voxels[i])) continue;
-        const uint number = ((quad & 1u) * 4u + i) >> within | row;
-        atomicOr(near[number >> 5], 1u << (number & 31u));
+    const uint edge = 1u << within, mask = (1u << params.edge_shift) - 1u;
+    const uvec3 corner = uvec3(number & mask, number >> params.edge_shift & mask, number >> 2u * params.edge_shift)
+                         << within;
+    const uint first = index_in_chunk(params.voxels.chunk_shift, voxel_block) * (kBlockVoxels / 4u) + (corner.x >> 2u);
+    const uint begin = corner.x & 3u, end = min(begin + edge, 4u), quads_along_x = max(edge >> 2u, 1u);
+    for (uint z = corner.z; z < corner.z + edge; ++z) {
+        for (uint y = corner.y; y < corner.y + edge; ++y) {
+            for (uint x = 0u; x < quads_along_x; ++x) {
+                const uint at = first + x + 2u * (y + 8u * z);
+                uvec4 voxels;
+#define LOAD_TSDF(C) voxels = tsdf[C].quads[at]
+                WITH_CHUNK(params.voxels.chunk_shift, voxel_block, LOAD_TSDF)
+                for (uint i = begin; i < end; ++i)
+                    if (is_near(voxels[i])) return true;
+            }
+        }
     }
+    return false;
 }
 
 void give_back_record(uint record) {
@@ -64,28 +71,19 @@ void give_back_block(uint block) {
 }
 
 void look_at(uint block) {
-    const uint lane = gl_LocalInvocationIndex;
-    if (lane < 2u) near[lane] = 0u;
-    if (lane == 0u) left = 0u;
-    barrier();
     const uint voxel_block = find_block(params.voxels, block_of_key(params.voxels, block_keys[block]));
-    if (voxel_block != kNoBlock)
-        for (uint quad = lane; quad < kBlockVoxels / 4u; quad += kReclaimGroup) mark_near(voxel_block, quad);
-    barrier();
     const uint count = 1u << 3u * params.edge_shift;
-    if (lane < count) {
-        const uint record = record_table[block * count + lane];
-        const bool holds_surface = (near[lane >> 5] >> (lane & 31u) & 1u) != 0u;
-        if (record < kNewRecord && holds_surface) {
-            atomicAdd(left, 1u);
+    uint left = 0u;  // records that stay
+    for (uint number = 0u; number < count; ++number) {
+        const uint at = block * count + number, record = record_table[at];
+        if (record < kNewRecord && voxel_block != kNoBlock && holds_surface(voxel_block, number)) {
+            ++left;
         } else {
             if (record < kNewRecord) give_back_record(record);
-            record_table[block * count + lane] = kNoRecord;  // what was refused may ask again
+            record_table[at] = kNoRecord;  // what was refused may ask again
         }
     }
-    barrier();
-    if (lane == 0u && left == 0u) give_back_block(block);
-    barrier();
+    if (left == 0u) give_back_block(block);
 }
 
 void main() {
@@ -96,6 +94,5 @@ void main() {
     const uint key = id < blocks.high_water ? block_keys[id] : kEmptyKey;
     if (key != kEmptyKey && hash_of_key(key) % kReclaimParts == params.part) due[atomicAdd(due_count, 1u)] = id;
     barrier();
-    const uint count = due_count;
-    for (uint i = 0u; i < count; ++i) look_at(due[i]);
+    if (lane < due_count) look_at(due[lane]);
 }
