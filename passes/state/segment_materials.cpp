@@ -37,15 +37,16 @@ void SegmentMaterials::set(uint32_t label, glm::vec3 ks, float alpha) {
 void SegmentMaterials::enlarge(graph::Enlargement& enlargement, uint32_t capacity) {
     if (capacity <= capacity_) return;
     enlargement.add(buffer_, capacity * sizeof(gpu::SegmentMaterial), {.fill = 0});
-    // The device holds what it estimated itself, which must not be replaced.
+    // The device holds what it estimated itself, which is replaced only by what was set for a label beyond its
+    // capacity.
     if (materials_.size() > capacity_) enlargement.set(uploaded_, false);
-    if (materials_.size() < capacity) materials_.resize(capacity);
     enlargement.set(capacity_, capacity);
 }
 
 graph::BufferId SegmentMaterials::import(graph::FrameGraph& frame) {
     graph::BufferId id = frame.import(buffer_);
     if (uploaded_) return id;
+    if (materials_.size() < capacity_) materials_.resize(capacity_);
     id = frame.upload_bytes(id, 0, std::as_bytes(std::span(materials_).first(capacity_)), true);
     frame.keep(id);
     uploaded_ = true;

@@ -37,7 +37,8 @@ class SegmentMaterials {
     uint32_t capacity() const { return capacity_; }
 
   private:
-    std::vector<gpu::SegmentMaterial> materials_;  ///< as many as the capacity, or more
+    std::vector<gpu::SegmentMaterial>
+        materials_;  ///< those that were set; more than the capacity only where one of those has no place yet
     uint32_t capacity_;
     vulkan::BufferRef buffer_;
     uint32_t changes_ = 0;

@@ -196,7 +196,7 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
     for (const fs::path& recording : {near, far}) {
         const fs::path to = beside(recording.filename().string() + "-run");
         const Outcome outcome = patina({"run", recording, "--out", to, "--lights", recording / "truth/lights.json",
-                                        "--dump-every", "2", "--quiet"});
+                                        "--dump-every", "2", "--checkpoint-every", "3", "--quiet"});
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
         const Outcome eval = patina({"eval", recording, to, "--seen", "1", "--quiet"});
         ASSERT_EQ(eval.exit_code, 0) << eval.err;
@@ -216,6 +216,21 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
               2e-6);
     for (const char* quantity : {"kd", "rgb"})
         EXPECT_NEAR(mean_error(beside("far-run"), quantity), mean_error(beside("cubes-run"), quantity), 0.005);
+
+    // What extends its map is in its world, wherever the first camera of that recording is.
+    const fs::path aside = beside("aside");
+    fs::copy(far, aside, fs::copy_options::recursive);
+    auto poses_aside = given;
+    for (sensor::StampedPose& pose : poses_aside) pose.world_from_camera[3] += glm::dvec4(7, 0, 0, 0);
+    sensor::write_trajectory(aside / "trajectory.txt", poses_aside);
+    const Outcome extended =
+        patina({"run", aside, "--out", beside("aside-run"), "--extend", beside("far-run"), "--quiet"});
+    ASSERT_EQ(extended.exit_code, 0) << extended.err;
+    EXPECT_EQ(summary_of(beside("aside-run"))["world_offset_m"], moved["world_offset_m"]);
+    EXPECT_LT(glm::distance(
+                  glm::dvec3(sensor::read_trajectory(beside("aside-run") / "trajectory.txt")[2].world_from_camera[3]),
+                  glm::dvec3(poses_aside[2].world_from_camera[3])),
+              2e-6);
 }
 
 }  // namespace

@@ -72,11 +72,11 @@ ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
             widen(normal.image<uint64_t>())};
 }
 
-void ObservationRig::reclaim(uint32_t turn) {
+void ObservationRig::reclaim(uint32_t turn, float near) {
     graph::FrameGraph frame = runner_.begin();
     ObservationMapIds ids = map_.import(frame);
     ReflectanceStateIds state = state_.import(frame);
-    const float near_m = gpu::kSurfaceTruncation * fusion_.settings().truncation_m;
+    const float near_m = near * fusion_.settings().truncation_m;
     const VoxelMapIds voxels = fusion_.map().import(frame);
     add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, turn);
     ObservationMap::keep(frame, ids);

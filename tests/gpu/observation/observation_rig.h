@@ -6,6 +6,7 @@
 
 #include "passes/observation/observation.h"
 #include "passes/state/reflectance_state.h"
+#include "shared/fusion/remove_empty_blocks.h"
 #include "tests/gpu/fusion/fusion_rig.h"
 
 namespace patina {
@@ -50,7 +51,8 @@ class ObservationRig {
     Collected collect(const RigFrame& frame);
 
     /// Gives back what holds no surface any more of the part of the observations whose turn it is.
-    void reclaim(uint32_t turn);
+    /// Near the surface is what is within `near` truncations of it.
+    void reclaim(uint32_t turn, float near = gpu::kSurfaceTruncation);
 
     ObservationContent content();
     /// A pool's ids in use, and the valid part of its list of free ones.

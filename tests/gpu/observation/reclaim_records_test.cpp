@@ -65,12 +65,13 @@ class ReclaimRecordsTest : public GpuTest {
         rig.fusion().remove_empty_blocks(frame.camera, frame.world_from_camera);
     }
 
-    static void reclaim_all(ObservationRig& rig) {
-        for (uint32_t turn = 0; turn < gpu::kReclaimParts; ++turn) rig.reclaim(turn);
+    static void reclaim_all(ObservationRig& rig, float near = gpu::kSurfaceTruncation) {
+        for (uint32_t turn = 0; turn < gpu::kReclaimParts; ++turn) rig.reclaim(turn, near);
     }
 
-    static std::set<Voxel> expected(ObservationRig& rig, const ObservationContent& before) {
-        const double near_m = double{gpu::kSurfaceTruncation} * double{rig.fusion().settings().truncation_m};
+    static std::set<Voxel> expected(ObservationRig& rig, const ObservationContent& before,
+                                    float near = gpu::kSurfaceTruncation) {
+        const double near_m = double{near} * double{rig.fusion().settings().truncation_m};
         return reference::with_surface(rig.fusion().volume(), voxels_of(before), double{rig.map().settings().voxel_m},
                                        near_m);
     }
@@ -134,6 +135,26 @@ TEST_F(ReclaimRecordsTest, OnlyRecordsWithoutSurfaceGoAndTheOthersStayAsTheyAre)
         const std::vector<gpu::VoxelRecord> found = rig.find(asked);
         for (size_t i = 0; i < asked.size(); ++i)
             EXPECT_EQ(found[i].block_key != gpu::kEmptyKey, kept.contains({asked[i].x, asked[i].y, asked[i].z}));
+    }
+}
+
+TEST_F(ReclaimRecordsTest, EveryVoxelOfAnObservedOneCounts) {
+    // Of a plane that leans, so few voxels are this near that most observed ones hold one or none, each at another
+    // place.
+    constexpr float kNear = 0.0371f;
+    const RigFrame leaning = frame_of(reference::half_space({0.3, 0.2, -0.93}, -1.1), RigidTransform(1.0));
+    for (const float voxel_m : {0.02f, 0.01f}) {
+        ObservationRig rig = this->rig(voxel_m);
+        rig.fuse(leaning);
+        rig.collect(leaning);
+        const ObservationContent before = rig.content();
+        const std::set<Voxel> kept = expected(rig, before, kNear);
+        ASSERT_GT(kept.size(), 200u) << voxel_m;
+        ASSERT_GT(before.size(), kept.size() + 200) << voxel_m;
+        reclaim_all(rig, kNear);
+        std::set<Voxel> left;
+        for (const auto& [at, record] : rig.content()) left.insert(at);
+        EXPECT_EQ(left, kept) << voxel_m;
     }
 }
 

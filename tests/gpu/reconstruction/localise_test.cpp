@@ -11,41 +11,18 @@ using ::testing::ThrowsMessage;
 
 constexpr uint32_t kFrames = 30;
 
-/// Some frames of a sequence as one of their own.
-class ChosenFrames : public Source {
+/// Frames without poses, of so low an exposure that all is black.
+class DarkFrames : public ChosenFrames {
   public:
-    ChosenFrames(const SmallOffice& office, std::vector<uint32_t> indices, bool with_poses)
-        : office_(office), info_(office.info), indices_(std::move(indices)) {
-        info_.frames = static_cast<uint32_t>(indices_.size());
-        info_.has_poses = with_poses;
-    }
-
-    const SequenceInfo& info() const override { return info_; }
+    DarkFrames(const SmallOffice& office, std::vector<uint32_t> indices)
+        : ChosenFrames(office, std::move(indices), false) {}
 
     std::optional<Reading> next() override {
-        if (next_ == info_.frames) return std::nullopt;
-        Frame frame = office_.frames[indices_[next_]];
-        frame.index = next_++;
-        frame.timestamp_s = frame.index / info_.fps;
-        if (!info_.has_poses) {
-            frame.world_from_camera.reset();
-            frame.color = Image<SrgbPixel>(info_.color.extent);  // so low an exposure that all is black
-        }
-        return frame;
+        std::optional<Reading> reading = ChosenFrames::next();
+        if (reading) std::get<Frame>(*reading).color = Image<SrgbPixel>(info().color.extent);
+        return reading;
     }
-
-  private:
-    const SmallOffice& office_;
-    SequenceInfo info_;
-    std::vector<uint32_t> indices_;
-    uint32_t next_ = 0;
 };
-
-std::vector<uint32_t> from_to(uint32_t first, uint32_t last) {
-    std::vector<uint32_t> indices{first};
-    while (indices.back() != last) indices.push_back(first < last ? indices.back() + 1 : indices.back() - 1);
-    return indices;
-}
 
 class Localise : public GpuTest {
   protected:
@@ -66,7 +43,8 @@ class Localise : public GpuTest {
 
     /// Where frames `indices` are found in the room of the first ten.
     static patina::FoundPoses found(const std::vector<uint32_t>& indices) {
-        ChosenFrames main(office(), from_to(0, 9), true), dark(office(), indices, false);
+        ChosenFrames main(office(), from_to(0, 9), true);
+        DarkFrames dark(office(), indices);
         return patina::localise(device(), main, dark, options());
     }
 };

@@ -23,31 +23,6 @@ using ::testing::ThrowsMessage;
 
 constexpr uint32_t kFrames = 30;
 
-/// Frames `begin` to `end` of a recording, as one of their own.
-class Part : public Source {
-  public:
-    Part(const SmallOffice& office, uint32_t begin, uint32_t end, bool with_poses)
-        : frames_(office.frames), info_(office.info), begin_(begin) {
-        info_.frames = end - begin;
-        info_.has_poses = with_poses;
-    }
-
-    const SequenceInfo& info() const override { return info_; }
-
-    std::optional<Reading> next() override {
-        if (next_ == info_.frames) return std::nullopt;
-        Frame frame = frames_[begin_ + next_];
-        frame.index = next_++;
-        if (!info_.has_poses) frame.world_from_camera.reset();
-        return frame;
-    }
-
-  private:
-    const std::vector<Frame>& frames_;
-    SequenceInfo info_;
-    uint32_t begin_, next_ = 0;
-};
-
 class SessionExtendTest : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
@@ -80,11 +55,13 @@ class SessionExtendTest : public ::testing::Test {
         return further;
     }
 
+    /// Of frames `begin` to `end` - 1.
     std::unique_ptr<Session> session_of(const SessionOptions& options, uint32_t begin, uint32_t end, bool with_poses) {
-        return std::make_unique<Session>(*device_, std::make_unique<Part>(*office_, begin, end, with_poses), options);
+        auto frames = std::make_unique<ChosenFrames>(*office_, from_to(begin, end - 1), with_poses);
+        return std::make_unique<Session>(*device_, std::move(frames), options);
     }
 
-    /// A map of frames `begin` to `end`.
+    /// A map of the same.
     std::filesystem::path map_of(uint32_t begin, uint32_t end, bool with_poses) {
         SessionOptions mapped = options();
         mapped.map = folder_ / "map.sqlite";

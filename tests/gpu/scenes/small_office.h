@@ -4,6 +4,7 @@
 
 #include "engine/vulkan/device.h"
 #include "patina/frame.h"
+#include "patina/source.h"
 
 namespace patina {
 
@@ -14,6 +15,25 @@ struct SmallOffice {
     SequenceInfo info;
     std::vector<Frame> frames;
 };
+
+/// Some of its frames as a recording of their own, at its frame rate.
+class ChosenFrames : public Source {
+  public:
+    /// The office must outlive this.
+    ChosenFrames(const SmallOffice& office, std::vector<uint32_t> indices, bool with_poses);
+
+    const SequenceInfo& info() const override { return info_; }
+    std::optional<Reading> next() override;
+
+  private:
+    const SmallOffice& office_;
+    SequenceInfo info_;
+    std::vector<uint32_t> indices_;
+    uint32_t next_ = 0;
+};
+
+/// The indices `first` to `last`, forwards or backwards.
+std::vector<uint32_t> from_to(uint32_t first, uint32_t last);
 
 /// How far a pose is from the true one of a frame.
 struct PoseError {
