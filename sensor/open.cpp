@@ -79,8 +79,13 @@ const Format& named(const std::string& name) {
 
 std::string format_names() { return enumerated(&Format::name); }
 
-std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format) {
+void expect_sequence_path(const fs::path& path) {
+    if (path.empty()) throw Error("a sequence is named by an empty path, but must be a folder");
     if (!path_exists(path)) throw Error(path.string(), " does not exist");
+}
+
+std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format) {
+    expect_sequence_path(path);
     const fs::path folder = path.filename() == "sequence.json" ? fs::absolute(path).parent_path() : path;
     if (!is_folder(folder)) throw Error(path.string(), " is a file, but a sequence is a folder");
     return (format.empty() ? recognised(folder) : named(format)).open(folder);

@@ -46,6 +46,8 @@ TEST_F(MissingPaths, Sequences) {
         EXPECT_THAT(complaint(arguments), HasSubstr(file_.string() + " is a file, but a sequence is a folder"));
         arguments[1] = folder_;
         EXPECT_THAT(complaint(arguments), HasSubstr(folder_.string() + " is no sequence: it holds no sequence.json"));
+        arguments[1] = "";
+        EXPECT_THAT(complaint(arguments), HasSubstr("a sequence is named by an empty path")) << command;
     }
     for (const fs::path& lighting : {nowhere_, file_, folder_}) {
         EXPECT_THAT(complaint({"run", sequence(), "--out", out(), "--lighting", lighting}),

@@ -1,9 +1,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "engine/core/input_file.h"
 #include "reconstruction/session/find_lights.h"
 #include "scenes/files/scene_file.h"
+#include "sensor/open.h"
 #include "sensor/output/output_file.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
@@ -17,8 +17,7 @@ namespace {
 
 /// A wrong path is an error before a device is opened.
 void expect_sequence(const LightsOptions& options) {
-    if (!scenes::scene_name(options.sequence) && !path_exists(options.sequence))
-        throw Error(options.sequence, " does not exist");
+    if (!scenes::scene_name(options.sequence)) sensor::expect_sequence_path(options.sequence);
 }
 
 }  // namespace

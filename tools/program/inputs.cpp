@@ -21,6 +21,7 @@ std::vector<fs::path> sequence_inputs(const std::string& sequence) {
         std::error_code none;
         return fs::is_regular_file(scene, none) ? std::vector{scene} : std::vector<fs::path>();
     }
+    if (sequence.empty()) return {};  // who opens it reports that
     const fs::path given = fs::absolute(sequence).lexically_normal();
     const bool names_parent = given.filename() == "sequence.json" || !given.has_filename();
     const fs::path folder = names_parent ? given.parent_path() : given;
