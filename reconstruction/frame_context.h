@@ -6,6 +6,7 @@
 
 #include "passes/observation/observation_params.h"
 #include "patina/frame.h"
+#include "reconstruction/streaming/stream_region.h"
 #include "shared/input/camera.h"
 
 namespace patina {
@@ -44,9 +45,13 @@ struct FrameContext {
     PosedCamera color;
     DepthRange range;                      ///< of the depth camera
     std::optional<CameraMotion> motion{};  ///< of the colour camera since the frame before; empty for the first frame
+    StreamRegion around{};                 ///< all blocks that the frame's passes look at (GeometryStage::around)
+    double shadows_m = 0;                  ///< what lies farther from the depth camera throws no shadow
     bool fuses_color = true;               ///< its colour is fused
     bool held_out = false;                 ///< its colour is neither fused nor observed
     std::span<const uint16_t> labels{};    ///< RgbdFrame::labels, borrowed
+    /// Of the part of the map whose labels are swept in this frame: voxels that are away from the device, by label.
+    std::span<const uint32_t> labels_away{};
 };
 
 /// What the frames so far leave to the next one's context.

@@ -136,9 +136,21 @@ bool GrowingPools::first_was_refused() {
     return std::any_of(pools_.begin(), pools_.end(), [](const Pool& pool) { return pool.demand.refused() > 0; });
 }
 
-bool GrowingPools::grow(graph::Runner& runner, uint32_t index) {
-    graph::FrameGraph frame = runner.begin();  // waits for frame `index` - 2
+/// What the host may know before frame `index`.
+void GrowingPools::note_before(uint32_t index) {
     note_until(std::max(index, PoolDemand::kFramesAhead) - PoolDemand::kFramesAhead);
+}
+
+bool GrowingPools::has_many_blocks(uint32_t index, uint32_t most) {
+    note_before(index);
+    const Pool& voxels = pools_.front();
+    return voxels.demand.used() > most || voxels.state.limit != PoolLimit::kNone;
+}
+
+bool GrowingPools::grow(graph::Runner& runner, uint32_t index, uint32_t coming_blocks) {
+    graph::FrameGraph frame = runner.begin();  // waits for frame `index` - 2
+    note_before(index);
+    pools_.front().coming = coming_blocks;
     std::vector<graph::Enlargement> committed;
     std::vector<Pool*> grown;
     for (Pool& pool : pools_) {
@@ -165,7 +177,7 @@ bool GrowingPools::grow(graph::Runner& runner, uint32_t index) {
 
 std::optional<graph::Enlargement> GrowingPools::grow(graph::FrameGraph& frame, Pool& pool, uint32_t index) {
     const uint32_t capacity = pool.capacity(), most = pool.most();
-    const uint64_t wanted = pool.demand.wanted(capacity, pool.step());
+    const uint64_t wanted = pool.demand.wanted(capacity, pool.step(), pool.coming);
     if (wanted > most) pool.state.limit = most == pool.limit_setting ? PoolLimit::kSetting : PoolLimit::kBuffers;
     const auto target = static_cast<uint32_t>(std::min<uint64_t>(wanted, most));
     if (target == capacity || index < pool.try_at) return std::nullopt;

@@ -62,7 +62,12 @@ class GrowingPools {
     /// Enlarges what is short for frame `index`, in a frame of its own, and returns true; or returns false where
     /// nothing is short or nothing can be had. Waits for frame `index` - 2. Throws as Runner::submit() does; then the
     /// pools are as before.
-    bool grow(graph::Runner& runner, uint32_t index);
+    /// `coming_blocks`: voxel blocks that will come back to the device in that frame.
+    bool grow(graph::Runner& runner, uint32_t index, uint32_t coming_blocks = 0);
+
+    /// Before frame `index`: whether more than `most` voxel blocks are in use, or their pool cannot grow. Frame
+    /// `index` - 2 must have finished.
+    bool has_many_blocks(uint32_t index, uint32_t most);
 
     /// Whether frame 0 found a pool full that can grow. It must have finished.
     bool first_was_refused();
@@ -81,6 +86,7 @@ class GrowingPools {
         uint32_t grown_at = 0;  ///< the frame before which it grew last: what was refused before came again
         uint32_t try_at = 0;    ///< the frame from which on memory may be asked for
         uint32_t came_again = 0;
+        uint32_t coming = 0;  ///< places that are taken besides with the frame that it may grow for
         std::function<uint32_t()> capacity{};
         std::function<uint32_t()> most{};  ///< that it may grow to
         std::function<uint32_t()> step{};  ///< by which it grows at most, unless more is asked for
@@ -106,6 +112,7 @@ class GrowingPools {
     std::vector<PoolCount> counts_of(const Pending& pending) const;
     static void note(Pool& pool, uint32_t frame, const PoolCount& count);
     void note_until(uint32_t frame);
+    void note_before(uint32_t index);
     std::optional<graph::Enlargement> grow(graph::FrameGraph& frame, Pool& pool, uint32_t index);
     std::optional<graph::Enlargement> try_capacity(graph::FrameGraph& frame, const Pool& pool, uint32_t capacity);
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "reconstruction/sample_mesh.h"
+#include "reconstruction/streaming/extract_parts.h"
+#include "reconstruction/streaming/map_tiles.h"
 
 namespace patina {
 
 Pipeline::Pipeline(vulkan::Device& device, const ReconstructionSettings& settings)
-    : runner_(device), stages_(device, settings), fusion_(runner_, stages_) {
+    : runner_(device), stages_(device, settings), streaming_(runner_, stages_), fusion_(runner_, stages_, streaming_) {
     if (stages_.tracking) tracked_.emplace(runner_, stages_, fusion_);
 }
 
@@ -48,6 +50,7 @@ void Pipeline::wait() {
 void Pipeline::visit(graph::StateVisitor& visitor) {
     wait();
     stages_.visit(visitor);
+    streaming_.visit(visitor);
     fusion_.visit(visitor);
     if (tracked_) tracked_->visit(visitor);
 }
@@ -60,6 +63,7 @@ uint32_t Pipeline::frames() const { return fusion_.frames() + (tracked_ && track
 
 ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& world_from_camera) {
     fuse_waiting();
+    fusion_.require(camera, world_from_camera);
     graph::FrameGraph graph = runner_.begin();
     ViewReadback view = wire_view(graph, stages_, make_posed_camera(camera, world_from_camera));
     runner_.submit(std::move(graph));
@@ -69,23 +73,26 @@ ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& worl
 Mesh Pipeline::extract_surface() {
     if (fusion_.frames() == 0) return {};
     wait();
+    if (streaming_.any_away()) return extract_surface_in_parts(runner_, map(), streaming_);
     return stages_.geometry.extract_surface(runner_);
 }
 
 void Pipeline::refine_all() {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     fuse_waiting();
-    graph::FrameGraph graph = runner_.begin();
-    stages_.reflectance->refine_all(graph, map().import(graph));
-    runner_.submit(std::move(graph));
+    for (const MapTile& tile : tiles_of_records(runner_, stages_.reflectance->observations(), settings().around_m)) {
+        streaming_.require(tile.around);
+        graph::FrameGraph graph = runner_.begin();
+        stages_.reflectance->refine_all(graph, map().import(graph), tile.part);
+        runner_.submit(std::move(graph));
+    }
 }
 
 void Pipeline::relight(std::span<const Light> lights, glm::dvec3 ambient) {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     refine_all();
-    graph::FrameGraph graph = runner_.begin();
-    stages_.reflectance->relight(graph, map().import(graph), lights, ambient);
-    runner_.submit(std::move(graph));
+    stages_.reflectance->relight(lights, ambient);
+    refine_all();
 }
 
 MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {

@@ -12,6 +12,7 @@
 #include "reconstruction/posed_fusion.h"
 #include "reconstruction/reconstruction_settings.h"
 #include "reconstruction/stages/stages.h"
+#include "reconstruction/streaming/streaming.h"
 #include "reconstruction/tracked_fusion.h"
 #include "reconstruction/view_readback.h"
 
@@ -90,6 +91,9 @@ class Pipeline {
     /// settings estimate none.
     std::span<const gpu::ColorGains> gains();
 
+    /// How many voxel blocks are away from the device, as far as it has finished.
+    StreamCounts stream_counts() { return streaming_.counts(); }
+
     uint32_t frames() const;  ///< fused, or about to be
     const ReconstructionSettings& settings() const { return stages_.settings; }
     const VoxelMap& map() const { return stages_.geometry.map(); }
@@ -108,6 +112,7 @@ class Pipeline {
 
     graph::Runner runner_;
     Stages stages_;
+    Streaming streaming_;
     PosedFusion fusion_;
     std::optional<TrackedFusion> tracked_;  ///< empty where poses are given
 };

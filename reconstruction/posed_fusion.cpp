@@ -5,15 +5,22 @@
 
 namespace patina {
 
-PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages)
+namespace {
+
+constexpr double kBeside_m = 0.01;  // more than float and double differ by
+
+}  // namespace
+
+PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages, Streaming& streaming)
     : runner_(runner),
       stages_(stages),
+      streaming_(streaming),
       pools_(runner.device(), stages.geometry.map(), pointer_to(stages.segmentation), pointer_to(stages.reflectance),
              pointer_to(stages.specular)) {}
 
 void PosedFusion::add(const RgbdFrame& frame) {
     if (history_.frames == 0) return add_first(frame);
-    note(submit(begin(), frame));
+    note(submit(begin(frame), frame));
 }
 
 /// Nothing is known yet of what the first frame asks for. Where that is more than the pools hold, they grow, and the
@@ -34,6 +41,7 @@ void PosedFusion::start_map(const RgbdFrame& frame) {
     stages_.reset(graph, glm::dvec3(frame.world_from_depth[3]));
     runner_.submit(std::move(graph));
     pools_.reset();
+    streaming_.reset();
 }
 
 PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFrame& frame) {
@@ -43,9 +51,18 @@ PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFra
     return declared;
 }
 
-graph::FrameGraph PosedFusion::begin() {
-    pools_.grow(runner_, history_.frames);
+graph::FrameGraph PosedFusion::begin(const RgbdFrame& frame) {
+    runner_.begin();  // waits for the frame before the last
+    const uint32_t index = history_.frames, most = stages_.settings.resident_blocks;
+    const StreamRegion around = stages_.geometry.around(make_frame_cameras(frame).depth);
+    const uint32_t coming = streaming_.plan(around, index, most > 0 && pools_.has_many_blocks(index, most));
+    pools_.grow(runner_, index, coming);
+    streaming_.move_surplus();
     return runner_.begin();
+}
+
+void PosedFusion::require(const Intrinsics& camera, const RigidTransform& world_from_camera) {
+    streaming_.require(stages_.geometry.around(make_posed_camera(camera, world_from_camera)).grown(kBeside_m));
 }
 
 PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdFrame& frame,
@@ -53,7 +70,12 @@ PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdF
     Declared declared;
     declared.frame =
         make_frame_context(frame, history_, stages_.geometry.range(frame.depth.camera), stages_.settings.fusion.color);
+    declared.frame.around = stages_.geometry.around(declared.frame.depth);
+    declared.frame.shadows_m = stages_.settings.around_m;
+    streaming_.add(graph);
+    declared.frame.labels_away = streaming_.labels_away(declared.frame.index);
     declared.counters = wire_frame(graph, stages_, declared.frame, pictures);
+    streaming_.await_sweep(graph, declared.frame.index);
     return declared;
 }
 
@@ -63,6 +85,7 @@ void PosedFusion::note(const Declared& declared) {
 }
 
 void PosedFusion::count(const Declared& declared) {
+    streaming_.note_submitted();
     pending_.push_back(declared.counters);
     history_.note(declared.frame);
     take_counters();

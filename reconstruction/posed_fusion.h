@@ -9,6 +9,7 @@
 #include "reconstruction/growing_pools.h"
 #include "reconstruction/pipeline_counters.h"
 #include "reconstruction/stages/stages.h"
+#include "reconstruction/streaming/streaming.h"
 
 namespace patina {
 
@@ -16,8 +17,8 @@ namespace patina {
 /// are short; after it the frame's counters are gathered as they arrive.
 class PosedFusion {
   public:
-    /// Both must outlive this.
-    PosedFusion(graph::Runner& runner, Stages& stages);
+    /// All must outlive this.
+    PosedFusion(graph::Runner& runner, Stages& stages, Streaming& streaming);
 
     /// Fuses a frame in a graph of its own. The first one places the map around its camera. Throws Error when the
     /// device was lost or lacks memory.
@@ -30,9 +31,12 @@ class PosedFusion {
     };
     /// The steps of add(), for a graph that does more than fuse a frame; not for the first one. begin() starts a graph,
     /// declare() adds the frame's passes to it, note() counts the frame once the graph was submitted.
-    graph::FrameGraph begin();
+    graph::FrameGraph begin(const RgbdFrame& frame);
     Declared declare(graph::FrameGraph& graph, const RgbdFrame& frame, const InputPictures& pictures);
     void note(const Declared& declared);
+
+    /// Brings back what a depth camera sees of the model; before a graph that looks at it besides frames.
+    void require(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
     uint32_t frames() const { return history_.frames; }  ///< fused so far
 
@@ -51,6 +55,7 @@ class PosedFusion {
 
     graph::Runner& runner_;
     Stages& stages_;
+    Streaming& streaming_;
     GrowingPools pools_;
     FrameHistory history_;
     std::deque<FrameReadbacks> pending_;  ///< of frames that the device may work on

@@ -22,6 +22,10 @@ struct ReconstructionSettings {
     InputSettings input;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    /// What lies farther from the camera, metres, throws no shadow until it comes near again; and where it is not in
+    /// view, its blocks may leave the device.
+    float around_m = 5;
+    uint32_t resident_blocks = 65536;  ///< while more are in use, blocks that are far away leave the device; 0: none do
     /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:
     /// colours are taken as they are. Needs fusion.color.
     std::optional<GainSettings> gains{};

@@ -158,6 +158,12 @@ constexpr std::array kRows = {
                                    "Casts the map into every depth frame, as a live view needs it."),
     number<&Rec::remove_every>("map.remove_every", "frames", 0, kAnyCount,
                                "Blocks without surface are removed once in this many frames; 0 keeps them."),
+    number<&Rec::around_m>("map.around_m", "m", 1, kFar_m,
+                           "What lies farther from the camera throws no shadow until it comes near again; and where it "
+                           "is not in view, its blocks may leave the device."),
+    number<&Rec::resident_blocks>("map.resident_blocks", "blocks", 0, kAnyCount,
+                                  "While more blocks are in use, those that are far away leave the device for the "
+                                  "host's memory, and come back before they are seen; 0 keeps all."),
     number<&Map::capacity_blocks>("map.initial_blocks", "blocks", 1, kAnyCount,
                                   "Blocks that the pool has room for at first; it grows when needed."),
     number<&Map::max_chunk_bytes>("map.max_chunk_bytes", "bytes", 2048, 4294967296.0,
@@ -443,9 +449,10 @@ static_assert(is_covered<SpecularSettings>());
 
 /// field_count() does not see through std::optional. A network is a file, given by --network, and has no row.
 [[maybe_unused]] void notice_fields(const ReconstructionSettings& settings) {
-    const auto& [map, fusion, input, near_m, remove_every, gains, reflectance, segmentation, specular, network,
-                 tracking, keyframes, seed, view_every_frame] = settings;
-    static_assert(row_count<ReconstructionSettings>() == 4, "near_m, remove_every, seed and view_every_frame");
+    const auto& [map, fusion, input, near_m, remove_every, around_m, resident_blocks, gains, reflectance, segmentation,
+                 specular, network, tracking, keyframes, seed, view_every_frame] = settings;
+    static_assert(row_count<ReconstructionSettings>() == 6,
+                  "near_m, remove_every, around_m, resident_blocks, seed and view_every_frame");
     (void)map;
 }
 

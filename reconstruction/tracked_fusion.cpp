@@ -57,7 +57,7 @@ void TrackedFusion::let_wait(const RgbdFrame& frame, const RigidTransform& world
 
 void TrackedFusion::fuse_waiting() {
     if (!waiting_) return;
-    graph::FrameGraph graph = fusion_.begin();
+    graph::FrameGraph graph = fusion_.begin(waiting_->frame);
     const PosedFusion::Declared declared = declare_waiting(graph);
     runner_.submit(std::move(graph));
     fusion_.note(declared);
@@ -127,7 +127,7 @@ TrackingReport TrackedFusion::best_search(const RgbdFrame& frame) {
 
 /// In the same graph as this search the frame before is fused, which the search needs the model of.
 TrackingReport TrackedFusion::first_search(const RgbdFrame& frame, const RigidTransform& start) {
-    graph::FrameGraph graph = waiting_ ? fusion_.begin() : runner_.begin();
+    graph::FrameGraph graph = waiting_ ? fusion_.begin(waiting_->frame) : runner_.begin();
     std::optional<PosedFusion::Declared> fused;
     if (waiting_) fused = declare_waiting(graph);
     const InputPictures pictures = tracking_.pictures().add(graph, frame.depth, frame.color);
@@ -191,6 +191,7 @@ TrackingReport TrackedFusion::search_from(const RgbdFrame& frame, const RigidTra
 
 void TrackedFusion::cast_reference(const Intrinsics& camera, const RigidTransform& world_from_depth) {
     const PosedCamera posed = make_posed_camera(camera, world_from_depth);
+    fusion_.require(camera, world_from_depth);
     graph::FrameGraph graph = runner_.begin();
     const VoxelMapIds voxels = stages_.geometry.map().import(graph);
     const VisibleBlocks visible = stages_.geometry.add_visible(graph, voxels, posed);

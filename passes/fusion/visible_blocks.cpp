@@ -65,6 +65,15 @@ void place_grid(gpu::ViewParams& params) {
 
 }  // namespace
 
+double frustum_radius_m(const gpu::Camera& camera, float far_m) {
+    gpu::ViewParams params{};
+    params.camera = camera;
+    params.far_m = far_m;
+    double radius_m = 0;
+    for (const glm::dvec3& point : frustum_points(params)) radius_m = std::max(radius_m, glm::length(point));
+    return radius_m;
+}
+
 float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m) {
     gpu::ViewParams params{};
     params.grid.voxel_m = voxel_m;

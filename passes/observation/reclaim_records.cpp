@@ -8,11 +8,12 @@ namespace patina {
 
 void add_reclaim_records(graph::FrameGraph& frame, const ObservationMap& map, ObservationMapIds& ids,
                          ReflectanceStateIds& state, const VoxelMap& voxel_map, const VoxelMapIds& voxels, float near_m,
-                         uint32_t turn) {
+                         const gpu::StreamRegion& region, uint32_t turn) {
     gpu::ReclaimParams params{};
     params.voxels = voxel_map.grid();
     params.edge_shift = map.edge_shift();
     params.part = turn % gpu::kReclaimParts;
+    params.region = region;
     params.surface_limit = near_m / (gpu::kSdfRangeVox * voxel_map.settings().voxel_m);
 
     auto reclaim = frame.compute("observation.reclaim_records", spirv::reclaim_records);

@@ -29,6 +29,8 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     params.shadows = settings.shadows ? 1 : 0;
     params.materials = models.materials.capacity();
     params.least_share = least_share;
+    params.ball_m = models.part.ball_m;
+    params.cube_m = models.part.cube_m;
     return params;
 }
 

@@ -22,6 +22,13 @@ struct ReflectanceSettings {
 ReflectanceAccess preferred_reflectance_access(const vulkan::DeviceCaps& caps, const VoxelMap& voxel_map,
                                                const ObservationMap& observation_map);
 
+/// Where a refinement works. Everywhere, unless said otherwise.
+struct RefinedPart {
+    static constexpr float kEverywhere_m = 1e6f;
+    glm::vec4 ball_m{0, 0, 0, kEverywhere_m};  ///< centre in the world, radius: what lies outside throws no shadow
+    glm::vec4 cube_m{0, 0, 0, kEverywhere_m};  ///< centre, half edge: records that have their turn lie within
+};
+
 /// The models that a refinement reads and writes.
 struct ReflectanceModels {
     const VoxelMap& voxel_map;
@@ -29,6 +36,7 @@ struct ReflectanceModels {
     const Lights& lights;
     SegmentMaterials& materials;
     ReflectanceState& state;
+    RefinedPart part{};
 };
 
 /// What one frame computed again.

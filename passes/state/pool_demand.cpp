@@ -14,12 +14,12 @@ void PoolDemand::note(const PoolCount& count) {
     refused_ = count.refused;
 }
 
-uint32_t PoolDemand::wanted(uint32_t capacity, uint32_t step) const {
+uint32_t PoolDemand::wanted(uint32_t capacity, uint32_t step, uint32_t coming) const {
     // The pool may have grown since the counters were taken.
     const uint64_t grown = capacity - capacity_;
     const uint64_t free = free_ + grown;
     const uint64_t missing = refused_last_ - std::min<uint64_t>(grown, refused_last_);
-    const uint64_t needed = uint64_t{greediest_} * kFramesAhead + missing;
+    const uint64_t needed = uint64_t{greediest_} * kFramesAhead + missing + coming;
     // Labels that are given are refused when they are beyond the capacity, however many are free.
     if (free >= needed && missing == 0) return capacity;
     const uint64_t more = std::max<uint64_t>(std::min(capacity, step), needed - std::min(free, needed));

@@ -15,7 +15,8 @@ struct PoolCount {
 };
 
 inline PoolCount count_of(const gpu::MapCounters& c) {
-    return {c.capacity, c.free_blocks, c.capacity - c.free_blocks + c.deleted_blocks, c.refused_blocks};
+    const uint32_t given_back = c.deleted_blocks + c.left_blocks;
+    return {c.capacity, c.free_blocks, c.capacity - c.free_blocks + given_back, c.refused_blocks};
 }
 inline PoolCount count_of(const gpu::SegmentCounters& c) { return {c.capacity, c.free_labels, c.created, c.refused}; }
 
@@ -30,7 +31,8 @@ class PoolDemand {
 
     /// The capacity that a pool of `capacity` places should have by now: `capacity` itself where there is room, else
     /// twice that, but no more than `step` above, unless more was asked for.
-    uint32_t wanted(uint32_t capacity, uint32_t step) const;
+    /// `coming`: places that will be taken besides.
+    uint32_t wanted(uint32_t capacity, uint32_t step, uint32_t coming = 0) const;
 
     uint32_t used() const { return used_; }        ///< places in use, as of the last counters
     uint32_t refused() const { return refused_; }  ///< requests so far that found the pool full

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "passes/state/block_keys.h"
 #include "passes/surface/case_table.h"
 #include "spirv/shaders.h"
 
@@ -17,7 +18,7 @@ constexpr uint32_t kAttributeBytes = 3 * sizeof(glm::vec3);  // position, normal
 
 using Triangle = std::array<uint32_t, 3>;
 
-/// A block that owns vertices or triangles, and how many come before it.
+/// A block that owns vertices or triangles, where it is on the device, and how many are written before them.
 struct SurfaceBlock {
     uint32_t key = 0;
     uint32_t id = 0;
@@ -30,20 +31,36 @@ std::vector<SurfaceBlock> sort_surface_blocks(const std::vector<uint32_t>& keys,
                                               const std::vector<gpu::BlockElements>& counts) {
     std::vector<SurfaceBlock> blocks;
     for (uint32_t id = 0; id < keys.size(); ++id) {
-        if (counts[id].vertices + counts[id].triangles > 0) blocks.push_back({keys[id], id, counts[id], {}});
+        if (keys[id] != gpu::kEmptyKey && counts[id].vertices + counts[id].triangles > 0)
+            blocks.push_back({keys[id], id, counts[id], {}});
     }
     std::sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
-    uint64_t vertices = 0, triangles = 0;
-    for (SurfaceBlock& block : blocks) {
-        block.first = {static_cast<uint32_t>(vertices), static_cast<uint32_t>(triangles)};
-        vertices += block.elements.vertices;
-        triangles += block.elements.triangles;
+    return blocks;
+}
+
+/// Counts on from one to the next.
+class Numbering {
+  public:
+    gpu::BlockElements next(const gpu::BlockElements& own) {
+        const gpu::BlockElements first{static_cast<uint32_t>(vertices_), static_cast<uint32_t>(triangles_)};
+        vertices_ += own.vertices;
+        triangles_ += own.triangles;
+        return first;
     }
-    if (std::max(vertices, triangles) > UINT32_MAX) {
-        throw Error("the surface has ", vertices, " vertices and ", triangles, " triangles, at most ", UINT32_MAX,
+    void expect_in_range() const {
+        if (std::max(vertices_, triangles_) <= UINT32_MAX) return;
+        throw Error("the surface has ", vertices_, " vertices and ", triangles_, " triangles, at most ", UINT32_MAX,
                     " can be numbered");
     }
-    return blocks;
+
+  private:
+    uint64_t vertices_ = 0, triangles_ = 0;
+};
+
+void number(std::vector<SurfaceBlock>& blocks) {
+    Numbering numbering;
+    for (SurfaceBlock& block : blocks) block.first = numbering.next(block.elements);
+    numbering.expect_in_range();
 }
 
 /// Elements of consecutive blocks.
@@ -100,15 +117,21 @@ struct PendingPart {
 class Extraction {
   public:
     Extraction(graph::Runner& runner, const VoxelMap& map, const SurfaceOptions& options);
+    /// Of the whole map, or of a part, whose blocks have these numbers in the whole mesh.
     Mesh run();
+    Mesh run(const SurfacePart& part, std::span<const SurfaceElements> numbered);
+    std::vector<SurfaceElements> count(const SurfacePart& part);
 
   private:
     uint32_t count_block_ids();
     void create_arrays();
     std::vector<SurfaceBlock> count_elements();
+    std::vector<SurfaceBlock> count_blocks();
+    void keep_own(std::vector<SurfaceBlock>& blocks, const SurfacePart& part) const;
     PendingPart write_elements(graph::FrameGraph& frame, std::span<const SurfaceBlock> blocks,
-                               std::span<const gpu::BlockElements> first);
-    void append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first);
+                               std::span<const gpu::BlockElements> in_mesh);
+    void append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> in_mesh);
+    Mesh write(std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> in_mesh);
 
     gpu::SurfaceParams params(uint64_t items, gpu::BlockElements first = {}) const {
         return {map_.grid(), static_cast<uint32_t>(items), no_block_, first.vertices, first.triangles};
@@ -197,22 +220,27 @@ std::vector<SurfaceBlock> Extraction::count_elements() {
     return sort_surface_blocks(read_keys.as<uint32_t>(), read_counts.as<gpu::BlockElements>());
 }
 
+/// `in_mesh`: by block id, the elements of the whole mesh before its own.
 PendingPart Extraction::write_elements(graph::FrameGraph& frame, std::span<const SurfaceBlock> blocks,
-                                       std::span<const gpu::BlockElements> first) {
+                                       std::span<const gpu::BlockElements> in_mesh) {
     const gpu::BlockElements batch_first = blocks.front().first;
     const auto [vertex_count, triangle_count] = total_of(blocks);
     std::vector<uint32_t> block_ids;
-    for (const SurfaceBlock& block : blocks) block_ids.push_back(block.id);
+    std::vector<gpu::BlockElements> first(no_block_);
+    for (const SurfaceBlock& block : blocks) {
+        block_ids.push_back(block.id);
+        first[block.id] = block.first;
+    }
 
     const VoxelMapIds ids = map_.import(frame);
     const graph::BufferId neighbours = frame.import(arrays_.neighbours), edges = frame.import(arrays_.edges);
     const graph::BufferId cases = frame.upload<uint32_t>("surface.cases", cases_);
-    const graph::BufferId first_id = frame.upload("surface.first", first);
 
     auto list = frame.compute("surface.list_elements", spirv::list_elements);
     list.read("Neighbours", neighbours).read("Inside", frame.import(arrays_.inside));
     list.read("Complete", frame.import(arrays_.complete)).read("Cases", cases).read("Edges", edges);
-    list.read("TriangleOffsets", frame.import(arrays_.triangle_offsets)).read("First", first_id);
+    list.read("TriangleOffsets", frame.import(arrays_.triangle_offsets));
+    list.read("First", frame.upload<gpu::BlockElements>("surface.first", first));
     list.read("Batch", frame.upload<uint32_t>("surface.batch", block_ids)).push(params(blocks.size(), batch_first));
     const graph::BufferId vertices = list.create("Vertices", vertex_count * sizeof(gpu::SurfaceElement));
     const graph::BufferId triangles = list.create("Triangles", triangle_count * sizeof(gpu::SurfaceElement));
@@ -229,7 +257,9 @@ PendingPart Extraction::write_elements(graph::FrameGraph& frame, std::span<const
 
     auto write_triangles = frame.compute("surface.write_triangles", spirv::write_triangles);
     write_triangles.read("Neighbours", neighbours).read("Cases", cases).read("Edges", edges);
-    write_triangles.read("First", first_id).read("Triangles", triangles).push(params(triangle_count));
+    write_triangles.read("First", frame.upload("surface.in_mesh", in_mesh))
+        .read("Triangles", triangles)
+        .push(params(triangle_count));
     const graph::BufferId indices = write_triangles.create("Indices", uint64_t{triangle_count} * sizeof(Triangle));
     dispatch_items(write_triangles, triangle_count);
 
@@ -238,9 +268,9 @@ PendingPart Extraction::write_elements(graph::FrameGraph& frame, std::span<const
             read_elements(frame, attributes, 2 * n, n), read_elements(frame, indices, 0, triangle_count)};
 }
 
-void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> first) {
+void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> in_mesh) {
     graph::FrameGraph frame = runner_.begin();
-    const PendingPart part = write_elements(frame, blocks, first);
+    const PendingPart part = write_elements(frame, blocks, in_mesh);
     runner_.submit(std::move(frame));
     runner_.wait();
     const auto [vertices, triangles] = total_of(blocks);
@@ -250,26 +280,77 @@ void Extraction::append(Mesh& mesh, std::span<const SurfaceBlock> blocks, std::s
     append_to(mesh.triangles, part.triangles, triangles);
 }
 
-Mesh Extraction::run() {
-    Mesh mesh;
+/// Those that own something, of all that the device has.
+std::vector<SurfaceBlock> Extraction::count_blocks() {
     no_block_ = count_block_ids();
-    if (no_block_ == 0) return mesh;
+    if (no_block_ == 0) return {};
     create_arrays();
-    const std::vector<SurfaceBlock> blocks = count_elements();
-    std::vector<gpu::BlockElements> first(no_block_);
-    for (const SurfaceBlock& block : blocks) first[block.id] = block.first;
-    for (std::span<const SurfaceBlock> rest(blocks); !rest.empty();) {
-        const size_t length = batch_length(rest, batch_elements_);
-        append(mesh, rest.first(length), first);
-        rest = rest.subspan(length);
+    return count_elements();
+}
+
+void Extraction::keep_own(std::vector<SurfaceBlock>& blocks, const SurfacePart& part) const {
+    std::erase_if(blocks, [&](const SurfaceBlock& block) { return !part.holds(block_of_key(map_.grid(), block.key)); });
+}
+
+Mesh Extraction::write(std::span<const SurfaceBlock> blocks, std::span<const gpu::BlockElements> in_mesh) {
+    Mesh mesh;
+    while (!blocks.empty()) {
+        const size_t length = batch_length(blocks, batch_elements_);
+        append(mesh, blocks.first(length), in_mesh);
+        blocks = blocks.subspan(length);
     }
     return mesh;
+}
+
+Mesh Extraction::run() {
+    std::vector<SurfaceBlock> blocks = count_blocks();
+    number(blocks);
+    std::vector<gpu::BlockElements> in_mesh(no_block_);
+    for (const SurfaceBlock& block : blocks) in_mesh[block.id] = block.first;
+    return write(blocks, in_mesh);
+}
+
+std::vector<SurfaceElements> Extraction::count(const SurfacePart& part) {
+    std::vector<SurfaceBlock> blocks = count_blocks();
+    keep_own(blocks, part);
+    std::vector<SurfaceElements> counted;
+    for (const SurfaceBlock& block : blocks) counted.push_back({block.key, block.elements, {}});
+    return counted;
+}
+
+Mesh Extraction::run(const SurfacePart& part, std::span<const SurfaceElements> numbered) {
+    std::vector<SurfaceBlock> blocks = count_blocks();
+    std::vector<gpu::BlockElements> in_mesh(no_block_);
+    auto at = numbered.begin();
+    for (const SurfaceBlock& block : blocks) {
+        at = std::lower_bound(at, numbered.end(), block.key, [](const auto& a, uint32_t key) { return a.key < key; });
+        if (at != numbered.end() && at->key == block.key) in_mesh[block.id] = at->before;
+    }
+    keep_own(blocks, part);
+    number(blocks);
+    return write(blocks, in_mesh);
 }
 
 }  // namespace
 
 Mesh extract_surface(graph::Runner& runner, const VoxelMap& map, const SurfaceOptions& options) {
     return Extraction(runner, map, options).run();
+}
+
+std::vector<SurfaceElements> count_surface(graph::Runner& runner, const VoxelMap& map, const SurfacePart& part) {
+    return Extraction(runner, map, {}).count(part);
+}
+
+void number_surface(std::vector<SurfaceElements>& blocks) {
+    std::sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    Numbering numbering;
+    for (SurfaceElements& block : blocks) block.before = numbering.next(block.own);
+    numbering.expect_in_range();
+}
+
+Mesh extract_surface_part(graph::Runner& runner, const VoxelMap& map, const SurfacePart& part,
+                          std::span<const SurfaceElements> numbered) {
+    return Extraction(runner, map, {}).run(part, numbered);
 }
 
 }  // namespace patina

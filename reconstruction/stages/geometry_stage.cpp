@@ -1,5 +1,7 @@
 #include "reconstruction/stages/geometry_stage.h"
 
+#include <cmath>
+
 #include "engine/core/error.h"
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/remove_empty_blocks.h"
@@ -47,6 +49,16 @@ DepthRange GeometryStage::range(const Intrinsics& camera) const {
     const float truncation_m = least_truncation_m(settings_.fusion, settings_.map.voxel_m);
     range.reach_m = (seen_m - truncation_m) / (1 + settings_.fusion.truncation_slope);
     return range;
+}
+
+StreamRegion GeometryStage::around(const PosedCamera& camera) const {
+    // Two diagonals of a block: what is cast needs voxels beside the frustum.
+    const double beside_m = 4 * double{settings_.map.voxel_m} * gpu::kBlockEdge;
+    StreamRegion region = StreamRegion::ball(glm::dvec3(camera.world_from_camera[3]), settings_.around_m);
+    region.axis = glm::normalize(glm::dvec3(camera.world_from_camera[2]));
+    region.far_m = frustum_radius_m(camera.gpu, far_m());
+    region.half_angle = std::acos(far_m() / region.far_m);
+    return region.grown(beside_m);
 }
 
 graph::BufferId GeometryStage::add_params(graph::FrameGraph& graph, const FrameContext& frame) const {

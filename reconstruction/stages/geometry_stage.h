@@ -20,6 +20,7 @@ struct GeometrySettings {
     FusionSettings fusion;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
+    float around_m = 5;          ///< what lies farther from the camera is left alone, but for what frames fuse
 };
 
 /// A frame's pictures as they are fused. Those of depth have the depth camera's extent.
@@ -42,6 +43,10 @@ class GeometryStage {
     /// Which depths of a depth camera count. `reach_m` is fusion.max_depth_m, or less where with such small voxels the
     /// view of the map does not reach so far (view_reach_m).
     DepthRange range(const Intrinsics& camera) const;
+
+    /// The blocks that a frame's passes look at: those in the view of its depth camera, as far as frames are fused, and
+    /// those around it.
+    StreamRegion around(const PosedCamera& camera) const;
 
     /// What a frame's fusion passes share: gpu::FusionParams.
     graph::BufferId add_params(graph::FrameGraph& graph, const FrameContext& frame) const;

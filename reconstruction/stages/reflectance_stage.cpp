@@ -1,5 +1,7 @@
 #include "reconstruction/stages/reflectance_stage.h"
 
+#include <cmath>
+
 #include "passes/observation/reclaim_records.h"
 #include "passes/shading/pack_records.h"
 #include "shared/fusion/voxel_map.h"
@@ -16,6 +18,13 @@ ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceSta
     observations.limit_blocks = settings.limit_blocks;
     observations.limit_records = settings.limit_records;
     return observations;
+}
+
+/// The records around the camera, whose way to their lights begins where the map is known.
+RefinedPart part_around(const FrameContext& frame) {
+    const glm::vec3 center_m(frame.around.center_m);
+    const auto radius_m = static_cast<float>(frame.shadows_m);
+    return {glm::vec4(center_m, radius_m), glm::vec4(center_m, radius_m / std::sqrt(3.0f))};
 }
 
 }  // namespace
@@ -52,12 +61,13 @@ void ReflectanceStage::enlarge_records(graph::Enlargement& enlargement, uint32_t
 }
 
 void ReflectanceStage::reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m,
-                               uint32_t frame_index) {
-    if (settings_.reclaim_every == 0 || uint64_t{frame_index} + 1 < reclaim_at_) return;
-    reclaim_at_ = uint64_t{frame_index} + 1 + settings_.reclaim_every;
+                               const FrameContext& frame) {
+    if (settings_.reclaim_every == 0 || uint64_t{frame.index} + 1 < reclaim_at_) return;
+    reclaim_at_ = uint64_t{frame.index} + 1 + settings_.reclaim_every;
     ObservationMapIds records = observations_.import(graph);
     ReflectanceStateIds state = state_.import(graph);
-    add_reclaim_records(graph, observations_, records, state, map_, voxels, near_m, reclaim_turn_++);
+    add_reclaim_records(graph, observations_, records, state, map_, voxels, near_m, frame.around.gpu(),
+                        reclaim_turn_++);
 }
 
 void ReflectanceStage::keep(graph::FrameGraph& graph) const {
@@ -70,7 +80,8 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
     ObservationMapIds records = observations_.import(graph);
     const CollectedRecords collected = add_collect_observations(
         graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
-    add_refine_reflectance(graph, models(), voxels, records, collected.changed, access_, settings_.refine);
+    add_refine_reflectance(graph, models(part_around(frame)), voxels, records, collected.changed, access_,
+                           settings_.refine);
     ObservationMap::keep(graph, records);
     return collected.changed;
 }
@@ -81,17 +92,15 @@ SpecularInputs ReflectanceStage::add_specular_inputs(graph::FrameGraph& graph) {
             materials_.capacity()};
 }
 
-void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels) {
+void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, const RefinedPart& part) {
     ObservationMapIds records = observations_.import(graph);
-    add_refine_all_reflectance(graph, models(), voxels, records, access_, settings_.refine);
+    add_refine_all_reflectance(graph, models(part), voxels, records, access_, settings_.refine);
     ObservationMap::keep(graph, records);
 }
 
-void ReflectanceStage::relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const Light> lights,
-                               glm::dvec3 ambient) {
+void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient) {
     lights_.set(lights, ambient);
     settings_.refine.albedo = false;
-    refine_all(graph, voxels);
 }
 
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,

@@ -73,7 +73,7 @@ class ReflectanceStage {
     /// Gives back records whose surface went, where that is due: those in whose voxels nothing was seen within `near_m`
     /// of the surface (observation/reclaim_records.h). Whoever keeps record ids must choose them anew in this frame.
     /// add() or keep() comes after it.
-    void reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m, uint32_t frame_index);
+    void reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m, const FrameContext& frame);
 
     /// Ends a frame that add() is not called for: what passes wrote of the observations outlives it.
     void keep(graph::FrameGraph& graph) const;
@@ -90,13 +90,12 @@ class ReflectanceStage {
     /// What the frame's records and materials are so far.
     SpecularInputs add_specular_inputs(graph::FrameGraph& graph);
 
-    /// Brings every record up to date.
-    void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels);
+    /// Brings every record of a part up to date.
+    void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, const RefinedPart& part = {});
 
-    /// Puts the model under other lights than those it was observed under: their visibility is found, kd stays. Nothing
-    /// may be added or refined after that.
-    void relight(graph::FrameGraph& graph, const VoxelMapIds& voxels, std::span<const Light> lights,
-                 glm::dvec3 ambient);
+    /// Puts the model under other lights than those it was observed under: refine_all() finds their visibility, and kd
+    /// stays. Nothing may be added after that.
+    void relight(std::span<const Light> lights, glm::dvec3 ambient);
 
     /// What a camera sees that was cast into the model.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
@@ -116,7 +115,9 @@ class ReflectanceStage {
     const Lights& lights() const { return lights_; }
 
   private:
-    ReflectanceModels models() { return {map_, observations_, lights_, materials_, state_}; }
+    ReflectanceModels models(const RefinedPart& part) {
+        return {map_, observations_, lights_, materials_, state_, part};
+    }
 
     const VoxelMap& map_;
     ReflectanceStageSettings settings_;

@@ -11,6 +11,7 @@
 #include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sample_records.h"
+#include "passes/segmentation/sweep_away.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
 #include "passes/state/pool_sizes.h"
@@ -131,10 +132,18 @@ graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapId
     if (!samples_are_due(frame.index, settings_.sample_every)) graph.keep(materials.kd);
     const DueBlocks due = add_list_due_blocks(graph, map_, voxels, labels, surface.blocks, values.stamp);
     add_update_labels(graph, map_, voxels, labels, table, surface, due, seen, assigned, access_);
-    if (values.stamp % gpu::kSweepEvery == kSweepTurn) add_sweep_labels(graph, map_, voxels, labels, table, uniforms);
+    if (sweeps(frame.index)) add_sweep_labels(graph, map_, voxels, labels, table, uniforms);
+    if (!frame.labels_away.empty())
+        add_sweep_away(graph, table, graph.upload<uint32_t>("segmentation.labels_away", frame.labels_away));
     LabelMap::keep(graph, labels);
     SegmentTable::keep(graph, table);
     return add_label_pixels(graph, seen, known, table.parents, assigned, {values.extent.x, values.extent.y});
+}
+
+bool SegmentationStage::sweeps(uint32_t frame_index) { return (frame_index + 1) % gpu::kSweepEvery == kSweepTurn; }
+
+uint32_t SegmentationStage::swept_part(uint32_t frame_index) {
+    return (frame_index + 1) / gpu::kSweepEvery % gpu::kSweepParts;
 }
 
 bool SegmentationStage::may_lose_records(uint32_t frame_index) const {

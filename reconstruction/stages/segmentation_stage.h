@@ -103,6 +103,10 @@ class SegmentationStage {
     /// never does.
     bool may_lose_records(uint32_t frame_index) const;
 
+    /// Whether a frame's graph sweeps over a part of the map's labels, and which (segmentation/sweep_labels.h).
+    static bool sweeps(uint32_t frame_index);
+    static uint32_t swept_part(uint32_t frame_index);
+
     /// Brings one part of the observations' labels up to date with merged and pruned segments, another every few
     /// frames, and chooses the segments' records when that is due. To be called in every frame in which add() was.
     void add_records(graph::FrameGraph& graph, const ObservationMap& map, uint32_t frame_index) const;

@@ -24,7 +24,7 @@ const ReconstructionSettings& checked(const ReconstructionSettings& settings) {
 GeometrySettings geometry_of(const ReconstructionSettings& settings) {
     FusionSettings fusion = settings.fusion;
     fusion.seed = seed_of_draw(fusion.seed, settings.seed);
-    return {settings.map, fusion, settings.near_m, settings.remove_every};
+    return {settings.map, fusion, settings.near_m, settings.remove_every, settings.around_m};
 }
 
 }  // namespace

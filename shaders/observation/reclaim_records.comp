@@ -3,6 +3,7 @@
 // Of the observations' blocks, those whose keys have their turn: gives back the records of voxels in which the voxel
 // map has no surface any more, then the blocks that are left without any. A group looks at kReclaimGroup block ids; an
 // invocation at one of those that are due, side by side in the list, so that those beside it have work, too.
+#include "lib/map/stream_region.glsl"
 #include "lib/map/voxel_chunks.glsl"
 #include "lib/map/voxel_map.glsl"
 #include "shared/observation/observations.h"
@@ -92,7 +93,8 @@ void main() {
     barrier();
     const uint id = gl_GlobalInvocationID.x;
     const uint key = id < blocks.high_water ? block_keys[id] : kEmptyKey;
-    if (key != kEmptyKey && hash_of_key(key) % kReclaimParts == params.part) due[atomicAdd(due_count, 1u)] = id;
+    if (key != kEmptyKey && hash_of_key(key) % kReclaimParts == params.part && stays(params.voxels, params.region, key))
+        due[atomicAdd(due_count, 1u)] = id;
     barrier();
     if (lane < due_count) look_at(due[lane]);
 }

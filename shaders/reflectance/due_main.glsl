@@ -24,7 +24,10 @@ void consider(uint record, bool observed, bool refresh) {
     const VoxelRecord known = records[record];
     if (observation_count(known) == 0u) return;
     const uint marched = status[record].marched;
-    const bool march_again = refresh || !is_marched_from(marched, known, header.position_version);
+    // Farther from the camera, what may throw a shadow is not known.
+    const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
+    const bool marchable = distance(point_m, params.ball_m.xyz) < params.ball_m.w;
+    const bool march_again = marchable && (refresh || !is_marched_from(marched, known, header.position_version));
     if (march_again && atomicExchange(status[record].march_stamp, params.stamp) != params.stamp) {
         list_for_marching(record, is_marched(marched, header.position_version));
     }

@@ -31,6 +31,11 @@ void consider_quad(uvec4 entries) {
     }
 }
 
+bool has_turn(uint key) {
+    const vec3 center_m = (vec3(block_of_key(params.voxels, key)) + 0.5) * (params.voxels.voxel_m * float(kBlockEdge));
+    return all(lessThanEqual(abs(center_m - params.cube_m.xyz), vec3(params.cube_m.w)));
+}
+
 void main() {
     const uint mask = params.records.bucket_mask;
     const uint records_in_use = record_counters.capacity - record_counters.free_blocks;
@@ -45,7 +50,7 @@ void main() {
     if (item / kBucketSlots >= min(window + kMaxProbes - 1u, mask + 1u)) return;
     const uint slot = (cursor * kBucketSlots + item) & (mask * kBucketSlots + kBucketSlots - 1u);
     const uint key = keys[slot];
-    if (key == kEmptyKey || ((hash_of_key(key) - cursor) & mask) >= window) return;
+    if (key == kEmptyKey || ((hash_of_key(key) - cursor) & mask) >= window || !has_turn(key)) return;
     const uint block = blocks[slot];
     if (block == kNoBlock) return;
     const float busy = float(changed_list[0]) / kBusyChanges;

@@ -39,8 +39,9 @@ Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
     const float lamp_m = light.position_m.w > 0.0 ? light.position_m.w : kUnknownLampM;
     const float lamp_vox = min(lamp_m * inverse_voxel + kLampMarginVox, kMostLampShare * distance_vox);
     const float graze_vox = kGrazeShare * params.records.voxel_m * inverse_voxel;
-    Passage passage = march(point_m * inverse_voxel + lift * normal, direction, skipped, distance_vox - lamp_vox,
-                            cosine, lift, graze_vox);
+    const vec3 start = point_m * inverse_voxel + lift * normal;
+    const float reach = min(distance_vox - lamp_vox, to_ball_end(start, direction, params.ball_m));
+    Passage passage = march(start, direction, skipped, reach, cosine, lift, graze_vox);
     passage.uncertain = passage.uncertain || cosine < kGrazingCosine;
     return passage;
 }

@@ -72,6 +72,13 @@ void add_pools(RunSummary& summary, SessionCore& session) {
     summary.memory.push_back({"transient resources", pipeline.runner().transient_bytes(), 0, 0});
 }
 
+void add_stream_totals(RunSummary& summary, const StreamCounts& streamed) {
+    if (streamed.left == 0) return;
+    summary.totals.emplace_back("blocks that left the device", streamed.left);
+    summary.totals.emplace_back("blocks that came back", streamed.returned);
+    summary.totals.emplace_back("blocks that a frame waited for", streamed.awaited);
+}
+
 void add_segment_totals(RunSummary& summary, const PipelineCounters& counters) {
     const gpu::SegmentCounters& segments = counters.segments;
     const LabelStability& stability = counters.label_stability;
@@ -112,6 +119,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"triangles", scene.triangles},
                       {"degenerate triangles left out", scene.degenerate_triangles},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
+    add_stream_totals(summary, pipeline.stream_counts());
     if (pipeline.segmentation()) add_segment_totals(summary, counters);
     summary.tracking = session.tracked();
     summary.color_gains = gain_ranges(pipeline);

@@ -27,6 +27,15 @@ uint load_voxel(uint block, ivec3 coordinates) {
     return voxel;
 }
 
+// Where a ray (voxels) that starts in a ball (metres) leaves it: the distance from its start.
+float to_ball_end(vec3 start, vec3 direction, vec4 ball_m) {
+    const vec3 from_center = start - ball_m.xyz / grid.voxel_m;
+    const float radius = ball_m.w / grid.voxel_m;
+    const float along = dot(from_center, direction);
+    const float rest = along * along + radius * radius - dot(from_center, from_center);
+    return max(sqrt(max(rest, 0.0)) - along, 0.0);
+}
+
 // How far a ray goes on within the block that it is in.
 float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
     const vec3 ends = (vec3(block * 8) + 8.0 * step(vec3(0.0), inverse_direction) - at) * inverse_direction;

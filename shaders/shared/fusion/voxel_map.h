@@ -40,6 +40,7 @@ struct MapCounters {
     uint outside_samples;  // over the whole run: ray samples outside the range of keys
     uint deleted_blocks;   // over the whole run: blocks that held no surface
     uint capacity;         // places in the pool, as of this frame
+    uint left_blocks;      // over the whole run: blocks that left the device; of them some came back
 };
 
 INTEROP_CONST uint kAcceptBins = 1024u;

@@ -1,7 +1,7 @@
 // Records whose surface went: passes/observation/reclaim_records.h.
 #ifndef PATINA_SHARED_RECLAIM_H
 #define PATINA_SHARED_RECLAIM_H
-#include "shared/fusion/voxel_map.h"
+#include "shared/fusion/stream_blocks.h"
 INTEROP_BEGIN
 
 INTEROP_CONST uint kReclaimGroup = 64u;  // invocations of a group, which looks at as many block ids
@@ -13,6 +13,7 @@ struct ReclaimParams {
     uint part;            // that has its turn
     float surface_limit;  // a stored distance below it is near the surface
     uint pad0;
+    StreamRegion region;  // where the voxel map is known
 };
 
 INTEROP_END

@@ -54,6 +54,8 @@ struct ReflectanceParams {
     uint materials;     // entries of the table
     float least_share;  // of the records looked at, that is marched again although no record changed
     uint pad0;
+    vec4 ball_m;  // centre in the world, radius: what lies outside throws no shadow
+    vec4 cube_m;  // centre in the world, half edge: of records outside none has its turn
 };
 
 // Which of the records that wait for marching are taken.

@@ -7,6 +7,7 @@
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/observation/reclaim_records.h"
+#include "reconstruction/streaming/stream_region.h"
 #include "shared/fusion/remove_empty_blocks.h"
 #include "shared/test/test_observations.h"
 #include "spirv/shaders.h"
@@ -78,7 +79,7 @@ void ObservationRig::reclaim(uint32_t turn, float near) {
     ReflectanceStateIds state = state_.import(frame);
     const float near_m = near * fusion_.settings().truncation_m;
     const VoxelMapIds voxels = fusion_.map().import(frame);
-    add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, turn);
+    add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, StreamRegion{}.gpu(), turn);
     ObservationMap::keep(frame, ids);
     ReflectanceState::keep(frame, state);
     runner_.submit(std::move(frame));

@@ -5,6 +5,7 @@
 
 #include "engine/graph/enlargement.h"
 #include "passes/observation/grow_observations.h"
+#include "reconstruction/streaming/stream_region.h"
 #include "shared/fusion/remove_empty_blocks.h"
 #include "shared/observation/reclaim.h"
 #include "tests/gpu/gpu_test.h"
@@ -282,7 +283,8 @@ TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {
     ReflectanceStateIds status = state.import(frame);
     const VoxelMapIds voxels = rig.fusion().map().import(frame);
     for (uint32_t turn = 0; turn < gpu::kReclaimParts; ++turn)
-        add_reclaim_records(frame, rig.map(), ids, status, rig.fusion().map(), voxels, 0.019f, turn);
+        add_reclaim_records(frame, rig.map(), ids, status, rig.fusion().map(), voxels, 0.019f, StreamRegion{}.gpu(),
+                            turn);
     ObservationMap::keep(frame, ids);
     ReflectanceState::keep(frame, status);
     const graph::Readback read = frame.read_back(status.status);

@@ -98,6 +98,50 @@ bool on_floor(const RefinedRecord& record) {
            std::max(apart.x, apart.z) > 0.04;
 }
 
+TEST_F(FindVisibilityTest, WhatLiesOutsideTheBallThrowsNoShadow) {
+    const auto model = make_model();
+    const auto shadows_within = [&](float radius_m) {
+        // Around a place on the floor beside the box, away from the first light: the box is 0.2 m off at least.
+        const glm::vec3 place(-0.45f, 0, 0);
+        model->reflectance.part.ball_m = glm::vec4(place, radius_m);
+        model->reflectance.lights.set(kLights);  // so that all are marched anew
+        model->reflectance.update_all({});
+        uint32_t shadows = 0;
+        for (const RefinedRecord& record : model->reflectance.records()) {
+            if (!on_floor(record) || glm::distance(record.point_m, glm::dvec3(place)) > 0.15) continue;
+            shadows += (record.visible & 1) == 0 ? 1 : 0;
+        }
+        return shadows;
+    };
+    EXPECT_GT(shadows_within(RefinedPart::kEverywhere_m), 40u);
+    EXPECT_GT(shadows_within(1), 40u);
+    EXPECT_EQ(shadows_within(0.18f), 0u) << "the box is not looked at";
+}
+
+TEST_F(FindVisibilityTest, RecordsOutsideTheCubeHaveNoTurn) {
+    const auto model = make_model();
+    const glm::dvec3 center(0.3, 0, 0.1);
+    constexpr double kHalf_m = 0.2, kBlock_m = 0.04;
+    model->reflectance.part.cube_m = glm::vec4(glm::vec3(center), static_cast<float>(kHalf_m));
+    model->reflectance.update_all({});
+    uint32_t inside = 0, outside = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        if (record.observations == 0) continue;
+        const glm::dvec3 block = (glm::floor(record.point_m / kBlock_m) + 0.5) * kBlock_m;
+        const glm::dvec3 apart = glm::abs(block - center) - kHalf_m;
+        const double beyond_m = std::max({apart.x, apart.y, apart.z});
+        if (std::abs(beyond_m) < kBlock_m) continue;  // a surface beside a block may be its record's
+        if (beyond_m < 0) {
+            inside += record.visible != 0 ? 1 : 0;
+        } else {
+            EXPECT_EQ(record.visible, 0u) << "its lights were not looked for";
+            ++outside;
+        }
+    }
+    EXPECT_GT(inside, 100u);
+    EXPECT_GT(outside, 1000u);
+}
+
 TEST_F(FindVisibilityTest, BitsAreTheShadowsOfTheBox) {
     const auto model = make_model();
     model->reflectance.update_all({});

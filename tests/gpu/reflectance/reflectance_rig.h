@@ -41,9 +41,10 @@ class ReflectanceRig {
     Lights lights;
     SegmentMaterials materials;
     ReflectanceAccess access;
+    RefinedPart part;
 
   private:
-    ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_}; }
+    ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_, part}; }
     Counts submit(graph::FrameGraph frame, const ObservationMapIds& ids, const RefinedReflectance& refined);
 
     graph::Runner& runner_;

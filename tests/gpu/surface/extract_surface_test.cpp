@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "engine/core/error.h"
+#include "passes/state/block_keys.h"
 #include "tests/gpu/fusion/fusion_rig.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/surface/marching_cubes.h"
@@ -182,6 +183,60 @@ TEST_F(ExtractSurfaceTest, SameBytesFromTwoMapsOnEveryPathAndInSmallBatches) {
 TEST_F(ExtractSurfaceTest, ABatchMustHoldABlock) {
     FusionRig rig(device(), runner());
     EXPECT_THROW(extract(rig, {kMaxBlockElements - 1, {}}), Error);
+}
+
+/// The cubes of `edge` blocks around a ball.
+std::vector<SurfacePart> cubes(int edge) {
+    std::vector<SurfacePart> parts;
+    const int reach = 8 / edge + 1;
+    for (int z = -reach; z < reach; ++z) {
+        for (int y = -reach; y < reach; ++y) {
+            for (int x = -reach; x < reach; ++x) {
+                const glm::ivec3 low = glm::ivec3(x, y, z) * edge;
+                parts.push_back({low, low + edge - 1});
+            }
+        }
+    }
+    return parts;
+}
+
+TEST_F(ExtractSurfaceTest, PartsAreTogetherTheWholeByteByByte) {
+    const Paint paint = [](glm::dvec3 point_m) { return glm::vec3(point_m) + 0.5f; };
+    FusionRig rig(device(), runner());
+    fuse_from_all_sides(rig, kSphere, paint, 12);
+    const Mesh whole = extract(rig);
+    ASSERT_GT(whole.triangles.size(), 10000u);
+    const gpu::VoxelGrid grid = rig.map().grid();
+    for (const int edge : {5, 40}) {
+        std::vector<SurfaceElements> blocks;
+        for (const SurfacePart& part : cubes(edge)) {
+            const auto counted = count_surface(runner(), rig.map(), part);
+            blocks.insert(blocks.end(), counted.begin(), counted.end());
+        }
+        number_surface(blocks);
+        size_t vertices = 0, triangles = 0;
+        for (const SurfacePart& part : cubes(edge)) {
+            const Mesh mesh = extract_surface_part(runner(), rig.map(), part, blocks);
+            gpu::BlockElements at{};
+            for (const SurfaceElements& block : blocks) {
+                if (!part.holds(block_of_key(grid, block.key))) continue;
+                for (uint32_t i = 0; i < block.own.vertices; ++i) {
+                    ASSERT_EQ(mesh.positions_m[at.vertices + i], whole.positions_m[block.before.vertices + i]);
+                    ASSERT_EQ(mesh.normals[at.vertices + i], whole.normals[block.before.vertices + i]);
+                    ASSERT_EQ(mesh.colors[at.vertices + i], whole.colors[block.before.vertices + i]);
+                }
+                for (uint32_t i = 0; i < block.own.triangles; ++i)
+                    ASSERT_EQ(mesh.triangles[at.triangles + i], whole.triangles[block.before.triangles + i]);
+                at = {at.vertices + block.own.vertices, at.triangles + block.own.triangles};
+            }
+            EXPECT_EQ(mesh.positions_m.size(), at.vertices);
+            EXPECT_EQ(mesh.triangles.size(), at.triangles);
+            vertices += at.vertices;
+            triangles += at.triangles;
+        }
+        EXPECT_EQ(vertices, whole.positions_m.size());
+        EXPECT_EQ(triangles, whole.triangles.size());
+    }
 }
 
 /// Blocks of a map in the order of their ids.

@@ -1,0 +1,217 @@
+#include "reconstruction/streaming/block_store.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <new>
+
+#include <zstd.h>
+
+#include "engine/core/error.h"
+#include "passes/state/block_keys.h"
+
+namespace patina {
+
+namespace {
+
+constexpr size_t kWords = gpu::kBlockVoxels;
+constexpr size_t kMostBytes = 3 * kWords * sizeof(uint32_t);
+constexpr int kLevel = 1;  // 1: what leaves is compressed while frames go on
+
+using Bytes = std::array<std::byte, kMostBytes>;
+
+/// The first bytes of all words, then the second ones, and so on: neighbours are alike byte by byte.
+void shuffle(std::span<const uint32_t> words, std::byte* out) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        for (size_t b = 0; b < 4; ++b) out[b * words.size() + i] = static_cast<std::byte>(words[i] >> 8 * b);
+    }
+}
+
+void unshuffle(const std::byte* in, std::span<uint32_t> words) {
+    for (size_t i = 0; i < words.size(); ++i) {
+        uint32_t word = 0;
+        for (size_t b = 0; b < 4; ++b) word |= std::to_integer<uint32_t>(in[b * words.size() + i]) << 8 * b;
+        words[i] = word;
+    }
+}
+
+/// Replaces labels by their places in `labels`, which it fills.
+std::array<uint32_t, kWords> index_labels(std::span<const uint32_t> words,
+                                          std::vector<BlockStore::Kept::Label>& labels) {
+    std::array<uint32_t, kWords> indexed{};
+    for (size_t i = 0; i < words.size(); ++i) {
+        const auto label = static_cast<uint16_t>(words[i]);
+        auto at = std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.label == label; });
+        if (at == labels.end()) at = labels.insert(at, {label, 0});
+        ++at->voxels;
+        indexed[i] = (words[i] & 0xffff0000u) | static_cast<uint32_t>(at - labels.begin());
+    }
+    return indexed;
+}
+
+template <class Context>
+Context* made(Context* context) {
+    if (!context) throw std::bad_alloc();
+    return context;
+}
+
+/// The cell that a block lies in: its coordinates in units of cells, as keys have them.
+constexpr uint32_t kCellShift = 4, kCellEdge = 1u << kCellShift;
+constexpr uint32_t kWithinCell = (kCellEdge - 1) | (kCellEdge - 1) << 11 | (kCellEdge - 1) << 21;
+uint32_t cell_of(uint32_t key) { return key & ~kWithinCell; }
+
+uint32_t part_number(uint32_t key) { return hash_of_key(key) % gpu::kSweepParts; }
+
+}  // namespace
+
+void BlockStore::Free::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
+void BlockStore::Free::operator()(ZSTD_DCtx_s* context) const { ZSTD_freeDCtx(context); }
+
+BlockStore::BlockStore() : compressor_(made(ZSTD_createCCtx())), decompressor_(made(ZSTD_createDCtx())) {}
+BlockStore::~BlockStore() = default;
+
+const BlockStore::Part& BlockStore::part_of(uint32_t key) const { return parts_[part_number(key)]; }
+BlockStore::Part& BlockStore::part_of(uint32_t key) { return parts_[part_number(key)]; }
+
+void BlockStore::put(const gpu::StreamedBlock& block, const BlockWords& words) {
+    Kept kept;
+    kept.label_stamp = block.label_stamp;
+    Bytes bytes;
+    shuffle(words.tsdf, bytes.data());
+    shuffle(words.color, bytes.data() + kWords * 4);
+    const bool labelled = !words.labels.empty();
+    if (labelled) shuffle(index_labels(words.labels, kept.labels), bytes.data() + kWords * 8);
+    std::array<std::byte, ZSTD_COMPRESSBOUND(kMostBytes)> packed;
+    const size_t size = ZSTD_compressCCtx(compressor_.get(), packed.data(), packed.size(), bytes.data(),
+                                          labelled ? kMostBytes : kMostBytes / 3 * 2, kLevel);
+    if (ZSTD_isError(size)) throw std::bad_alloc();
+    kept.packed.assign(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
+    put_back(block.key, std::move(kept));
+}
+
+void BlockStore::put_back(uint32_t key, Kept&& kept) {
+    std::vector<uint32_t>& cell = cells_[cell_of(key)];
+    cell.reserve(cell.size() + 1);
+    // Once there is room for the key, either both are done or nothing is.
+    if (part_of(key).insert_or_assign(key, std::move(kept)).second) cell.push_back(key);
+}
+
+gpu::StreamedBlock BlockStore::read(uint32_t key, std::span<uint32_t> tsdf, std::span<uint32_t> color,
+                                    std::span<uint32_t> labels) const {
+    const Kept& kept = part_of(key).at(key);
+    Bytes bytes;
+    const size_t size =
+        ZSTD_decompressDCtx(decompressor_.get(), bytes.data(), bytes.size(), kept.packed.data(), kept.packed.size());
+    const size_t expected = labels.empty() ? kMostBytes / 3 * 2 : kMostBytes;
+    if (size != expected) throw Error("a voxel block that was away has ", size, " bytes, not ", expected);
+    unshuffle(bytes.data(), tsdf);
+    unshuffle(bytes.data() + kWords * 4, color);
+    if (!labels.empty()) {
+        unshuffle(bytes.data() + kWords * 8, labels);
+        // As sweep_labels.comp does: a label that was given up takes its confidence along.
+        for (uint32_t& word : labels) {
+            const uint32_t label = kept.labels.at(word & 0xffff).label;
+            word = label == 0 ? 0 : (word & 0xffff0000u) | label;
+        }
+    }
+    return {key, 0, kept.label_stamp, 0};
+}
+
+BlockStore::Kept BlockStore::take(uint32_t key) {
+    Part& part = part_of(key);
+    const auto at = part.find(key);
+    PATINA_ASSERT(at != part.end(), "no block ", key, " is away");
+    Kept kept = std::move(at->second);
+    part.erase(at);
+    const auto cell = cells_.find(cell_of(key));
+    std::erase(cell->second, key);
+    if (cell->second.empty()) cells_.erase(cell);
+    return kept;
+}
+
+std::vector<uint32_t> BlockStore::keys(const gpu::VoxelGrid& grid, const StreamRegion& region) const {
+    std::vector<uint32_t> keys;
+    for (const auto& [cell, held] : cells_) {
+        if (held.empty() || !region.meets(grid, block_of_key(grid, cell), kCellEdge)) continue;
+        std::copy_if(held.begin(), held.end(), std::back_inserter(keys),
+                     [&](uint32_t key) { return region.holds(grid, block_of_key(grid, key)); });
+    }
+    std::sort(keys.begin(), keys.end());
+    return keys;
+}
+
+std::vector<uint32_t> BlockStore::count_labels(uint32_t part, uint32_t capacity) const {
+    std::vector<uint32_t> counts(capacity);
+    for (const auto& [key, kept] : parts_.at(part)) {
+        for (const auto& [label, voxels] : kept.labels) {
+            if (label != 0 && label < capacity) counts[label] += voxels;
+        }
+    }
+    return counts;
+}
+
+void BlockStore::relabel(uint32_t part, std::span<const uint32_t> parents) {
+    for (auto& [key, kept] : parts_.at(part)) {
+        for (auto& [label, voxels] : kept.labels) {
+            if (label < parents.size()) label = static_cast<uint16_t>(parents[label]);
+        }
+    }
+}
+
+uint32_t BlockStore::blocks() const {
+    size_t blocks = 0;
+    for (const Part& part : parts_) blocks += part.size();
+    return static_cast<uint32_t>(blocks);
+}
+
+uint64_t BlockStore::bytes() const {
+    constexpr uint64_t kNodeBytes = sizeof(Kept) + 48;  // with the map's own
+    uint64_t bytes = 0;
+    for (const Part& part : parts_) {
+        for (const auto& [key, kept] : part)
+            bytes += kNodeBytes + kept.packed.capacity() + kept.labels.capacity() * sizeof(Kept::Label);
+    }
+    return bytes;
+}
+
+void BlockStore::clear() {
+    for (Part& part : parts_) part.clear();
+    cells_.clear();
+}
+
+void BlockStore::visit(graph::StateVisitor& visitor) {
+    for (uint32_t i = 0; i < parts_.size(); ++i) {
+        std::vector<uint32_t> heads;  // key, stamp, labels, bytes; of each block
+        std::vector<Kept::Label> labels;
+        std::vector<std::byte> packed;
+        for (const auto& [key, kept] : parts_[i]) {
+            heads.insert(heads.end(), {key, kept.label_stamp, static_cast<uint32_t>(kept.labels.size()),
+                                       static_cast<uint32_t>(kept.packed.size())});
+            labels.insert(labels.end(), kept.labels.begin(), kept.labels.end());
+            packed.insert(packed.end(), kept.packed.begin(), kept.packed.end());
+        }
+        const std::string name = text("away.", i);
+        visitor.values(name + ".blocks", heads);
+        visitor.values(name + ".labels", labels);
+        visitor.values(name + ".voxels", packed);
+        Part part;
+        auto label = labels.cbegin();
+        auto byte = packed.cbegin();
+        for (size_t at = 0; at + 4 <= heads.size(); at += 4) {
+            const auto label_count = static_cast<std::ptrdiff_t>(heads[at + 2]);
+            const auto byte_count = static_cast<std::ptrdiff_t>(heads[at + 3]);
+            if (labels.cend() - label < label_count || packed.cend() - byte < byte_count)
+                throw Error("'", name, "' ends within a block");
+            part[heads[at]] = {heads[at + 1], {label, label + label_count}, {byte, byte + byte_count}};
+            label += label_count;
+            byte += byte_count;
+        }
+        parts_[i] = std::move(part);
+    }
+    cells_.clear();
+    for (const Part& part : parts_) {
+        for (const auto& [key, kept] : part) cells_[cell_of(key)].push_back(key);
+    }
+}
+
+}  // namespace patina

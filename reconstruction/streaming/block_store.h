@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/graph/state_visitor.h"
+#include "reconstruction/streaming/stream_region.h"
+#include "shared/fusion/stream_blocks.h"
+#include "shared/segmentation/segments.h"
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace patina {
+
+/// The words of a block's voxels, as they are on the device. Without labels `labels` is empty.
+struct BlockWords {
+    std::span<const uint32_t> tsdf, color, labels;
+};
+
+/// Blocks that are away from the device, compressed in the host's memory. Their labels are kept apart, so that they can
+/// be counted and replaced where they are.
+class BlockStore {
+  public:
+    BlockStore();
+    ~BlockStore();
+    BlockStore(const BlockStore&) = delete;
+    BlockStore& operator=(const BlockStore&) = delete;
+
+    /// Keeps a block; one of the same key is replaced. Throws std::bad_alloc; then nothing has changed.
+    void put(const gpu::StreamedBlock& block, const BlockWords& words);
+
+    /// What is kept of one block.
+    struct Kept {
+        struct Label {
+            uint16_t label = 0;
+            uint16_t voxels = 0;
+        };
+        uint32_t label_stamp = 0;
+        std::vector<Label> labels;      ///< that occur; in `packed` stand their places in this list
+        std::vector<std::byte> packed;  ///< distances, colours and labels, compressed
+    };
+
+    /// A block that is about to return: it stays as it is until forget().
+    /// Writes its words to `words`, gpu::kBlockVoxels for each array: distances, colours and, unless empty, labels.
+    gpu::StreamedBlock read(uint32_t key, std::span<uint32_t> tsdf, std::span<uint32_t> color,
+                            std::span<uint32_t> labels) const;
+    /// Takes a block out.
+    Kept take(uint32_t key);
+    void put_back(uint32_t key, Kept&& kept);
+
+    /// The keys of the blocks within a region, in ascending order.
+    std::vector<uint32_t> keys(const gpu::VoxelGrid& grid, const StreamRegion& region) const;
+
+    /// Of one part of the sweep over all labels (segmentation/sweep_labels.h): the voxels of each label below
+    /// `capacity`; and the replacement of labels by `parents`, by label.
+    std::vector<uint32_t> count_labels(uint32_t part, uint32_t capacity) const;
+    void relabel(uint32_t part, std::span<const uint32_t> parents);
+
+    uint32_t blocks() const;
+    uint64_t bytes() const;  ///< of the host's memory, about
+
+    void clear();
+    void visit(graph::StateVisitor& visitor);
+
+  private:
+    using Part = std::map<uint32_t, Kept>;
+    const Part& part_of(uint32_t key) const;
+    Part& part_of(uint32_t key);
+
+    std::map<uint32_t, std::vector<uint32_t>> cells_;  ///< keys by the cell of 16^3 blocks that they lie in
+    std::array<Part, gpu::kSweepParts> parts_;
+    struct Free {
+        void operator()(ZSTD_CCtx_s* context) const;
+        void operator()(ZSTD_DCtx_s* context) const;
+    };
+    std::unique_ptr<ZSTD_CCtx_s, Free> compressor_;
+    std::unique_ptr<ZSTD_DCtx_s, Free> decompressor_;
+};
+
+}  // namespace patina

@@ -1,0 +1,66 @@
+#include "reconstruction/streaming/map_tiles.h"
+
+#include <array>
+#include <set>
+
+#include "passes/state/block_keys.h"
+
+namespace patina {
+
+namespace {
+
+// Of the ball's radius: half the diagonal of what one ball is enough for, and the edge of cubes where it is not.
+constexpr double kOneBall = 0.75, kEdge = 0.5;
+constexpr double kBlocksBeside = 4, kBeside_m = 0.01;  // as far as blocks reach, and float and double differ
+
+std::vector<glm::ivec3> observed_blocks(graph::Runner& runner, const ObservationMap& map) {
+    graph::FrameGraph graph = runner.begin();
+    const graph::Readback keys = graph.read_back(map.import(graph).block_keys);
+    runner.submit(std::move(graph));
+    runner.wait();
+    std::vector<glm::ivec3> blocks;
+    for (const uint32_t key : keys.as<uint32_t>()) {
+        if (key != gpu::kEmptyKey) blocks.push_back(block_of_key(map.grid(), key));
+    }
+    return blocks;
+}
+
+MapTile tile_at(glm::dvec3 center_m, double known_m, double block_m) {
+    MapTile tile;
+    tile.part.ball_m = glm::vec4(glm::vec3(center_m), static_cast<float>(known_m));
+    tile.around = StreamRegion::ball(center_m, known_m + kBlocksBeside * block_m + kBeside_m);
+    return tile;
+}
+
+}  // namespace
+
+std::vector<MapTile> tiles_of_records(graph::Runner& runner, const ObservationMap& map, double known_m) {
+    const double block_m = double{map.settings().block_m};
+    const std::vector<glm::ivec3> blocks = observed_blocks(runner, map);
+    if (blocks.empty()) return {};
+    glm::ivec3 low = blocks.front(), high = low;
+    for (const glm::ivec3& block : blocks) {
+        low = glm::min(low, block);
+        high = glm::max(high, block);
+    }
+    const glm::dvec3 low_m = glm::dvec3(low) * block_m, high_m = glm::dvec3(high + 1) * block_m;
+    if (glm::distance(low_m, high_m) / 2 <= kOneBall * known_m)
+        return {tile_at((low_m + high_m) / 2.0, known_m, block_m)};
+
+    // A whole number of blocks, so that each block is in one cube.
+    const auto edge = std::max(static_cast<int>(kEdge * known_m / block_m), 1);
+    std::set<std::array<int, 3>> cubes;
+    for (const glm::ivec3& block : blocks) {
+        const glm::ivec3 cube = (block - low) / edge;
+        cubes.insert({cube.x, cube.y, cube.z});
+    }
+    std::vector<MapTile> tiles;
+    for (const auto& [x, y, z] : cubes) {
+        const glm::dvec3 center = glm::dvec3(low + glm::ivec3(x, y, z) * edge) + edge / 2.0;
+        MapTile& tile = tiles.emplace_back(tile_at(center * block_m, known_m, block_m));
+        tile.part.cube_m = glm::vec4(glm::vec3(center * block_m), static_cast<float>(edge / 2.0 * block_m));
+    }
+    return tiles;
+}
+
+}  // namespace patina

@@ -1,0 +1,207 @@
+#include "reconstruction/streaming/streaming.h"
+
+#include <cstring>
+#include <numbers>
+#include <string>
+
+#include "reconstruction/pipeline.h"
+#include "reconstruction/session/rgbd_frame.h"
+#include "reconstruction/store/map_file.h"
+#include "reconstruction/store/state_files.h"
+#include "scenes/render/synthetic_source.h"
+#include "tests/export/temporary_folder.h"
+#include "tests/gpu/gpu_test.h"
+
+namespace patina {
+namespace {
+
+/// Along a wall with things before it, 12 m there and back, coarse and small.
+scenes::SyntheticScene street() {
+    scenes::SyntheticScene scene;
+    scene.name = "street";
+    const auto add = [&](scenes::Shape shape, const RigidTransform& pose, glm::dvec3 kd, glm::dvec3 ks, double alpha) {
+        const auto id = static_cast<uint32_t>(scene.objects.size() + 1);
+        scene.objects.push_back({{{std::move(shape), pose}}, {id, std::to_string(id), kd, ks, alpha}, {}});
+    };
+    const glm::dvec3 x(1, 0, 0), y(0, 1, 0);
+    add(scenes::RectangleShape{{8, 1.5}}, scenes::placed({6, 0, 1.3}, y, 0), {0.5, 0.5, 0.45}, glm::dvec3(0.05), 0.3);
+    add(scenes::RectangleShape{{8, 1.5}}, scenes::placed({6, 0.7, 0}, x, std::numbers::pi / 2), {0.3, 0.25, 0.2},
+        glm::dvec3(0.1), 0.2);
+    for (int i = 0; i < 26; ++i) {
+        const glm::dvec3 kd(0.15 + 0.5 * (i % 3 == 0), 0.15 + 0.4 * (i % 3 == 1), 0.15 + 0.4 * (i % 4 == 2));
+        add(scenes::BoxShape{glm::dvec3(0.12)}, scenes::placed({0.5 * i - 0.2, 0.58 - 0.5 * (i % 2), 1.0}, y, 0.4 * i),
+            kd, glm::dvec3(0.1), 0.15);
+    }
+    for (int i = 0; i < 5; ++i) scene.lights.push_back({{3.0 * i, -1.5, -0.5}, {4, 4, 4}, 0.05});
+    scenes::WaypointPath path;
+    path.period_s = 40;
+    for (int i = 0; i < 9; ++i) path.waypoints.push_back({{1.5 * i, 0, 0}, {1.5 * i + 0.2, 0.1, 1.3}});
+    for (int i = 7; i > 0; --i) path.waypoints.push_back({{1.5 * i, -0.1, 0.1}, {1.5 * i - 0.2, 0.1, 1.3}});
+    scene.path = path;
+    scene.fps = 3;
+    scene.camera = scaled_to(scene.camera, {128, 106});
+    return scene;
+}
+
+struct Tour {
+    explicit Tour(vulkan::Device& device) {
+        scenes::SyntheticSource source(device, street(), {.frames = 120});
+        info = source.info();
+        while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
+        lights = source.scene().lights;
+    }
+
+    SequenceInfo info;
+    std::vector<Frame> frames;
+    std::vector<Light> lights;
+};
+
+struct Result {
+    Mesh mesh;
+    MeshReflectance reflectance;
+    StreamCounts streamed;  ///< before the mesh was extracted
+    PipelineCounters counters;
+};
+
+template <class Element>
+bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0;
+}
+
+void expect_same_scene(const Result& a, const Result& b) {
+    EXPECT_TRUE(same_bytes(a.mesh.positions_m, b.mesh.positions_m));
+    EXPECT_TRUE(same_bytes(a.mesh.normals, b.mesh.normals));
+    EXPECT_TRUE(same_bytes(a.mesh.colors, b.mesh.colors));
+    EXPECT_TRUE(same_bytes(a.mesh.triangles, b.mesh.triangles));
+    EXPECT_TRUE(same_bytes(a.reflectance.labels, b.reflectance.labels));
+    EXPECT_TRUE(same_bytes(a.reflectance.kd, b.reflectance.kd));
+}
+
+class StreamingTest : public GpuTest {
+  protected:
+    /// Of a camera that sees 1.6 m far.
+    static ReconstructionSettings settings(uint32_t resident_blocks) {
+        ReconstructionSettings settings;
+        settings.map.voxel_m = 0.02f;
+        settings.map.capacity_blocks = 512;
+        settings.fusion.truncation_m = 0.06f;
+        settings.fusion.max_depth_m = 1.6f;
+        settings.around_m = 1.6f;
+        settings.remove_every = 4;
+        settings.resident_blocks = resident_blocks;
+        settings.segmentation.emplace();
+        settings.reflectance.emplace();
+        settings.reflectance->voxel_m = 0.04f;
+        return settings;
+    }
+
+    void add(Pipeline& pipeline, size_t first, size_t end) const {
+        for (size_t i = first; i < end; ++i) pipeline.add(patina::to_rgbd(tour_.info, tour_.frames[i]));
+    }
+
+    Result reconstruct(const ReconstructionSettings& settings) const {
+        Pipeline pipeline(device(), settings);
+        pipeline.set_lights(tour_.lights);
+        add(pipeline, 0, tour_.frames.size());
+        return result_of(pipeline);
+    }
+
+    static Result result_of(Pipeline& pipeline) {
+        pipeline.wait();
+        Result result;
+        result.streamed = pipeline.stream_counts();
+        result.counters = pipeline.counters();
+        result.mesh = pipeline.extract_surface();
+        result.reflectance = pipeline.sample_reflectance(result.mesh);
+        return result;
+    }
+
+    const Tour tour_{device()};
+};
+
+TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
+    const Result all = reconstruct(settings(0)), few = reconstruct(settings(1));
+    EXPECT_EQ(all.streamed.left, 0u);
+    EXPECT_GT(few.streamed.left, 1000u);
+    EXPECT_GT(few.streamed.returned, 200u);
+    EXPECT_GT(few.streamed.away, 500u);
+    EXPECT_EQ(few.streamed.away, few.streamed.left - few.streamed.returned);
+    EXPECT_LT(few.counters.map.capacity - few.counters.map.free_blocks,
+              all.counters.map.capacity - all.counters.map.free_blocks);
+    EXPECT_EQ(few.counters.map.refused_blocks, 0u);
+    ASSERT_GT(all.mesh.positions_m.size(), 10000u);
+    expect_same_scene(few, all);
+    EXPECT_EQ(few.counters.segments.created, all.counters.segments.created);
+    EXPECT_EQ(few.counters.segments.live, all.counters.segments.live);
+    EXPECT_EQ(few.counters.segments.pruned, all.counters.segments.pruned);
+    EXPECT_EQ(few.counters.segments.free_labels, all.counters.segments.free_labels);
+}
+
+/// From one end of the street to the other and back, without a way: whole rooms come back at once.
+TEST_F(StreamingTest, ACameraThatJumpsFindsWhatItHadLeft) {
+    const auto jump = [&](uint32_t resident_blocks) {
+        Pipeline pipeline(device(), settings(resident_blocks));
+        pipeline.set_lights(tour_.lights);
+        for (const size_t first : {0, 55, 2, 57, 25, 4}) add(pipeline, first, first + 10);
+        return result_of(pipeline);
+    };
+    const Result all = jump(0), few = jump(1);
+    EXPECT_GT(few.streamed.awaited, 500u);
+    EXPECT_LE(few.streamed.awaited, few.streamed.returned);
+    EXPECT_EQ(few.counters.map.refused_blocks, 0u);
+    expect_same_scene(few, all);
+}
+
+TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
+    Pipeline pipeline(device(), settings(1));
+    pipeline.set_lights(tour_.lights);
+    Pipeline whole(device(), settings(0));
+    whole.set_lights(tour_.lights);
+    add(pipeline, 0, 60);
+    add(whole, 0, 60);
+    ASSERT_GT(pipeline.stream_counts().away, 500u);
+    const auto view = [&](Pipeline& of) {
+        const ViewReadback seen = of.view(tour_.info.depth, *tour_.frames[3].world_from_camera);
+        of.wait();
+        return seen.get();
+    };
+    const ModelView back = view(pipeline), there = view(whole);
+    EXPECT_TRUE(same_bytes(back.position_m.pixels(), there.position_m.pixels()));
+    EXPECT_TRUE(same_bytes(back.color.pixels(), there.color.pixels()));
+    EXPECT_TRUE(same_bytes(back.label.pixels(), there.label.pixels()));
+    uint32_t seen = 0;
+    for (const glm::vec4& point : back.position_m.pixels()) seen += point.w > 0 ? 1 : 0;
+    EXPECT_GT(seen, 5000u);
+}
+
+TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
+    const Result whole = reconstruct(settings(1));
+    const test::TemporaryFolder folder;
+    MapFile map(folder / "map.sqlite");
+    {
+        Pipeline pipeline(device(), settings(1));
+        pipeline.set_lights(tour_.lights);
+        add(pipeline, 0, 66);
+        Transaction change(map.database());
+        StateWriter writer(device(), map);
+        pipeline.visit(writer);
+        writer.finish();
+        change.commit();
+        ASSERT_GT(pipeline.stream_counts().away, 500u);
+    }
+    Pipeline pipeline(device(), settings(1));
+    pipeline.set_lights(tour_.lights);
+    StateReader reader(device(), map);
+    pipeline.visit(reader);
+    reader.finish();
+    ASSERT_GT(pipeline.stream_counts().away, 500u);
+    add(pipeline, 66, tour_.frames.size());
+    const Result again = result_of(pipeline);
+    expect_same_scene(again, whole);
+    EXPECT_EQ(again.streamed.left, whole.streamed.left);
+    EXPECT_EQ(again.streamed.away, whole.streamed.away);
+    EXPECT_EQ(again.streamed.returned, whole.streamed.returned);
+}
+
+}  // namespace
+}  // namespace patina

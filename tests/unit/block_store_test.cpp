@@ -1,0 +1,245 @@
+#include "reconstruction/streaming/block_store.h"
+
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "passes/state/block_keys.h"
+
+namespace patina {
+namespace {
+
+constexpr size_t kWords = gpu::kBlockVoxels;
+
+struct Words {
+    std::vector<uint32_t> tsdf, color, labels;
+
+    BlockWords spans() const { return {tsdf, color, labels}; }
+    bool operator==(const Words&) const = default;
+};
+
+Words random_words(std::mt19937& random, uint32_t labels) {
+    Words words{std::vector<uint32_t>(kWords), std::vector<uint32_t>(kWords),
+                std::vector<uint32_t>(labels ? kWords : 0)};
+    for (uint32_t& word : words.tsdf) word = random();
+    for (uint32_t& word : words.color) word = random();
+    for (uint32_t& word : words.labels) {
+        const uint32_t label = random() % labels;
+        word = label == 0 ? 0 : label | random() % 256 << 16;
+    }
+    return words;
+}
+
+Words read(const BlockStore& store, uint32_t key, bool labelled, uint32_t* stamp = nullptr) {
+    Words words{std::vector<uint32_t>(kWords), std::vector<uint32_t>(kWords),
+                std::vector<uint32_t>(labelled ? kWords : 0)};
+    const gpu::StreamedBlock block = store.read(key, words.tsdf, words.color, words.labels);
+    EXPECT_EQ(block.key, key);
+    if (stamp) *stamp = block.label_stamp;
+    return words;
+}
+
+/// Keeps what is visited, or brings it back.
+class MemoryVisitor : public graph::StateVisitor {
+  public:
+    explicit MemoryVisitor(bool keeps) : keeps_(keeps) {}
+    void reverse() { keeps_ = false; }
+    void buffer(vulkan::BufferRef&) override {}
+    void array(vulkan::ChunkedBuffer&) override {}
+    void image(vulkan::ImageRef&) override {}
+    void bytes(const std::string& name, std::vector<std::byte>& bytes) override {
+        if (keeps_) {
+            EXPECT_TRUE(kept.emplace(name, bytes).second) << name << " comes twice";
+        } else {
+            bytes = kept.at(name);
+        }
+    }
+
+    std::map<std::string, std::vector<std::byte>> kept;
+
+  private:
+    bool keeps_;
+};
+
+TEST(BlockStore, GivesBackWhatItWasGiven) {
+    std::mt19937 random(3);
+    for (const uint32_t labels : {0u, 1u, 5u, 600u}) {
+        BlockStore store;
+        std::map<uint32_t, Words> blocks;
+        for (uint32_t i = 0; i < 40; ++i) {
+            const uint32_t key = random() & 0x7fffffffu;
+            blocks[key] = random_words(random, labels);
+            store.put({key, 7, i, 0}, blocks[key].spans());
+        }
+        EXPECT_EQ(store.blocks(), blocks.size());
+        for (const auto& [key, words] : blocks) {
+            EXPECT_EQ(read(store, key, labels > 0), words);
+            BlockStore::Kept kept = store.take(key);
+            EXPECT_EQ(store.blocks(), blocks.size() - 1);
+            store.put_back(key, std::move(kept));
+            EXPECT_EQ(read(store, key, labels > 0), words);
+        }
+        store.clear();
+        EXPECT_EQ(store.blocks(), 0u);
+        EXPECT_EQ(store.bytes(), 0u);
+    }
+}
+
+TEST(BlockStore, ABlockOfTheSameKeyIsReplaced) {
+    std::mt19937 random(4);
+    BlockStore store;
+    const Words first = random_words(random, 3), second = random_words(random, 3);
+    store.put({42, 0, 1, 0}, first.spans());
+    store.put({42, 0, 2, 0}, second.spans());
+    uint32_t stamp = 0;
+    EXPECT_EQ(store.blocks(), 1u);
+    EXPECT_EQ(read(store, 42, true, &stamp), second);
+    EXPECT_EQ(stamp, 2u);
+    const gpu::VoxelGrid grid{};
+    EXPECT_EQ(store.keys(grid, {}), std::vector<uint32_t>{42}) << "once";
+}
+
+TEST(BlockStore, LabelsAreCountedAndReplacedByPart) {
+    std::mt19937 random(5);
+    constexpr uint32_t kLabels = 20;
+    BlockStore store;
+    std::map<uint32_t, Words> blocks;
+    for (uint32_t key = 100; key < 260; ++key) {
+        blocks[key] = random_words(random, kLabels);
+        store.put({key, 0, 0, 0}, blocks[key].spans());
+    }
+    std::vector<uint32_t> parents(kLabels);
+    for (uint32_t label = 1; label < kLabels; ++label) parents[label] = label % 3 == 0 ? 0 : label % 3 == 1 ? 1 : label;
+    for (uint32_t part = 0; part < gpu::kSweepParts; ++part) {
+        std::vector<uint32_t> expected(kLabels);
+        for (auto& [key, words] : blocks) {
+            if (hash_of_key(key) % gpu::kSweepParts != part) continue;
+            for (uint32_t& word : words.labels) {
+                const uint32_t label = word & 0xffff, root = parents[label];
+                if (label != 0) ++expected[label];
+                word = root == 0 ? 0 : (word & 0xffff0000u) | root;
+            }
+        }
+        EXPECT_EQ(store.count_labels(part, kLabels), expected);
+        store.relabel(part, parents);
+        for (const auto& [key, words] : blocks) {
+            if (hash_of_key(key) % gpu::kSweepParts != part) continue;
+            EXPECT_EQ(read(store, key, true), words);
+        }
+    }
+}
+
+TEST(BlockStore, KeysOfARegionAreThoseThatARegionHolds) {
+    std::mt19937 random(6);
+    gpu::VoxelGrid grid{};
+    grid.origin_block = {5, -7, 11, 0};
+    grid.voxel_m = 0.01f;
+    BlockStore store;
+    const Words words = random_words(random, 0);
+    std::vector<uint32_t> keys;
+    for (uint32_t i = 0; i < 600; ++i) {
+        const uint32_t key = (1024 + random() % 60) | (512 + random() % 60) << 11 | (1024 + random() % 60) << 21;
+        keys.push_back(key);
+        store.put({key, 0, 0, 0}, words.spans());
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    EXPECT_EQ(store.keys(grid, {}), keys);
+    for (const StreamRegion& region :
+         {StreamRegion::ball({2, 1.5, 3}, 1.3), StreamRegion::ball({-9, 0, 0}, 4),
+          StreamRegion::box({20, 0, 20}, {40, 31, 60}), StreamRegion::box({5, -7, 11}, {5, 90, 90})}) {
+        std::vector<uint32_t> expected;
+        for (const uint32_t key : keys) {
+            if (region.holds(grid, block_of_key(grid, key))) expected.push_back(key);
+        }
+        EXPECT_EQ(store.keys(grid, region), expected);
+    }
+    EXPECT_GT(store.keys(grid, StreamRegion::ball({2, 1.5, 3}, 1.3)).size(), 10u);
+}
+
+TEST(BlockStore, ComesBackFromItsState) {
+    std::mt19937 random(7);
+    BlockStore store;
+    std::map<uint32_t, Words> blocks;
+    for (uint32_t i = 0; i < 50; ++i) {
+        const uint32_t key = random() & 0x7fffffffu;
+        blocks[key] = random_words(random, 1 + i % 7);
+        store.put({key, 0, i, 0}, blocks[key].spans());
+    }
+    MemoryVisitor visitor(true);
+    store.visit(visitor);
+    visitor.reverse();
+    BlockStore other;
+    other.put({1, 0, 0, 0}, random_words(random, 2).spans());
+    other.visit(visitor);
+    EXPECT_EQ(other.blocks(), blocks.size());
+    for (const auto& [key, words] : blocks) EXPECT_EQ(read(other, key, true), words);
+    EXPECT_EQ(other.keys({}, {}), store.keys({}, {}));
+
+    visitor.kept.begin()->second.resize(visitor.kept.begin()->second.size() / 2 / 16 * 16);
+    for (auto& [name, bytes] : visitor.kept) {
+        if (name.ends_with(".voxels") && !bytes.empty()) bytes.pop_back();
+    }
+    EXPECT_THROW(other.visit(visitor), Error);
+}
+
+TEST(StreamRegion, IsABallAndAConeThatGrowByAsMuch) {
+    gpu::VoxelGrid grid{};
+    grid.voxel_m = 0.0125f;  // blocks of 10 cm
+    StreamRegion region = StreamRegion::ball({0.05, 0.05, 0.05}, 1);
+    region.axis = {0, 0, 1};
+    region.far_m = 3;
+    region.half_angle = 0.5;
+    const auto holds = [&](const StreamRegion& of, double x, double z) {
+        return of.holds(grid, glm::ivec3(std::lround(10 * x), 0, std::lround(10 * z)));
+    };
+    EXPECT_TRUE(holds(region, -0.9, 0));
+    EXPECT_FALSE(holds(region, -1.1, 0));
+    EXPECT_TRUE(holds(region, 0, 2.9)) << "in the cone";
+    EXPECT_FALSE(holds(region, 0, 3.1));
+    EXPECT_FALSE(holds(region, 0, -1.1)) << "behind it";
+    EXPECT_TRUE(holds(region, 2 * std::tan(0.45), 2));
+    EXPECT_FALSE(holds(region, 2 * std::tan(0.55), 2));
+    const StreamRegion more = region.grown(0.5);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> within(-4, 4);
+    uint32_t near = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const auto anywhere = [&] { return glm::dvec3(within(random), within(random), within(random)); };
+        const glm::ivec3 block(glm::round(10.0 * anywhere()));
+        if (!region.holds(grid, block)) continue;
+        const glm::ivec3 step(3.9 * glm::normalize(anywhere()));
+        EXPECT_TRUE(more.holds(grid, block + step)) << "what is as near to it";
+        ++near;
+    }
+    EXPECT_GT(near, 300u);
+    EXPECT_FALSE(holds(more, 0, 3.7));
+    EXPECT_FALSE(holds(more, 0, -1.6));
+    EXPECT_FALSE(holds(more, 2.9, 0)) << "the cone does not open all round";
+}
+
+TEST(StreamRegion, ACubeMeetsItWhereOneOfItsBlocksMay) {
+    std::mt19937 random(8);
+    gpu::VoxelGrid grid{};
+    grid.voxel_m = 0.02f;
+    uint32_t met = 0;
+    for (int i = 0; i < 400; ++i) {
+        const auto coordinate = [&] { return static_cast<int>(random() % 40) - 20; };
+        const glm::ivec3 low(coordinate(), coordinate(), coordinate());
+        const StreamRegion region =
+            i % 2 == 0
+                ? StreamRegion::ball(glm::dvec3(coordinate(), coordinate(), coordinate()) * 0.1, 0.2 + 0.1 * (i % 9))
+                : StreamRegion::box({coordinate(), coordinate(), coordinate()}, {20, 20, 20});
+        bool holds = false;
+        for (int at = 0; at < 512; ++at)
+            holds = holds || region.holds(grid, low + glm::ivec3(at & 7, at >> 3 & 7, at >> 6));
+        EXPECT_TRUE(!holds || region.meets(grid, low, 8));
+        met += region.meets(grid, low, 8) ? 1 : 0;
+    }
+    EXPECT_GT(met, 20u);
+    EXPECT_LT(met, 300u) << "what is far is left out";
+}
+
+}  // namespace
+}  // namespace patina
