@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kSmallestShare = 16;
 /// And where that is in vain, this many frames go by until the next attempt.
 constexpr uint32_t kFramesBetweenAttempts = 8;
+/// Where blocks leave the device, the pool grows by this part of what should be there.
+constexpr uint32_t kStepsOfResident = 8;
 
 template <class Counters>
 auto counter_of(graph::Readback PoolReadbacks::*read) {
@@ -25,18 +27,21 @@ auto counter_of(graph::Readback PoolReadbacks::*read) {
 }  // namespace
 
 GrowingPools::GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation,
-                           ReflectanceStage* reflectance, SpecularStage* specular)
+                           ReflectanceStage* reflectance, SpecularStage* specular, uint32_t resident_blocks)
     : device_(device) {
-    add_voxel_pool(map, segmentation);
+    add_voxel_pool(map, segmentation, resident_blocks);
     if (reflectance) add_observation_pools(*reflectance);
     if (segmentation) add_label_pool(*segmentation, reflectance, specular);
 }
 
-void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation) {
+void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation, uint32_t resident_blocks) {
     Pool pool{{"voxel blocks", "map.capacity_blocks"}, map.settings().limit_blocks};
     pool.capacity = [&map] { return map.capacity(); };
     pool.most = [&map] { return map.most_blocks(); };
-    pool.step = [&map] { return map.chunk_blocks(); };
+    pool.step = [&map, resident_blocks] {
+        const bool many = resident_blocks > 0 && map.capacity() >= resident_blocks;
+        return many ? std::max(resident_blocks / kStepsOfResident, 1u) : map.chunk_blocks();
+    };
     pool.enlarge = [&map, segmentation](graph::Enlargement& enlargement, uint32_t blocks) {
         map.enlarge(enlargement, blocks);
         if (segmentation) segmentation->enlarge_blocks(enlargement, blocks);

@@ -49,9 +49,10 @@ struct PoolReadbacks {
 /// frame n - 2 (before the first frames: of frame 0), so that every run decides alike, whenever the device answers.
 class GrowingPools {
   public:
-    /// All but the map may be null. All must outlive this.
+    /// All but the map may be null. All must outlive this. Beyond `resident_blocks`, above 0, the pool of voxel blocks
+    /// grows by small steps, as blocks leave then.
     GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation, ReflectanceStage* reflectance,
-                 SpecularStage* specular);
+                 SpecularStage* specular, uint32_t resident_blocks = 0);
 
     /// Nothing was asked for yet; whenever the map is reset.
     void reset();
@@ -105,7 +106,7 @@ class GrowingPools {
         bool ready() const { return !counts.empty() || counters.voxels.ready(); }
     };
 
-    void add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation);
+    void add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation, uint32_t resident_blocks);
     void add_observation_pools(ReflectanceStage& reflectance);
     void add_label_pool(SegmentationStage& segmentation, ReflectanceStage* reflectance, SpecularStage* specular);
     /// The counts of a frame that is ready, by pool.

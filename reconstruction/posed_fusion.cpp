@@ -16,7 +16,7 @@ PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages, Streaming& strea
       stages_(stages),
       streaming_(streaming),
       pools_(runner.device(), stages.geometry.map(), pointer_to(stages.segmentation), pointer_to(stages.reflectance),
-             pointer_to(stages.specular)) {}
+             pointer_to(stages.specular), stages.settings.resident_blocks) {}
 
 void PosedFusion::add(const RgbdFrame& frame) {
     if (history_.frames == 0) return add_first(frame);
