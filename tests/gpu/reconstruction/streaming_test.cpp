@@ -1,7 +1,9 @@
 #include "reconstruction/streaming/streaming.h"
 
+#include <array>
 #include <cstring>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "reconstruction/pipeline.h"
@@ -201,6 +203,34 @@ TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
     EXPECT_EQ(again.streamed.left, whole.streamed.left);
     EXPECT_EQ(again.streamed.away, whole.streamed.away);
     EXPECT_EQ(again.streamed.returned, whole.streamed.returned);
+}
+
+TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
+    Stages stages(device(), settings(1));
+    stages.reflectance->set_lights(tour_.lights);
+    Streaming streaming(runner(), stages);
+    PosedFusion fusion(runner(), stages, streaming);
+    for (size_t i = 0; i < 60; ++i) fusion.add(patina::to_rgbd(tour_.info, tour_.frames[i]));
+    runner().wait();
+    const auto all_blocks = [&] {
+        std::set<std::array<int, 3>> blocks;
+        for (const glm::ivec3& block : streaming.blocks()) blocks.insert({block.x, block.y, block.z});
+        return blocks;
+    };
+    const auto before = all_blocks();
+    const uint32_t away = streaming.counts().away;
+    ASSERT_GT(away, 500u);
+    const PosedCamera start = make_posed_camera(tour_.info.depth, *tour_.frames[3].world_from_camera);
+    for (uint32_t index = 60; index < 64; ++index) {  // in one of them blocks leave, too
+        ASSERT_GT(streaming.plan(stages.geometry.around(start), index, true), 100u);
+        graph::FrameGraph graph = runner().begin();
+        streaming.add(graph);
+    }
+    EXPECT_EQ(streaming.counts().away, away);
+    EXPECT_EQ(all_blocks(), before);
+    streaming.require(stages.geometry.around(start));
+    EXPECT_LT(streaming.counts().away, away);
+    EXPECT_EQ(all_blocks(), before);
 }
 
 }  // namespace
