@@ -1,6 +1,8 @@
 #include "reconstruction/growing_pools.h"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
 
 #include "engine/core/error.h"
 #include "passes/fusion/grow_voxels.h"
@@ -18,6 +20,8 @@ constexpr uint32_t kSmallestShare = 16;
 constexpr uint32_t kFramesBetweenAttempts = 8;
 /// Where blocks leave the device, the pool grows by this part of what should be there.
 constexpr uint32_t kStepsOfResident = 8;
+
+uint32_t sum_of(std::span<const uint32_t> counts) { return std::accumulate(counts.begin(), counts.end(), 0u); }
 
 template <class Counters>
 auto counter_of(graph::Readback PoolReadbacks::*read) {
@@ -112,6 +116,7 @@ void GrowingPools::reset() {
     for (Pool& pool : pools_) {
         pool.demand = {};
         pool.grown_at = pool.try_at = pool.came_again = 0;
+        pool.coming = {};
     }
 }
 
@@ -155,7 +160,9 @@ bool GrowingPools::has_many_blocks(uint32_t index, uint32_t most) {
 bool GrowingPools::grow(graph::Runner& runner, uint32_t index, uint32_t coming_blocks) {
     graph::FrameGraph frame = runner.begin();  // waits for frame `index` - 2
     note_before(index);
-    pools_.front().coming = coming_blocks;
+    auto& coming = pools_.front().coming;
+    std::rotate(coming.begin(), coming.end() - 1, coming.end());
+    coming.front() = coming_blocks;
     std::vector<graph::Enlargement> committed;
     std::vector<Pool*> grown;
     for (Pool& pool : pools_) {
@@ -182,7 +189,7 @@ bool GrowingPools::grow(graph::Runner& runner, uint32_t index, uint32_t coming_b
 
 std::optional<graph::Enlargement> GrowingPools::grow(graph::FrameGraph& frame, Pool& pool, uint32_t index) {
     const uint32_t capacity = pool.capacity(), most = pool.most();
-    const uint64_t wanted = pool.demand.wanted(capacity, pool.step(), pool.coming);
+    const uint64_t wanted = pool.demand.wanted(capacity, pool.step(), sum_of(pool.coming));
     if (wanted > most) pool.state.limit = most == pool.limit_setting ? PoolLimit::kSetting : PoolLimit::kBuffers;
     const auto target = static_cast<uint32_t>(std::min<uint64_t>(wanted, most));
     if (target == capacity || index < pool.try_at) return std::nullopt;
@@ -254,6 +261,7 @@ void GrowingPools::visit(graph::StateVisitor& visitor) {
         visitor.value(name + ".grown_at", pool.grown_at);
         visitor.value(name + ".try_at", pool.try_at);
         visitor.value(name + ".came_again", pool.came_again);
+        visitor.value(name + ".coming", pool.coming);
     }
 }
 

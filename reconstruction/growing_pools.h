@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -87,7 +88,9 @@ class GrowingPools {
         uint32_t grown_at = 0;  ///< the frame before which it grew last: what was refused before came again
         uint32_t try_at = 0;    ///< the frame from which on memory may be asked for
         uint32_t came_again = 0;
-        uint32_t coming = 0;  ///< places that are taken besides with the frame that it may grow for
+        /// Places that are taken besides with the frame that it may grow for, and were with the two before it, whose
+        /// counters are not known yet.
+        std::array<uint32_t, 1 + PoolDemand::kFramesAhead> coming{};
         std::function<uint32_t()> capacity{};
         std::function<uint32_t()> most{};  ///< that it may grow to
         std::function<uint32_t()> step{};  ///< by which it grows at most, unless more is asked for

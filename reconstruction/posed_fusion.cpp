@@ -54,7 +54,8 @@ PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFra
 graph::FrameGraph PosedFusion::begin(const RgbdFrame& frame) {
     runner_.begin();  // waits for the frame before the last
     const uint32_t index = history_.frames, most = stages_.settings.resident_blocks;
-    const StreamRegion around = stages_.geometry.around(make_frame_cameras(frame).depth);
+    const FrameCameras cameras = make_frame_cameras(frame);
+    const StreamRegion around = stages_.geometry.around(cameras.depth, cameras.color);
     const uint32_t coming = streaming_.plan(around, index, most > 0 && pools_.has_many_blocks(index, most));
     pools_.grow(runner_, index, coming);
     streaming_.move_surplus();
@@ -62,7 +63,7 @@ graph::FrameGraph PosedFusion::begin(const RgbdFrame& frame) {
 }
 
 void PosedFusion::require(const Intrinsics& camera, const RigidTransform& world_from_camera) {
-    streaming_.require(stages_.geometry.around(make_posed_camera(camera, world_from_camera)).grown(kBeside_m));
+    streaming_.require(stages_.geometry.around_view(make_posed_camera(camera, world_from_camera)).grown(kBeside_m));
 }
 
 PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdFrame& frame,
@@ -70,7 +71,7 @@ PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdF
     Declared declared;
     declared.frame =
         make_frame_context(frame, history_, stages_.geometry.range(frame.depth.camera), stages_.settings.fusion.color);
-    declared.frame.around = stages_.geometry.around(declared.frame.depth);
+    declared.frame.around = stages_.geometry.around(declared.frame.depth, declared.frame.color);
     declared.frame.shadows_m = stages_.settings.around_m;
     streaming_.add(graph);
     declared.frame.labels_away = streaming_.labels_away(declared.frame.index);

@@ -35,7 +35,8 @@ class PosedFusion {
     Declared declare(graph::FrameGraph& graph, const RgbdFrame& frame, const InputPictures& pictures);
     void note(const Declared& declared);
 
-    /// Brings back what a depth camera sees of the model; before a graph that looks at it besides frames.
+    /// Brings back what a camera sees of the model, as far as the pool holds it; before a graph that looks at it
+    /// besides frames.
     void require(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
     uint32_t frames() const { return history_.frames; }  ///< fused so far

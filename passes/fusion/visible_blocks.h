@@ -19,10 +19,10 @@ struct VisibleBlocks {
 
 /// How far a camera sees at most, metres along its optical axis: far_m, or less where the grid of blocks around the
 /// frustum would take more than 128 MiB (of a Kinect v2, with voxels of 5 mm, beyond 7 m).
+float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m);
+
 /// How far from a camera's centre the farthest point of its frustum lies that ends at `far_m` along its axis.
 double frustum_radius_m(const gpu::Camera& camera, float far_m);
-
-float view_reach_m(const gpu::Camera& camera, float voxel_m, float far_m);
 
 /// Lists the blocks whose bounding box meets the camera's frustum between near_m and far_m, or view_reach_m() where
 /// that is nearer, and finds the depth range in which the rays of each image tile can meet blocks (ray interval

@@ -15,7 +15,8 @@ struct PoolCount {
 };
 
 inline PoolCount count_of(const gpu::MapCounters& c) {
-    const uint32_t given_back = c.deleted_blocks + c.left_blocks;
+    // What left and came back was not asked for anew.
+    const uint32_t given_back = c.deleted_blocks + c.left_blocks - c.returned_blocks;
     return {c.capacity, c.free_blocks, c.capacity - c.free_blocks + given_back, c.refused_blocks};
 }
 inline PoolCount count_of(const gpu::SegmentCounters& c) { return {c.capacity, c.free_labels, c.created, c.refused}; }

@@ -44,9 +44,11 @@ class GeometryStage {
     /// view of the map does not reach so far (view_reach_m).
     DepthRange range(const Intrinsics& camera) const;
 
-    /// The blocks that a frame's passes look at: those in the view of its depth camera, as far as frames are fused, and
-    /// those around it.
-    StreamRegion around(const PosedCamera& camera) const;
+    /// The blocks that a frame's passes look at: those in the views of both its cameras, as far as frames are fused,
+    /// and those around it.
+    StreamRegion around(const PosedCamera& depth, const PosedCamera& color) const;
+    /// The blocks that a view is cast from (add_visible_to_view), and those around its camera.
+    StreamRegion around_view(const PosedCamera& camera) const;
 
     /// What a frame's fusion passes share: gpu::FusionParams.
     graph::BufferId add_params(graph::FrameGraph& graph, const FrameContext& frame) const;
@@ -88,6 +90,8 @@ class GeometryStage {
 
   private:
     float far_m() const;
+    float view_far_m() const { return 2 * settings_.fusion.max_depth_m; }
+    StreamRegion around(const PosedCamera& camera, float far_m) const;
 
     GeometrySettings settings_;
     VoxelMap map_;

@@ -7,8 +7,6 @@ namespace patina {
 
 namespace {
 
-constexpr double kWidest = 1.5;  // radians: a little less than a right angle
-
 double block_m(const gpu::VoxelGrid& grid) { return double{grid.voxel_m} * gpu::kBlockEdge; }
 
 bool all_up_to(glm::ivec3 a, glm::ivec3 b) { return glm::all(glm::lessThanEqual(a, b)); }

@@ -13,11 +13,12 @@ namespace patina {
 struct StreamRegion {
     glm::dvec3 center_m{0};
     double radius_m = 1e9;
-    glm::dvec3 axis{0, 0, 1};            ///< of the cone, unit length
-    double far_m = 0;                    ///< how far it reaches from its tip; 0: there is none
-    double half_angle = 0;               ///< of the cone, below a right angle
-    glm::ivec3 low_block{INT_MIN / 2};   ///< lowest coordinates of the box
-    glm::ivec3 high_block{INT_MAX / 2};  ///< highest ones
+    glm::dvec3 axis{0, 0, 1};               ///< of the cone, unit length
+    double far_m = 0;                       ///< how far it reaches from its tip; 0: there is none
+    double half_angle = 0;                  ///< of the cone, at most kWidest
+    static constexpr double kWidest = 1.5;  ///< radians: a little less than a right angle
+    glm::ivec3 low_block{INT_MIN / 2};      ///< lowest coordinates of the box
+    glm::ivec3 high_block{INT_MAX / 2};     ///< highest ones
 
     /// A ball around a point of the world.
     static StreamRegion ball(glm::dvec3 center_m, double radius_m);

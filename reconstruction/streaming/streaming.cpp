@@ -50,6 +50,7 @@ void Streaming::reset() {
     coming_.clear();
     keeps_.reset();
     left_outside_ = 0;
+    short_ = false;
     left_ = returned_ = awaited_ = 0;
 }
 
@@ -74,7 +75,8 @@ bool Streaming::would_miss(const StreamRegion& near) const {
 uint32_t Streaming::plan(const StreamRegion& near, uint32_t index, bool many) {
     collect();
     const bool sweeps = SegmentationStage::sweeps(index);
-    if (would_miss(near) || (sweeps && pends<Leaving>())) collect_all();
+    // What the device may refuse again has to be known, too.
+    if (would_miss(near) || (sweeps && pends<Leaving>()) || (short_ && pends<Returning>())) collect_all();
     keeps_.reset();
     if (many && (index + 1) % gpu::kSweepEvery == kLeaveTurn) keeps_ = near.grown(kLeave_m);
 
@@ -85,7 +87,8 @@ uint32_t Streaming::plan(const StreamRegion& near, uint32_t index, bool many) {
     const auto most = static_cast<size_t>(first_ahead - coming_.begin());
     awaited_ += most;
     // What the last sweep replaced is not known yet: what need not come waits for it.
-    coming_.resize(pends<Swept>() ? most : std::max<size_t>(most, std::min<size_t>(coming_.size(), kMostReturning)));
+    const bool after_sweep = index > 0 && SegmentationStage::sweeps(index - 1);
+    coming_.resize(after_sweep ? most : std::max<size_t>(most, std::min<size_t>(coming_.size(), kMostReturning)));
     if (!coming_.empty() && pends<Swept>()) collect_all();
     return static_cast<uint32_t>(coming_.size());
 }
@@ -229,6 +232,8 @@ void Streaming::note(const Leaving& leaving) {
 /// One by one, so that it can go on where memory ran out.
 void Streaming::note(Returning& returning) {
     const auto blocks = returning.blocks.as<gpu::StreamedBlock>();
+    short_ = std::any_of(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(returning.kept.size()),
+                         [](const gpu::StreamedBlock& block) { return block.block == gpu::kNoBlock; });
     for (; !returning.kept.empty(); returning.kept.pop_back()) {
         auto& [key, kept] = returning.kept.back();
         if (blocks[returning.kept.size() - 1].block == gpu::kNoBlock) {
@@ -264,8 +269,9 @@ void Streaming::make_room(const StreamRegion& region, size_t blocks) {
         runner_.wait();
         return counters.as<gpu::MapCounters>().front().free_blocks;
     };
-    uint32_t free = read_free(runner_.begin()), outside = 1;
-    while (free < blocks && outside > 0) {
+    uint32_t before = 0, free = read_free(runner_.begin()), outside = 1;
+    for (bool first = true; free < blocks && outside > 0 && (first || free > before); first = false) {
+        before = free;
         graph::FrameGraph graph = runner_.begin();
         const graph::Readback counts = add_leaving(graph, region);
         free = read_free(std::move(graph));
@@ -301,6 +307,7 @@ void Streaming::visit(graph::StateVisitor& visitor) {
     collect();  // all are there
     store_.visit(visitor);
     visitor.value("streaming.left_outside", left_outside_);
+    visitor.value("streaming.short", short_);
     visitor.value("streaming.left", left_);
     visitor.value("streaming.returned", returned_);
     visitor.value("streaming.awaited", awaited_);

@@ -24,7 +24,7 @@ struct StreamCounts {
 };
 
 /// Takes voxel blocks that are far from the camera off the device while many are in use, and brings them back before a
-/// frame looks at them: every block in the ball around the camera that its passes look at is on the device, always. So
+/// frame looks at them: every block of the region that its passes look at is on the device, unless the pool is full. So
 /// nothing that a frame computes depends on what is away. Which blocks leave follows poses, frame numbers and keys.
 ///
 /// The labels of blocks that are away take part in the sweeps over all labels, as if they were on the device: a sweep
@@ -105,6 +105,7 @@ class Streaming {
     std::optional<StreamRegion> keeps_;  ///< outside of which blocks leave with the next frame
     uint32_t left_outside_ = 0;          ///< blocks that had to stay when some left last: there were too many
     std::vector<uint32_t> labels_away_;
+    bool short_ = false;  ///< the device had no room for some that were to come back last
     uint64_t left_ = 0, returned_ = 0, awaited_ = 0;
 };
 

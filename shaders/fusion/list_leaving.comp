@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Lists the blocks that leave, and gives back their places. Their voxels stay as they are until these are taken again,
-// in a later frame.
+// which passes do after those that copy them.
 #include "lib/map/accepted_key.glsl"
 #include "lib/map/stream_region.glsl"
 

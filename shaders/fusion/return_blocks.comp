@@ -37,7 +37,10 @@ void main() {
         if (block == kNoBlock) {
             block = take_place();
             blocks[at.slot] = block;
-            if (block != kNoBlock) block_keys[block] = key;
+            if (block != kNoBlock) {
+                block_keys[block] = key;
+                atomicAdd(counters.returned_blocks, 1u);
+            }
         }
         if (at.fresh) atomicAdd(counters.table_keys, 1u);
     }

@@ -40,7 +40,8 @@ struct MapCounters {
     uint outside_samples;  // over the whole run: ray samples outside the range of keys
     uint deleted_blocks;   // over the whole run: blocks that held no surface
     uint capacity;         // places in the pool, as of this frame
-    uint left_blocks;      // over the whole run: blocks that left the device; of them some came back
+    uint left_blocks;      // over the whole run: blocks that left the device
+    uint returned_blocks;  // over the whole run: of them, blocks that came back and took a place
 };
 
 INTEROP_CONST uint kAcceptBins = 1024u;

@@ -222,13 +222,13 @@ TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
     ASSERT_GT(away, 500u);
     const PosedCamera start = make_posed_camera(tour_.info.depth, *tour_.frames[3].world_from_camera);
     for (uint32_t index = 60; index < 64; ++index) {  // in one of them blocks leave, too
-        ASSERT_GT(streaming.plan(stages.geometry.around(start), index, true), 100u);
+        ASSERT_GT(streaming.plan(stages.geometry.around(start, start), index, true), 100u);
         graph::FrameGraph graph = runner().begin();
         streaming.add(graph);
     }
     EXPECT_EQ(streaming.counts().away, away);
     EXPECT_EQ(all_blocks(), before);
-    streaming.require(stages.geometry.around(start));
+    streaming.require(stages.geometry.around(start, start));
     EXPECT_LT(streaming.counts().away, away);
     EXPECT_EQ(all_blocks(), before);
 }
