@@ -53,7 +53,7 @@ class GrowingPools {
     /// All but the map may be null. All must outlive this. Beyond `resident_blocks`, above 0, the pool of voxel blocks
     /// grows by small steps, as blocks leave then.
     GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation, ReflectanceStage* reflectance,
-                 SpecularStage* specular, uint32_t resident_blocks = 0);
+                 SpecularStage* specular, uint32_t resident_blocks);
 
     /// Nothing was asked for yet; whenever the map is reset.
     void reset();

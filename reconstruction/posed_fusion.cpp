@@ -5,12 +5,6 @@
 
 namespace patina {
 
-namespace {
-
-constexpr double kBeside_m = 0.01;  // more than float and double differ by
-
-}  // namespace
-
 PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages, Streaming& streaming)
     : runner_(runner),
       stages_(stages),
@@ -63,7 +57,7 @@ graph::FrameGraph PosedFusion::begin(const RgbdFrame& frame) {
 }
 
 void PosedFusion::require(const Intrinsics& camera, const RigidTransform& world_from_camera) {
-    streaming_.require(stages_.geometry.around_view(make_posed_camera(camera, world_from_camera)).grown(kBeside_m));
+    streaming_.require(stages_.geometry.around_view(make_posed_camera(camera, world_from_camera)));
 }
 
 PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdFrame& frame,

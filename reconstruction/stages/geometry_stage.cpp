@@ -52,9 +52,8 @@ DepthRange GeometryStage::range(const Intrinsics& camera) const {
     return range;
 }
 
-StreamRegion GeometryStage::around(const PosedCamera& camera, float far_m) const {
-    // Two diagonals of a block: what is cast needs voxels beside the frustum.
-    const double beside_m = 4 * double{settings_.map.voxel_m} * gpu::kBlockEdge;
+StreamRegion GeometryStage::seen_by(const PosedCamera& camera, float far_m) const {
+    const double beside_m = StreamRegion::kBlocksBeside * double{settings_.map.voxel_m} * gpu::kBlockEdge;
     StreamRegion region = StreamRegion::ball(glm::dvec3(camera.world_from_camera[3]), settings_.around_m);
     region.axis = glm::normalize(glm::dvec3(camera.world_from_camera[2]));
     region.far_m = frustum_radius_m(camera.gpu, far_m);
@@ -63,15 +62,15 @@ StreamRegion GeometryStage::around(const PosedCamera& camera, float far_m) const
 }
 
 StreamRegion GeometryStage::around(const PosedCamera& depth, const PosedCamera& color) const {
-    StreamRegion region = around(depth, far_m());
-    const StreamRegion beside = around(color, far_m());
+    StreamRegion region = seen_by(depth, far_m());
+    const StreamRegion beside = seen_by(color, far_m());
     const double turned = std::acos(std::clamp(glm::dot(region.axis, beside.axis), -1.0, 1.0));
     region.half_angle = std::min(std::max(region.half_angle, beside.half_angle + turned), StreamRegion::kWidest);
     region.far_m = std::max(region.far_m, beside.far_m);
     return region.grown(glm::distance(region.center_m, beside.center_m));
 }
 
-StreamRegion GeometryStage::around_view(const PosedCamera& camera) const { return around(camera, view_far_m()); }
+StreamRegion GeometryStage::around_view(const PosedCamera& camera) const { return seen_by(camera, view_far_m()); }
 
 graph::BufferId GeometryStage::add_params(graph::FrameGraph& graph, const FrameContext& frame) const {
     // What the view does not reach would take blocks that no frame fuses into.

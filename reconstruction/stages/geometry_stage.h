@@ -91,7 +91,7 @@ class GeometryStage {
   private:
     float far_m() const;
     float view_far_m() const { return 2 * settings_.fusion.max_depth_m; }
-    StreamRegion around(const PosedCamera& camera, float far_m) const;
+    StreamRegion seen_by(const PosedCamera& camera, float far_m) const;
 
     GeometrySettings settings_;
     VoxelMap map_;

@@ -1,7 +1,6 @@
 #include "reconstruction/streaming/block_store.h"
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <new>
 
@@ -91,8 +90,8 @@ void BlockStore::put(const gpu::StreamedBlock& block, const BlockWords& words) {
 
 void BlockStore::put_back(uint32_t key, Kept&& kept) {
     std::vector<uint32_t>& cell = cells_[cell_of(key)];
-    cell.reserve(cell.size() + 1);
     // Once there is room for the key, either both are done or nothing is.
+    if (cell.size() == cell.capacity()) cell.reserve(2 * cell.size() + 1);
     if (part_of(key).insert_or_assign(key, std::move(kept)).second) cell.push_back(key);
 }
 
@@ -162,16 +161,6 @@ uint32_t BlockStore::blocks() const {
     size_t blocks = 0;
     for (const Part& part : parts_) blocks += part.size();
     return static_cast<uint32_t>(blocks);
-}
-
-uint64_t BlockStore::bytes() const {
-    constexpr uint64_t kNodeBytes = sizeof(Kept) + 48;  // with the map's own
-    uint64_t bytes = 0;
-    for (const Part& part : parts_) {
-        for (const auto& [key, kept] : part)
-            bytes += kNodeBytes + kept.packed.capacity() + kept.labels.capacity() * sizeof(Kept::Label);
-    }
-    return bytes;
 }
 
 void BlockStore::clear() {

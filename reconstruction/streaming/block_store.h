@@ -46,8 +46,7 @@ class BlockStore {
         std::vector<std::byte> packed;  ///< distances, colours and labels, compressed
     };
 
-    /// A block that is about to return: it stays as it is until forget().
-    /// Writes its words to `words`, gpu::kBlockVoxels for each array: distances, colours and, unless empty, labels.
+    /// Writes the words of a block, gpu::kBlockVoxels to each span but an empty one for labels. It stays as it is.
     gpu::StreamedBlock read(uint32_t key, std::span<uint32_t> tsdf, std::span<uint32_t> color,
                             std::span<uint32_t> labels) const;
     /// Takes a block out.
@@ -63,7 +62,6 @@ class BlockStore {
     void relabel(uint32_t part, std::span<const uint32_t> parents);
 
     uint32_t blocks() const;
-    uint64_t bytes() const;  ///< of the host's memory, about
 
     void clear();
     void visit(graph::StateVisitor& visitor);

@@ -42,7 +42,7 @@ std::vector<SurfacePart> parts_of(std::vector<glm::ivec3> blocks, uint32_t capac
     while (fullest > capacity && edge > kSmallestCube) fullest = fullest_cube(blocks, edge /= 2);
     if (fullest > capacity)
         throw Error("the pool of voxel blocks holds ", capacity, " blocks, but a cube of the map has ", fullest,
-                    " with those beside it; raise map.capacity_blocks");
+                    " with those beside it; raise map.initial_blocks, and map.capacity_blocks where that is set");
     std::map<std::array<int, 3>, SurfacePart> parts;
     for (const glm::ivec3& block : blocks) {
         const glm::ivec3 cube = block / edge;

@@ -11,7 +11,6 @@ namespace {
 
 // Of the ball's radius: half the diagonal of what one ball is enough for, and the edge of cubes where it is not.
 constexpr double kOneBall = 0.75, kEdge = 0.5;
-constexpr double kBlocksBeside = 4, kBeside_m = 0.01;  // as far as blocks reach, and float and double differ
 
 std::vector<glm::ivec3> observed_blocks(graph::Runner& runner, const ObservationMap& map) {
     graph::FrameGraph graph = runner.begin();
@@ -28,7 +27,7 @@ std::vector<glm::ivec3> observed_blocks(graph::Runner& runner, const Observation
 MapTile tile_at(glm::dvec3 center_m, double known_m, double block_m) {
     MapTile tile;
     tile.part.ball_m = glm::vec4(glm::vec3(center_m), static_cast<float>(known_m));
-    tile.around = StreamRegion::ball(center_m, known_m + kBlocksBeside * block_m + kBeside_m);
+    tile.around = StreamRegion::ball(center_m, known_m + StreamRegion::kBlocksBeside * block_m);
     return tile;
 }
 

@@ -11,6 +11,9 @@ namespace patina {
 /// A part of the map: the blocks whose coordinates lie in a box, and whose centres in a ball, or in a cone that begins
 /// at the ball's centre.
 struct StreamRegion {
+    /// How many edges of a block what passes look at lies beside what they are about: two diagonals.
+    static constexpr double kBlocksBeside = 4;
+
     glm::dvec3 center_m{0};
     double radius_m = 1e9;
     glm::dvec3 axis{0, 0, 1};               ///< of the cone, unit length

@@ -34,9 +34,10 @@ graph::BufferId upload_padded(graph::FrameGraph& graph, const char* name, const 
     return graph.upload_bytes(id, 0, std::as_bytes(std::span(values)), true);
 }
 
-std::span<const uint32_t> words_of(const std::vector<uint32_t>& words, size_t block) {
-    return words.empty() ? std::span<const uint32_t>()
-                         : std::span(words).subspan(block * gpu::kBlockVoxels, gpu::kBlockVoxels);
+/// The words of the block that stands at a place in a read-back.
+std::span<const uint32_t> words_at(const graph::Readback& read, size_t place) {
+    const auto* words = reinterpret_cast<const uint32_t*>(read.bytes().data());
+    return {words + place * gpu::kBlockVoxels, gpu::kBlockVoxels};
 }
 
 }  // namespace
@@ -84,11 +85,12 @@ uint32_t Streaming::plan(const StreamRegion& near, uint32_t index, bool many) {
     const StreamRegion needed = near.grown(kNeeded_m);
     const auto is_needed = [&](uint32_t key) { return needed.holds(map().grid(), block_of_key(map().grid(), key)); };
     const auto first_ahead = std::stable_partition(coming_.begin(), coming_.end(), is_needed);
-    const auto most = static_cast<size_t>(first_ahead - coming_.begin());
-    awaited_ += most;
+    const auto at_once = static_cast<size_t>(first_ahead - coming_.begin());
+    awaited_ += at_once;
     // What the last sweep replaced is not known yet: what need not come waits for it.
     const bool after_sweep = index > 0 && SegmentationStage::sweeps(index - 1);
-    coming_.resize(after_sweep ? most : std::max<size_t>(most, std::min<size_t>(coming_.size(), kMostReturning)));
+    const size_t with_ahead = std::max(at_once, std::min<size_t>(coming_.size(), kMostReturning));
+    coming_.resize(after_sweep ? at_once : with_ahead);
     if (!coming_.empty() && pends<Swept>()) collect_all();
     return static_cast<uint32_t>(coming_.size());
 }
@@ -197,7 +199,8 @@ void Streaming::roll_back() {
     for (Event& event : declared_) {
         auto* returning = std::get_if<Returning>(&event);
         if (!returning) continue;
-        for (auto& [key, kept] : returning->kept) store_.put_back(key, std::move(kept));
+        for (; !returning->kept.empty(); returning->kept.pop_back())
+            store_.put_back(returning->kept.back().first, std::move(returning->kept.back().second));
     }
     declared_.clear();
 }
@@ -221,10 +224,10 @@ void Streaming::collect_all() {
 void Streaming::note(const Leaving& leaving) {
     const uint32_t count = leaving.count.as<uint32_t>().front();
     const auto blocks = leaving.blocks.as<gpu::StreamedBlock>();
-    const auto tsdf = leaving.tsdf.as<uint32_t>(), color = leaving.color.as<uint32_t>();
-    const auto labels = stages_.segmentation ? leaving.labels.as<uint32_t>() : std::vector<uint32_t>();
-    for (uint32_t i = 0; i < count; ++i)
-        store_.put(blocks[i], {words_of(tsdf, i), words_of(color, i), words_of(labels, i)});
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto labels = stages_.segmentation ? words_at(leaving.labels, i) : std::span<const uint32_t>();
+        store_.put(blocks[i], {words_at(leaving.tsdf, i), words_at(leaving.color, i), labels});
+    }
     left_ += count;
     left_outside_ = leaving.counts.as<uint32_t>()[gpu::kLeavingOutside] - count;
 }
@@ -246,7 +249,8 @@ void Streaming::note(Returning& returning) {
 
 void Streaming::note(const Swept& swept) { store_.relabel(swept.part, swept.parents.as<uint32_t>()); }
 
-void Streaming::require(const StreamRegion& region) {
+void Streaming::require(const StreamRegion& wanted) {
+    const StreamRegion region = wanted.grown(kNeeded_m);
     collect_all();
     const std::vector<uint32_t> needed = store_.keys(map().grid(), region);
     if (needed.empty()) return;
@@ -300,7 +304,12 @@ std::vector<glm::ivec3> Streaming::blocks() {
 
 StreamCounts Streaming::counts() {
     collect();
-    return {store_.blocks(), store_.bytes(), left_, returned_, awaited_};
+    return {store_.blocks(), left_, returned_, awaited_};
+}
+
+bool Streaming::any_away() {
+    collect();
+    return store_.blocks() > 0;
 }
 
 void Streaming::visit(graph::StateVisitor& visitor) {

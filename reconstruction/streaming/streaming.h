@@ -16,11 +16,10 @@ namespace patina {
 
 /// How many voxel blocks are where.
 struct StreamCounts {
-    uint32_t away = 0;        ///< blocks in the host's memory
-    uint64_t away_bytes = 0;  ///< that they take there
-    uint64_t left = 0;        ///< over the whole run
-    uint64_t returned = 0;    ///< over the whole run
-    uint64_t awaited = 0;     ///< of these, blocks that a frame had to wait for, as they had not come back ahead of it
+    uint32_t away = 0;      ///< blocks in the host's memory
+    uint64_t left = 0;      ///< over the whole run
+    uint64_t returned = 0;  ///< over the whole run
+    uint64_t awaited = 0;   ///< of these, blocks that a frame had to wait for, as they had not come back ahead of it
 };
 
 /// Takes voxel blocks that are far from the camera off the device while many are in use, and brings them back before a
@@ -58,7 +57,8 @@ class Streaming {
     /// The coordinates of all blocks of the map, wherever they are. Waits.
     std::vector<glm::ivec3> blocks();
 
-    bool any_away() const { return store_.blocks() > 0 || !pending_.empty(); }
+    /// As far as the device has finished.
+    bool any_away();
     /// As far as the device has finished.
     StreamCounts counts();
 

@@ -16,12 +16,37 @@ TEST(PoolDemand, BlocksInUseAndThoseGivenBackWereTaken) {
     counters.capacity = 100;
     counters.free_blocks = 60;
     counters.deleted_blocks = 7;
+    counters.left_blocks = 9;
+    counters.returned_blocks = 9;
     counters.refused_blocks = 3;
     const PoolCount count = count_of(counters);
     EXPECT_EQ(count.capacity, 100u);
     EXPECT_EQ(count.free, 60u);
     EXPECT_EQ(count.taken, 47u);
     EXPECT_EQ(count.refused, 3u);
+}
+
+TEST(PoolDemand, BlocksThatLeaveAndComeBackAreNoNewOnes) {
+    gpu::MapCounters counters{};
+    counters.capacity = 100;
+    counters.free_blocks = 60;
+    const uint32_t taken = count_of(counters).taken;
+    counters.free_blocks += 25;
+    counters.left_blocks += 25;
+    EXPECT_EQ(count_of(counters).taken, taken);
+    counters.free_blocks -= 20;
+    counters.returned_blocks += 20;
+    EXPECT_EQ(count_of(counters).taken, taken);
+    counters.free_blocks -= 3;
+    EXPECT_EQ(count_of(counters).taken, taken + 3);
+}
+
+TEST(PoolDemand, WhatComesBackFindsRoomBesidesWhatIsNew) {
+    PoolDemand demand;
+    demand.note(counted(100, 70));  // 30 at once
+    EXPECT_EQ(demand.wanted(100, 10, 10), 100u) << "70 are free, twice 30 and 10";
+    EXPECT_EQ(demand.wanted(100, 10, 11), 110u);
+    EXPECT_EQ(demand.wanted(100, 10, 50), 140u) << "as many as are missing";
 }
 
 TEST(PoolDemand, APoolThatWasNeverAskedStaysAsItIs) { EXPECT_EQ(PoolDemand().wanted(100, kLargeStep), 100u); }

@@ -7,7 +7,6 @@
 #include "engine/core/shader_camera.h"
 #include "passes/fusion/measure_slope.h"
 #include "passes/observation/reclaim_records.h"
-#include "reconstruction/streaming/stream_region.h"
 #include "shared/fusion/remove_empty_blocks.h"
 #include "shared/test/test_observations.h"
 #include "spirv/shaders.h"
@@ -73,13 +72,13 @@ ObservationRig::Collected ObservationRig::collect(const RigFrame& rig_frame) {
             widen(normal.image<uint64_t>())};
 }
 
-void ObservationRig::reclaim(uint32_t turn, float near) {
+void ObservationRig::reclaim(uint32_t turn, float near, const StreamRegion& region) {
     graph::FrameGraph frame = runner_.begin();
     ObservationMapIds ids = map_.import(frame);
     ReflectanceStateIds state = state_.import(frame);
     const float near_m = near * fusion_.settings().truncation_m;
     const VoxelMapIds voxels = fusion_.map().import(frame);
-    add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, StreamRegion{}.gpu(), turn);
+    add_reclaim_records(frame, map_, ids, state, fusion_.map(), voxels, near_m, region.gpu(), turn);
     ObservationMap::keep(frame, ids);
     ReflectanceState::keep(frame, state);
     runner_.submit(std::move(frame));

@@ -6,6 +6,7 @@
 
 #include "passes/observation/observation.h"
 #include "passes/state/reflectance_state.h"
+#include "reconstruction/streaming/stream_region.h"
 #include "shared/fusion/remove_empty_blocks.h"
 #include "tests/gpu/fusion/fusion_rig.h"
 
@@ -52,7 +53,7 @@ class ObservationRig {
 
     /// Gives back what holds no surface any more of the part of the observations whose turn it is.
     /// Near the surface is what is within `near` truncations of it.
-    void reclaim(uint32_t turn, float near = gpu::kSurfaceTruncation);
+    void reclaim(uint32_t turn, float near = gpu::kSurfaceTruncation, const StreamRegion& region = {});
 
     ObservationContent content();
     /// A pool's ids in use, and the valid part of its list of free ones.

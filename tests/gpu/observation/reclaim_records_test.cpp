@@ -101,6 +101,30 @@ class ReclaimRecordsTest : public GpuTest {
     }
 };
 
+TEST_F(ReclaimRecordsTest, OutsideTheRegionNothingGoes) {
+    ObservationRig rig = this->rig();
+    rig.fuse(box_frame(0));
+    rig.collect(box_frame(0));
+    const ObservationContent before = rig.content();
+    replace(rig, wall_frame());
+    const std::set<Voxel> kept = expected(rig, before);
+    // A ball through the box's middle: what went lies on both of its sides.
+    const StreamRegion region = StreamRegion::ball({0.3, 0, 0.95}, 0.3);
+    for (uint32_t turn = 0; turn < gpu::kReclaimParts; ++turn) rig.reclaim(turn, gpu::kSurfaceTruncation, region);
+    const ObservationContent after = rig.content();
+    uint32_t gone = 0, outside = 0;
+    for (const auto& [at, record] : before) {
+        if (kept.contains(at)) continue;
+        const glm::ivec3 block = glm::ivec3(at[0] >> 1, at[1] >> 1, at[2] >> 1);
+        const bool inside = region.holds(rig.fusion().map().grid(), block);
+        EXPECT_EQ(after.contains(at), !inside);
+        ++(inside ? gone : outside);
+    }
+    EXPECT_GT(gone, 20u);
+    EXPECT_GT(outside, 20u);
+    expect_consistent(rig);
+}
+
 TEST_F(ReclaimRecordsTest, OnlyRecordsWithoutSurfaceGoAndTheOthersStayAsTheyAre) {
     struct Case {
         float voxel_m;

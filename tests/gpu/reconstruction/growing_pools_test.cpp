@@ -1,13 +1,13 @@
 #include "reconstruction/growing_pools.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "reconstruction/pipeline.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/support/same_bytes.h"
 
 namespace patina {
 namespace {
@@ -43,11 +43,6 @@ struct Result {
         throw Error("there is no pool of ", name);
     }
 };
-
-template <class Element>
-bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0;
-}
 
 void expect_same(const Result& a, const Result& b) {
     EXPECT_TRUE(same_bytes(a.mesh.positions_m, b.mesh.positions_m));

@@ -1,18 +1,20 @@
 #include "reconstruction/streaming/streaming.h"
 
 #include <array>
-#include <cstring>
 #include <numbers>
 #include <set>
 #include <string>
 
+#include "passes/state/block_keys.h"
 #include "reconstruction/pipeline.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "reconstruction/store/map_file.h"
 #include "reconstruction/store/state_files.h"
+#include "reconstruction/streaming/map_tiles.h"
 #include "scenes/render/synthetic_source.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/support/same_bytes.h"
 
 namespace patina {
 namespace {
@@ -64,11 +66,6 @@ struct Result {
     StreamCounts streamed;  ///< before the mesh was extracted
     PipelineCounters counters;
 };
-
-template <class Element>
-bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0;
-}
 
 void expect_same_scene(const Result& a, const Result& b) {
     EXPECT_TRUE(same_bytes(a.mesh.positions_m, b.mesh.positions_m));
@@ -162,18 +159,80 @@ TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
     add(pipeline, 0, 60);
     add(whole, 0, 60);
     ASSERT_GT(pipeline.stream_counts().away, 500u);
-    const auto view = [&](Pipeline& of) {
-        const ViewReadback seen = of.view(tour_.info.depth, *tour_.frames[3].world_from_camera);
+    const auto view = [&](Pipeline& of, const RigidTransform& pose) {
+        const ViewReadback seen = of.view(tour_.info.depth, pose);
         of.wait();
         return seen.get();
     };
-    const ModelView back = view(pipeline), there = view(whole);
-    EXPECT_TRUE(same_bytes(back.position_m.pixels(), there.position_m.pixels()));
-    EXPECT_TRUE(same_bytes(back.color.pixels(), there.color.pixels()));
-    EXPECT_TRUE(same_bytes(back.label.pixels(), there.label.pixels()));
-    uint32_t seen = 0;
-    for (const glm::vec4& point : back.position_m.pixels()) seen += point.w > 0 ? 1 : 0;
-    EXPECT_GT(seen, 5000u);
+    // As a frame saw it; and along the street, farther than frames see.
+    RigidTransform along(1.0);
+    along[0] = {0, 0, -1, 0};
+    along[2] = {1, 0, 0, 0};
+    for (const RigidTransform& pose : {*tour_.frames[3].world_from_camera, along}) {
+        const ModelView back = view(pipeline, pose), there = view(whole, pose);
+        EXPECT_TRUE(same_bytes(back.position_m.pixels(), there.position_m.pixels()));
+        EXPECT_TRUE(same_bytes(back.color.pixels(), there.color.pixels()));
+        EXPECT_TRUE(same_bytes(back.label.pixels(), there.label.pixels()));
+        uint32_t seen = 0, far = 0;
+        for (const glm::vec4& point : there.position_m.pixels()) {
+            seen += point.w > 0 ? 1 : 0;
+            far += point.w > 3 ? 1 : 0;
+        }
+        EXPECT_GT(seen, 1500u);
+        EXPECT_EQ(far > 100, pose == along);
+    }
+}
+
+TEST_F(StreamingTest, WhatTheColorCameraSeesIsOnTheDeviceToo) {
+    const Stages stages(device(), settings(1));
+    const PosedCamera depth = make_posed_camera(tour_.info.depth, RigidTransform(1.0));
+    Intrinsics wide = tour_.info.color;
+    wide.fx = wide.fy = 0.4 * wide.fx;
+    RigidTransform beside(1.0);
+    beside[3] = {0.3, 0, 0, 1};
+    const PosedCamera color = make_posed_camera(wide, beside);
+    const StreamRegion region = stages.geometry.around(depth, color);
+    const StreamRegion depth_alone = stages.geometry.around(depth, depth);
+    const gpu::VoxelGrid grid = stages.geometry.map().grid();
+    const auto holds = [&](const StreamRegion& of, double u, double v) {
+        const glm::dvec3 seen(1.6 * (u - wide.cx) / wide.fx, 1.6 * (v - wide.cy) / wide.fy, 1.6);
+        return of.holds(grid, glm::ivec3(glm::floor((seen + glm::dvec3(beside[3])) / 0.16)));
+    };
+    const double right = wide.extent.width - 1.0, bottom = wide.extent.height - 1.0;
+    for (const double u : {0.0, right / 2, right}) {
+        for (const double v : {0.0, bottom / 2, bottom}) EXPECT_TRUE(holds(region, u, v)) << u << ", " << v;
+    }
+    EXPECT_FALSE(holds(depth_alone, right, bottom));
+}
+
+TEST_F(StreamingTest, TilesHoldEachRecordOnce) {
+    Pipeline pipeline(device(), settings(0));
+    pipeline.set_lights(tour_.lights);
+    add(pipeline, 0, 60);
+    pipeline.wait();
+    const ObservationMap& map = pipeline.reflectance()->observations();
+    graph::FrameGraph graph = runner().begin();
+    const graph::Readback read = graph.read_back(map.import(graph).block_keys);
+    run(std::move(graph));
+    EXPECT_EQ(tiles_of_records(runner(), map, 100).size(), 1u) << "one ball holds all";
+    const std::vector<MapTile> tiles = tiles_of_records(runner(), map, 1.6);
+    EXPECT_GT(tiles.size(), 10u);
+    uint32_t blocks = 0;
+    for (const uint32_t key : read.as<uint32_t>()) {
+        if (key == gpu::kEmptyKey) continue;
+        ++blocks;
+        const glm::vec3 center_m = (glm::vec3(block_of_key(map.grid(), key)) + 0.5f) * map.settings().block_m;
+        uint32_t holding = 0;
+        for (const MapTile& tile : tiles) {
+            const glm::vec3 apart = glm::abs(center_m - glm::vec3(tile.part.cube_m));
+            if (std::max({apart.x, apart.y, apart.z}) > tile.part.cube_m.w) continue;
+            ++holding;
+            EXPECT_LT(glm::distance(center_m, glm::vec3(tile.part.ball_m)), 0.5f * tile.part.ball_m.w);
+            EXPECT_TRUE(tile.around.holds(pipeline.map().grid(), block_of_key(map.grid(), key)));
+        }
+        EXPECT_EQ(holding, 1u);
+    }
+    EXPECT_GT(blocks, 300u);
 }
 
 TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {

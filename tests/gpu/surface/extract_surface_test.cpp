@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -14,6 +13,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/surface/marching_cubes.h"
 #include "tests/reference/surface/mesh_facts.h"
+#include "tests/support/same_bytes.h"
 
 namespace patina {
 namespace {
@@ -57,10 +57,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
+using patina::same_bytes;
 
 bool same_bytes(const Mesh& a, const Mesh& b) {
     return same_bytes(a.positions_m, b.positions_m) && same_bytes(a.normals, b.normals) &&
