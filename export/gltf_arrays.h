@@ -9,6 +9,8 @@
 #include <glm/glm.hpp>
 #include <tiny_gltf.h>
 
+#include "export/glb_file.h"
+
 namespace patina {
 
 /// A linear colour as normalised u16, alpha 1.
@@ -17,16 +19,29 @@ using GltfColor = std::array<uint16_t, 4>;
 /// 65535 restarts a primitive, so no vertex may have it as its index.
 inline constexpr uint64_t kMostVerticesOfShortIndices = 65535;
 
-/// Append an array to the model's first buffer, with a view and an accessor of their own that are named `name`; return
-/// the accessor.
-int add_vertices(tinygltf::Model& model, const char* name, const std::vector<glm::vec3>& vectors);
-int add_vertices(tinygltf::Model& model, const char* name, const std::vector<float>& values);
-int add_vertices(tinygltf::Model& model, const char* name, const std::vector<GltfColor>& colors);
+/// Appends arrays to a file's buffer, and describes them in a model: each has a view and an accessor of its own, which
+/// are named `name`. Functions return the accessor, and throw Error as GlbFile::append() does.
+class GltfArrays {
+  public:
+    /// Both must outlive this.
+    GltfArrays(tinygltf::Model& model, GlbFile& file) : model_(model), file_(file) {}
 
-/// Positions, of which there is at least one, with their bounds.
-int add_positions(tinygltf::Model& model, const std::vector<glm::vec3>& positions_m);
+    int add_vertices(const char* name, const std::vector<glm::vec3>& vectors);
+    int add_vertices(const char* name, const std::vector<float>& values);
+    int add_vertices(const char* name, const std::vector<GltfColor>& colors);
 
-/// Indices as short as the count of vertices allows.
-int add_indices(tinygltf::Model& model, std::span<const std::array<uint32_t, 3>> triangles, uint64_t vertices);
+    /// Positions, of which there is at least one, with their bounds.
+    int add_positions(const std::vector<glm::vec3>& positions_m);
+
+    /// Indices as short as the count of vertices allows.
+    int add_indices(std::span<const std::array<uint32_t, 3>> triangles, uint64_t vertices);
+
+  private:
+    struct Format;
+    int add(const char* name, std::span<const std::byte> bytes, size_t count, const Format& format);
+
+    tinygltf::Model& model_;
+    GlbFile& file_;
+};
 
 }  // namespace patina

@@ -38,14 +38,20 @@ Lighting in_recorded_world(const Scene& scene) {
     return lighting;
 }
 
-GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const std::string& version) {
-    const Lighting lighting = rounded(scene.lighting);
-    return write_glb(file, {scene.mesh, &scene.reflectance, scene.segment_names, lighting.lights},
-                     {.version = version, .name = scene.name, .world_offset_m = scene.world_offset_m});
+GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
+                           const std::string& version) {
+    GlbWriter writer(file, {.version = version,
+                            .name = scene.name,
+                            .world_offset_m = scene.world_offset_m,
+                            .segment_names = scene.segment_names,
+                            .lights = rounded(scene.lighting).lights});
+    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, &reflectance); });
+    return writer.finish();
 }
 
 void Scene::save_glb(const std::filesystem::path& file) const {
-    put(file, [this](const auto& partial) { write_scene_glb(partial, *this, kVersion); });
+    const auto whole = [this](const TakePiece& take) { take(mesh, reflectance); };
+    put(file, [&](const auto& partial) { write_scene_glb(partial, *this, whole, kVersion); });
 }
 
 void Scene::save(const std::filesystem::path& folder) const {

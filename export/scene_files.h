@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,13 @@ Lighting rounded(Lighting lighting);
 /// The same in the recording's world, as lights.json holds them.
 Lighting in_recorded_world(const Scene& scene);
 
-/// Writes scene.glb; `version`: of Patina. Throws Error as write_glb() does.
-GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const std::string& version);
+/// What a surface's pieces are given to, and what gives them all (GlbWriter::add).
+using TakePiece = std::function<void(const Mesh&, const MeshReflectance&)>;
+using GivePieces = std::function<void(const TakePiece&)>;
+
+/// Writes scene.glb, with the surface in pieces in place of the scene's; `version`: of Patina. Throws Error as
+/// GlbWriter does.
+GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
+                           const std::string& version);
 
 }  // namespace patina

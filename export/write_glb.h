@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <span>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,14 +23,14 @@ struct GlbInfo {
     glm::dquat y_up_from_world = kYDownToYUp;  ///< the root node's rotation
     /// What was taken from all positions, metres; told in the root node's extras as "world_offset_m" where it is not 0.
     glm::dvec3 world_offset_m{0};
+    std::vector<std::string> segment_names{};  ///< by label; where one is missing or empty, "segment LABEL"
+    std::vector<Light> lights{};
 };
 
-/// What a mesh becomes in its file: colours alone, or materials and lights too.
+/// A mesh, and what it reflects.
 struct GlbScene {
     const Mesh& mesh;
     const MeshReflectance* reflectance = nullptr;  ///< of its vertices; null or empty: the mesh has colours alone
-    std::span<const std::string> segment_names{};  ///< by label; where one is missing or empty, "segment LABEL"
-    std::span<const Light> lights{};
 };
 
 /// What became of a mesh on its way into the file.
@@ -41,17 +41,6 @@ struct GlbSummary {
     uint64_t clamped_colors = 0;        ///< vertices with a channel of COLOR_0 outside 0..1
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
 };
-
-/// How large a part of a mesh is.
-struct GlbPartSize {
-    uint64_t vertices = 0;
-    uint64_t triangles = 0;
-    uint64_t vertex_bytes = 32;  ///< of position, normal and colour
-};
-
-/// Bytes of the binary buffer that parts of these sizes need. Throws Error where a GLB, whose lengths are 32-bit,
-/// cannot hold them.
-uint64_t glb_buffer_bytes(std::span<const GlbPartSize> parts);
 
 /// Writes a binary glTF 2.0: a root node with the rotation, below it the surface and the lights. Every primitive has
 /// POSITION (float32), NORMAL (float32, made unit length) and COLOR_0 (linear, normalised u16, alpha 1).
@@ -68,8 +57,32 @@ uint64_t glb_buffer_bytes(std::span<const GlbPartSize> parts);
 /// of candela: the extras say that it is not calibrated, and the lamp's radius where that is known.
 ///
 /// Without a triangle left the node "surface" has no mesh. A normal without direction becomes that of the triangles
-/// around it. The same scene gives the same bytes. Throws Error for a value that is not finite, an index beyond the
-/// vertices, a mesh too large, or a disk that refuses.
+/// around it. The same scene gives the same bytes.
+///
+/// The mesh may come in pieces, each with its own vertices. A segment has a primitive of each piece that it reaches
+/// into. Memory holds one piece, and what describes the others.
+class GlbWriter {
+  public:
+    /// Throws Error where the disk refuses.
+    GlbWriter(const std::filesystem::path& path, GlbInfo info);
+    ~GlbWriter();
+    GlbWriter(const GlbWriter&) = delete;
+    GlbWriter& operator=(const GlbWriter&) = delete;
+
+    /// Adds a piece with what its vertices reflect. Null or empty: it has colours alone. Segments of one label are the
+    /// same in all pieces. Throws Error for a value that is not finite, an index beyond the vertices, more than a GLB
+    /// holds (4 GiB), or a disk that refuses.
+    void add(const Mesh& mesh, const MeshReflectance* reflectance);
+
+    /// Writes the file; nothing may follow. Throws Error as add().
+    GlbSummary finish();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Writes a mesh in one piece. Throws Error as GlbWriter.
 GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info);
 
 }  // namespace patina

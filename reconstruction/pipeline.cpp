@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "reconstruction/sample_mesh.h"
-#include "reconstruction/streaming/extract_parts.h"
+#include "reconstruction/sample_surface.h"
 #include "reconstruction/streaming/map_tiles.h"
+#include "reconstruction/streaming/surface_cells.h"
 
 namespace patina {
 
@@ -73,8 +73,23 @@ ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& worl
 Mesh Pipeline::extract_surface() {
     if (fusion_.frames() == 0) return {};
     wait();
-    if (streaming_.any_away()) return extract_surface_in_parts(runner_, map(), streaming_);
-    return stages_.geometry.extract_surface(runner_);
+    SurfaceCells whole(runner_, map(), streaming_, std::nullopt);
+    return whole.size() > 0 ? whole.extract(0) : Mesh{};
+}
+
+void Pipeline::give_surface(const std::vector<SegmentReflectance>& segments, const TakeSurface& take, double cell_m) {
+    if (fusion_.frames() == 0) return;
+    wait();
+    SurfaceCells cells(runner_, map(), streaming_, cell_m);
+    for (size_t i = 0; i < cells.size(); ++i) {
+        const Mesh mesh = cells.extract(i);
+        MeshReflectance sampled;
+        if (!segments.empty()) {
+            sampled = sample_vertices(runner_, *stages_.reflectance, mesh);
+            sampled.segments = segments;
+        }
+        take(mesh, sampled);
+    }
 }
 
 void Pipeline::refine_all() {
@@ -95,23 +110,31 @@ void Pipeline::relight(std::span<const Light> lights, glm::dvec3 ambient) {
     refine_all();
 }
 
-MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
+std::vector<SegmentReflectance> Pipeline::segments() {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     refine_all();
-    MeshReflectance sampled = sample_mesh(runner_, *stages_.reflectance, mesh);
-    if (stages_.specular) add_confidence(sampled);
+    std::vector<SegmentReflectance> segments = read_segments(runner_, *stages_.reflectance);
+    if (stages_.specular) add_confidence(segments);
+    return segments;
+}
+
+MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
+    if (!stages_.reflectance || fusion_.frames() == 0) return {};
+    std::vector<SegmentReflectance> known = segments();
+    MeshReflectance sampled = sample_vertices(runner_, *stages_.reflectance, mesh);
+    sampled.segments = std::move(known);
     return sampled;
 }
 
 /// How sure the fits of the segments' gloss are.
-void Pipeline::add_confidence(MeshReflectance& sampled) {
+void Pipeline::add_confidence(std::vector<SegmentReflectance>& segments) {
     graph::FrameGraph graph = runner_.begin();
     const graph::Readback read = graph.read_back(stages_.specular->fits(graph));
     runner_.submit(std::move(graph));
     runner_.wait();
     const auto fits = read.as<gpu::WardFit>();
-    for (size_t label = 0; label < std::min(fits.size(), sampled.segments.size()); ++label) {
-        if (auto& gloss = sampled.segments[label].gloss) gloss->confidence = fits[label].confidence;
+    for (size_t label = 0; label < std::min(fits.size(), segments.size()); ++label) {
+        if (auto& gloss = segments[label].gloss) gloss->confidence = fits[label].confidence;
     }
 }
 

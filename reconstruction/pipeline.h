@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/graph/runner.h"
 #include "patina/frame.h"
@@ -69,6 +71,17 @@ class Pipeline {
     /// Extracts the surface from what was fused so far; waits.
     Mesh extract_surface();
 
+    /// What all segments reflect, by label, brought up to date before; waits. Empty without reflectance.
+    std::vector<SegmentReflectance> segments();
+
+    /// The surface piece by piece, so that memory need not hold it at once: in cells of `cell_m`, with the vertices at
+    /// their borders on both sides. A map that fits into one is one piece, the mesh of extract_surface(). `segments`:
+    /// of segments(); empty: without what pieces reflect. Waits.
+    static constexpr double kSurfaceCell_m = 8;
+    using TakeSurface = std::function<void(const Mesh&, const MeshReflectance&)>;
+    void give_surface(const std::vector<SegmentReflectance>& segments, const TakeSurface& take,
+                      double cell_m = kSurfaceCell_m);
+
     /// What a mesh of the surface and all segments reflect, brought up to date before; waits. Empty without
     /// reflectance.
     MeshReflectance sample_reflectance(const Mesh& mesh);
@@ -108,7 +121,7 @@ class Pipeline {
 
   private:
     void fuse_waiting();
-    void add_confidence(MeshReflectance& sampled);
+    void add_confidence(std::vector<SegmentReflectance>& segments);
 
     graph::Runner runner_;
     Stages stages_;

@@ -297,24 +297,29 @@ Lighting SessionCore::lighting() const {
     return lighting;
 }
 
-Scene SessionCore::scene_without_reflectance() {
+Scene SessionCore::scene_without_surface() const {
     Scene scene;
     scene.name = info_.name;
-    scene.mesh = pipeline_->extract_surface();
     scene.lighting = lighting();
     scene.trajectory = poses_;
     scene.world_offset_m = world_offset_m_;
     return scene;
 }
 
-void SessionCore::add_reflectance(Scene& scene) {
-    scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
+void SessionCore::add_segments(Scene& scene) {
+    scene.reflectance.segments = pipeline_->segments();
     if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
 }
 
+void SessionCore::give_surface(const Scene& scene, const Pipeline::TakeSurface& take) {
+    pipeline_->give_surface(scene.reflectance.segments, take);
+}
+
 Scene SessionCore::scene() {
-    Scene scene = scene_without_reflectance();
-    add_reflectance(scene);
+    Scene scene = scene_without_surface();
+    scene.mesh = pipeline_->extract_surface();
+    scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
+    if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
     return scene;
 }
 

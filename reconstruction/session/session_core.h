@@ -104,9 +104,11 @@ class SessionCore {
 
     /// Surface, materials, lights and trajectory of what was fused so far; waits.
     Scene scene();
-    /// The same without what the surface reflects, and that alone: a run keeps the one where the other fails.
-    Scene scene_without_reflectance();
-    void add_reflectance(Scene& scene);
+    /// The same in steps, so that a failure of one costs no other, and memory need not hold the surface: what does not
+    /// depend on it; the segments; and the surface piece by piece (Pipeline::give_surface).
+    Scene scene_without_surface() const;
+    void add_segments(Scene& scene);
+    void give_surface(const Scene& scene, const Pipeline::TakeSurface& take);
 
   private:
     bool tracks() const { return settings().tracking.has_value(); }

@@ -7,7 +7,6 @@
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/sharpen_normals.h"
-#include "passes/surface/extract_surface.h"
 #include "shared/fusion/remove_empty_blocks.h"
 
 namespace patina {
@@ -116,11 +115,6 @@ void GeometryStage::add_remove_empty(graph::FrameGraph& graph, VoxelMapIds& voxe
     const uint32_t every = settings_.remove_every;
     if (every == 0 || frame_index % every != every - 1) return;
     add_remove_empty_blocks(graph, map_, voxels, visible, params);
-}
-
-Mesh GeometryStage::extract_surface(graph::Runner& runner) const {
-    runner.forget_shapes();  // extraction may need their memory
-    return patina::extract_surface(runner, map_);
 }
 
 }  // namespace patina

@@ -9,7 +9,6 @@
 #include "passes/fusion/visible_blocks.h"
 #include "passes/state/map_access.h"
 #include "passes/state/voxel_map.h"
-#include "patina/scene.h"
 #include "reconstruction/frame_context.h"
 
 namespace patina {
@@ -75,9 +74,6 @@ class GeometryStage {
     /// Gives back blocks without surface, in the frames in which that is due.
     void add_remove_empty(graph::FrameGraph& graph, VoxelMapIds& voxels, const VisibleBlocks& visible,
                           graph::BufferId params, uint32_t frame_index) const;
-
-    /// The surface of the whole map; waits. The memory that frames keep between them is given back before.
-    Mesh extract_surface(graph::Runner& runner) const;
 
     void visit(graph::StateVisitor& visitor) { map_.visit(visitor); }
 

@@ -23,10 +23,13 @@ struct Scene {
     tinygltf::Model model;
 };
 
-Scene written_and_read(const GlbScene& scene) {
+/// Of pieces, one or more.
+Scene written_and_read(const std::vector<GlbScene>& pieces, const GlbInfo& info = kInfo) {
     const TemporaryFolder folder;
     Scene result;
-    result.summary = write_glb(folder / "a.glb", scene, kInfo);
+    GlbWriter writer(folder / "a.glb", info);
+    for (const GlbScene& piece : pieces) writer.add(piece.mesh, piece.reflectance);
+    result.summary = writer.finish();
     std::string error, warning;
     EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&result.model, &error, &warning, folder / "a.glb")) << error;
     EXPECT_EQ(error + warning, "");
@@ -86,9 +89,10 @@ GltfMaterial material_of(const tinygltf::Material& material) {
 struct Sheet {
     Mesh mesh = wavy_sheet(6, 8);
     MeshReflectance reflectance;
-    std::vector<std::string> names{"", "floor"};
+    GlbInfo info = kInfo;
 
     Sheet() {
+        info.segment_names = {"", "floor"};
         const size_t count = mesh.positions_m.size();
         for (size_t i = 0; i < count; ++i) {
             const float share = static_cast<float>(i) / static_cast<float>(count);
@@ -99,7 +103,7 @@ struct Sheet {
         reflectance.segments[1] = {glm::vec3(0.4f), WardGloss{{0.1f, 0.08f, 0.05f}, 0.3f}, 10, 100, 1};
         reflectance.segments[2].voxels = 10;
     }
-    Scene write() { return written_and_read({mesh, &reflectance, names}); }
+    Scene write() { return written_and_read({{mesh, &reflectance}}, info); }
 };
 
 TEST(GlbReflectance, EachSegmentHasItsNodeMeshAndMaterial) {
@@ -194,10 +198,40 @@ TEST(GlbReflectance, WithoutLabelsAllIsTheSurface) {
     EXPECT_EQ(scene.summary.vertices, sheet.mesh.positions_m.size());
 }
 
+TEST(GlbReflectance, OfPiecesASegmentHasAPrimitiveEach) {
+    const Sheet sheet;
+    Sheet above;
+    for (glm::vec3& position : above.mesh.positions_m) position.z += 1;
+    Sheet of_one;  // of the second segment alone
+    of_one.reflectance.labels.assign(of_one.mesh.positions_m.size(), 2);
+    const Scene alone = Sheet().write();
+    const Scene scene = written_and_read(
+        {{sheet.mesh, &sheet.reflectance}, {above.mesh, &above.reflectance}, {of_one.mesh, &of_one.reflectance}},
+        sheet.info);
+    ASSERT_EQ(scene.model.nodes.size(), 3u);
+    EXPECT_EQ(scene.model.materials.size(), 2u);
+    ASSERT_EQ(scene.model.meshes.size(), 2u);
+    EXPECT_EQ(scene.model.meshes[0].primitives.size(), 2u);
+    EXPECT_EQ(scene.model.meshes[1].primitives.size(), 3u);
+    EXPECT_EQ(scene.summary.vertices, 2 * alone.summary.vertices + of_one.mesh.positions_m.size());
+    EXPECT_EQ(scene.summary.triangles, 3 * 70u);
+    for (size_t mesh = 0; mesh < 2; ++mesh) {
+        const auto& primitives = scene.model.meshes[mesh].primitives;
+        for (const auto& primitive : primitives) EXPECT_EQ(primitive.material, static_cast<int>(mesh));
+        const auto first = read<glm::vec3>(scene.model, primitives[0].attributes.at("POSITION"));
+        EXPECT_EQ(first,
+                  read<glm::vec3>(alone.model, alone.model.meshes[mesh].primitives[0].attributes.at("POSITION")));
+        const auto second = read<glm::vec3>(scene.model, primitives[1].attributes.at("POSITION"));
+        ASSERT_EQ(first.size(), second.size());
+        for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(second[i], first[i] + glm::vec3(0, 0, 1));
+    }
+}
+
 TEST(GlbReflectance, LightsAreNodesBelowTheRoot) {
     const Mesh mesh = wavy_sheet(2, 2);
-    const std::vector<Light> lights{{{1, -2, 3}, {2, 4, 1}, 0.05}, {{0, 0, 0}, {0, 0, 0}}};
-    const Scene scene = written_and_read({.mesh = mesh, .lights = lights});
+    GlbInfo info = kInfo;
+    info.lights = {{{1, -2, 3}, {2, 4, 1}, 0.05}, {{0, 0, 0}, {0, 0, 0}}};
+    const Scene scene = written_and_read({{mesh}}, info);
     ASSERT_EQ(scene.model.lights.size(), 2u);
     EXPECT_EQ(scene.model.lights[0].type, "point");
     EXPECT_EQ(scene.model.lights[0].intensity, 4);

@@ -49,14 +49,17 @@ class KhronosValidator : public testing::Test {
 
     void expect_valid(const Mesh& mesh) { expect_valid(GlbScene{mesh}); }
     void expect_valid(const GlbScene& scene) {
-        const fs::path file = folder_ / "scene.glb";
-        write_glb(file, scene, {.version = "0.0"});
-        const Outcome outcome = validate(file);
+        write_glb(file_, scene, {.version = "0.0"});
+        expect_valid_file();
+    }
+    void expect_valid_file() {
+        const Outcome outcome = validate(file_);
         EXPECT_EQ(outcome.status, 0) << outcome.output;
         EXPECT_NE(outcome.output.find(" 0 errors, 0 warnings,"), std::string::npos) << outcome.output;
     }
 
     const TemporaryFolder folder_;
+    const fs::path file_ = folder_ / "scene.glb";
 };
 
 TEST_F(KhronosValidator, AcceptsASmallScene) { expect_valid(wavy_sheet(3, 3)); }
@@ -90,9 +93,12 @@ TEST_F(KhronosValidator, AcceptsSegmentsMaterialsAndLights) {
     reflectance.segments.resize(4);
     reflectance.segments[1].gloss = WardGloss{glm::vec3(0.2f, 0.1f, 0.05f), 0.1f};
     reflectance.segments[2] = {glm::vec3(0.01f), WardGloss{glm::vec3(0.8f), 0.2f}, 1, 1, 1};  // a metal
-    const std::vector<std::string> names{"", "glossy", "metal", "diffuse \"one\""};
-    const std::vector<Light> lights{{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}};
-    expect_valid({mesh, &reflectance, names, lights});
+    GlbWriter writer(file_, {.version = "0.0",
+                             .segment_names = {"", "glossy", "metal", "diffuse \"one\""},
+                             .lights = {{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}}});
+    for (int piece = 0; piece < 3; ++piece) writer.add(mesh, &reflectance);
+    writer.finish();
+    expect_valid_file();
 }
 
 TEST_F(KhronosValidator, RejectsADamagedScene) {

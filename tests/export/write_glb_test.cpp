@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <tiny_gltf.h>
 
+#include "export/glb_file.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
 #include "tests/export/throws.h"
@@ -238,18 +239,24 @@ TEST(WriteGlb, RefusesIndicesBeyondTheVertices) {
 }
 
 TEST(WriteGlb, RefusesMoreThanAGlbCanHold) {
-    const auto bytes = [](std::vector<GlbPartSize> parts) { return glb_buffer_bytes(parts); };
-    EXPECT_EQ(bytes({{4, 2}}), 4u * 32 + 2 * 6);
-    EXPECT_EQ(bytes({{65536, 2}}), 65536u * 32 + 2 * 12);
-    EXPECT_EQ(bytes({{3, 1}, {4, 2, 60}}), 3u * 32 + 8 + 4 * 60 + 12) << "indices are padded to four bytes";
-    EXPECT_EQ(bytes({{70'000'000, 140'000'000}}), 3'920'000'000u);
-    EXPECT_THAT([&] { bytes({{80'000'000, 160'000'000}}); }, throws_error_with("need 4480000000"));
-    EXPECT_THAT(
-        [&] {
-            bytes({{40'000'000, 80'000'000}, {40'000'000, 80'000'000}});
-        },
-        throws_error_with("80000000 vert"));
-    EXPECT_THAT([&] { bytes({{uint64_t{1} << 62, 1}}); }, throws_error_with("at most"));
+    const TemporaryFolder folder;
+    const std::vector<std::byte> bytes(1000);
+    tinygltf::Model model;
+    model.asset.version = "2.0";
+    {
+        GlbFile file(folder / "a.glb", 2100);
+        EXPECT_EQ(file.append(std::span(bytes).first(998)), 0u);
+        EXPECT_EQ(file.append(bytes), 1000u) << "arrays begin at multiples of four";
+        EXPECT_THAT([&] { file.append(std::span(bytes).first(80)); },
+                    throws_error_with("holds at most 2100 bytes, but the scene needs 2108 or more"));
+        file.finish(model);
+    }
+    EXPECT_EQ(bytes_of(folder / "a.glb").size() % 4, 0u);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.glb.buffer"));
+    GlbFile file(folder / "b.glb", 1060);
+    file.append(bytes);
+    EXPECT_THAT([&] { file.finish(model); }, throws_error_with("a GLB file holds at most 1060 bytes"))
+        << "the JSON counts";
 }
 
 TEST(WriteGlb, SaysThatTheDiskRefused) {
@@ -257,10 +264,17 @@ TEST(WriteGlb, SaysThatTheDiskRefused) {
     {
         const test::FileSizeLimit limit(1000);
         EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{wavy_sheet(9, 9)}, kInfo); },
-                    throws_error_with("a.glb cannot be written"));
+                    throws_error_with("a.glb.buffer cannot be written"));
     }
+    {
+        const test::FileSizeLimit limit(3500);
+        EXPECT_THAT([&] { write_glb(folder / "a.glb", GlbScene{wavy_sheet(9, 9)}, kInfo); },
+                    throws_error_with("a.glb cannot be written"))
+            << "there was room for the buffer, of 81 vertices and 128 triangles, and none for the JSON besides";
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.glb.buffer"));
     EXPECT_THAT([] { write_glb("/proc/a.glb", GlbScene{Mesh{}}, kInfo); },
-                throws_error_with("/proc/a.glb cannot be written"));
+                throws_error_with("/proc/a.glb.buffer cannot be written"));
 }
 
 }  // namespace

@@ -194,16 +194,33 @@ class Run {
     void write_scene() {
         const auto start = Clock::now();
         try {
-            Scene scene = session_.scene_without_reflectance();
-            times_s_.emplace_back("surface", seconds_since(start));
-            attempt("what the surface reflects", [&] { session_.add_reflectance(scene); });
+            Scene scene = session_.scene_without_surface();
+            attempt("what the surface reflects", [&] { session_.add_segments(scene); });
             scene_.emplace(std::move(scene));
-            glb_ = scene_->write(folder_, kVersion);
+            write_surface();
+            times_s_.emplace_back("scene", seconds_since(start));
         } catch (const std::exception& error) {
             scene_.reset();
             folder_.discard_staged();
             if (ended_.empty()) ended_ = fmt::format("failed after the last frame: {}", reason_of(error));
             if (failure_.empty()) failure_ = reason_of(error);
+        }
+    }
+
+    /// Without what it reflects where that fails.
+    void write_surface() {
+        const auto write = [this] {
+            const auto pieces = [this](const TakePiece& take) { session_.give_surface(scene_->scene(), take); };
+            glb_ = scene_->write(folder_, pieces, kVersion);
+        };
+        try {
+            write();
+        } catch (const std::exception& error) {
+            if (scene_->scene().reflectance.segments.empty()) throw;
+            folder_.discard_staged();
+            scene_->forget_reflectance();
+            write();
+            problems_.push_back(fmt::format("what the surface reflects could not be written: {}", reason_of(error)));
         }
     }
 

@@ -1,12 +1,11 @@
 #include "tools/run/scene_files.h"
 
 #include "export/materials.h"
-#include "export/scene_files.h"
 
 namespace patina::tools {
 
-GlbSummary SceneFiles::write(OutputFolder& folder, const std::string& version) const {
-    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, version);
+GlbSummary SceneFiles::write(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
+    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, version);
     folder.publish("scene.glb");
     if (!scene_.reflectance.segments.empty())
         folder.write("materials.json", materials_json(scene_.reflectance.segments, scene_.segment_names));

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "export/write_glb.h"
+#include "export/scene_files.h"
 #include "patina/scene.h"
 #include "tools/report/output_folder.h"
 #include "tools/report/run_summary.h"
@@ -13,10 +13,15 @@ namespace patina::tools {
 /// recording's world in lights.json, in the scene's coordinates in scene.glb.
 class SceneFiles {
   public:
+    /// The scene has no surface: it comes in pieces.
     explicit SceneFiles(Scene scene) : scene_(std::move(scene)) {}
 
-    /// Writes the files; `version`: of Patina. Throws Error as write_glb() does.
-    GlbSummary write(OutputFolder& folder, const std::string& version) const;
+    const Scene& scene() const { return scene_; }
+    /// What the surface reflects could not be had.
+    void forget_reflectance() { scene_.reflectance = {}; }
+
+    /// Writes the files; `version`: of Patina. Throws Error as write_scene_glb() does.
+    GlbSummary write(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
 
     /// Adds lights and segments to the run's summary.
     void add_to(RunSummary& summary) const;

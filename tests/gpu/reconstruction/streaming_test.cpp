@@ -1,5 +1,6 @@
 #include "reconstruction/streaming/streaming.h"
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <set>
@@ -134,6 +135,72 @@ TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
     EXPECT_EQ(few.counters.segments.live, all.counters.segments.live);
     EXPECT_EQ(few.counters.segments.pruned, all.counters.segments.pruned);
     EXPECT_EQ(few.counters.segments.free_labels, all.counters.segments.free_labels);
+}
+
+/// Everything that the corners of a mesh's triangles have, triangle by triangle, sorted.
+using Corner = std::array<float, 14>;
+std::vector<std::array<Corner, 3>> corners_of(const Mesh& mesh, const MeshReflectance& reflectance) {
+    std::vector<std::array<Corner, 3>> triangles;
+    for (const auto& triangle : mesh.triangles) {
+        auto& corners = triangles.emplace_back();
+        for (size_t i = 0; i < 3; ++i) {
+            const uint32_t v = triangle[i];
+            const glm::vec3 p = mesh.positions_m.at(v), n = mesh.normals.at(v), c = mesh.colors.at(v);
+            const glm::vec4 kd = reflectance.kd.at(v);
+            corners[i] = {p.x, p.y, p.z,  n.x,  n.y,  n.z,  c.x,
+                          c.y, c.z, kd.r, kd.g, kd.b, kd.a, static_cast<float>(reflectance.labels.at(v))};
+        }
+    }
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+}
+
+TEST_F(StreamingTest, CellsAreTogetherTheWholeSurface) {
+    std::vector<Mesh> kept;
+    for (const uint32_t resident_blocks : {0u, 1u}) {
+        Pipeline pipeline(device(), settings(resident_blocks));
+        pipeline.set_lights(tour_.lights);
+        add(pipeline, 0, tour_.frames.size());
+        const std::vector<SegmentReflectance> segments = pipeline.segments();
+        std::vector<Mesh> cells;
+        std::vector<std::array<Corner, 3>> together;
+        const auto take = [&](const Mesh& cell, const MeshReflectance& reflectance) {
+            std::vector<bool> used(cell.positions_m.size());
+            for (const auto& triangle : cell.triangles) {
+                for (const uint32_t vertex : triangle) used.at(vertex) = true;
+            }
+            EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
+            EXPECT_EQ(reflectance.segments.size(), segments.size());
+            const auto corners = corners_of(cell, reflectance);
+            together.insert(together.end(), corners.begin(), corners.end());
+            cells.push_back(cell);
+        };
+        pipeline.give_surface(segments, take, 1.7);
+        EXPECT_GT(cells.size(), 7u);
+        std::sort(together.begin(), together.end());
+        const Mesh whole = pipeline.extract_surface();
+        EXPECT_TRUE(same_bytes(together, corners_of(whole, pipeline.sample_reflectance(whole))));
+
+        size_t pieces = 0;
+        const auto take_one = [&](const Mesh& mesh, const MeshReflectance& reflectance) {
+            ++pieces;
+            EXPECT_TRUE(same_bytes(mesh.positions_m, whole.positions_m));
+            EXPECT_TRUE(same_bytes(mesh.triangles, whole.triangles));
+            EXPECT_TRUE(reflectance.kd.empty() && reflectance.labels.empty());
+        };
+        pipeline.give_surface({}, take_one, 100);
+        EXPECT_EQ(pieces, 1u);
+
+        if (kept.empty()) {
+            kept = std::move(cells);
+            continue;
+        }
+        ASSERT_EQ(cells.size(), kept.size());
+        for (size_t i = 0; i < cells.size(); ++i) {
+            EXPECT_TRUE(same_bytes(cells[i].positions_m, kept[i].positions_m));
+            EXPECT_TRUE(same_bytes(cells[i].triangles, kept[i].triangles));
+        }
+    }
 }
 
 /// From one end of the street to the other and back, without a way: whole rooms come back at once.

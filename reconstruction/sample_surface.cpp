@@ -1,4 +1,4 @@
-#include "reconstruction/sample_mesh.h"
+#include "reconstruction/sample_surface.h"
 
 #include <algorithm>
 #include <span>
@@ -23,6 +23,8 @@ SegmentReflectance to_segment(const gpu::SegmentAlbedo& sums, const gpu::Segment
     return segment;
 }
 
+}  // namespace
+
 std::vector<SegmentReflectance> read_segments(graph::Runner& runner, ReflectanceStage& model) {
     graph::FrameGraph frame = runner.begin();
     const SegmentIds ids = model.add_segments(frame);
@@ -36,11 +38,9 @@ std::vector<SegmentReflectance> read_segments(graph::Runner& runner, Reflectance
     return segments;
 }
 
-}  // namespace
-
-MeshReflectance sample_mesh(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh, uint32_t batch_points) {
+MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,
+                                uint32_t batch_points) {
     MeshReflectance reflectance;
-    reflectance.segments = read_segments(runner, model);
     const std::span<const glm::vec3> positions(mesh.positions_m), normals(mesh.normals);
     for (size_t first = 0; first < positions.size(); first += batch_points) {
         const size_t count = std::min<size_t>(batch_points, positions.size() - first);
