@@ -38,13 +38,17 @@ Lighting in_recorded_world(const Scene& scene) {
     return lighting;
 }
 
+GlbInfo glb_info(const Scene& scene, const std::string& version) {
+    return {.version = version,
+            .name = scene.name,
+            .world_offset_m = scene.world_offset_m,
+            .segment_names = scene.segment_names,
+            .lights = rounded(scene.lighting).lights};
+}
+
 GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
                            const std::string& version) {
-    GlbWriter writer(file, {.version = version,
-                            .name = scene.name,
-                            .world_offset_m = scene.world_offset_m,
-                            .segment_names = scene.segment_names,
-                            .lights = rounded(scene.lighting).lights});
+    GlbWriter writer(file, glb_info(scene, version));
     pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, &reflectance); });
     return writer.finish();
 }

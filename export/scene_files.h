@@ -17,6 +17,9 @@ Lighting rounded(Lighting lighting);
 /// The same in the recording's world, as lights.json holds them.
 Lighting in_recorded_world(const Scene& scene);
 
+/// What its scene.glb says besides the surface; `version`: of Patina.
+GlbInfo glb_info(const Scene& scene, const std::string& version);
+
 /// What a surface's pieces are given to, and what gives them all (GlbWriter::add).
 using TakePiece = std::function<void(const Mesh&, const MeshReflectance&)>;
 using GivePieces = std::function<void(const TakePiece&)>;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/graph/runner.h"
@@ -106,6 +107,8 @@ class Pipeline {
 
     /// How many voxel blocks are away from the device, as far as it has finished.
     StreamCounts stream_counts() { return streaming_.counts(); }
+    /// A sentence where more of those stay in memory than should; else empty.
+    std::string stream_problem() const { return streaming_.problem(); }
 
     uint32_t frames() const;  ///< fused, or about to be
     const ReconstructionSettings& settings() const { return stages_.settings; }

@@ -26,6 +26,7 @@ struct ReconstructionSettings {
     /// view, its blocks may leave the device.
     float around_m = 5;
     uint32_t resident_blocks = 65536;  ///< while more are in use, blocks that are far away leave the device; 0: none do
+    uint32_t host_mib = 256;  ///< of memory for blocks that left; beyond, they go to a temporary file; 0: no limit
     /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:
     /// colours are taken as they are. Needs fusion.color.
     std::optional<GainSettings> gains{};

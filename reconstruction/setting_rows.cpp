@@ -164,6 +164,9 @@ constexpr std::array kRows = {
     number<&Rec::resident_blocks>("map.resident_blocks", "blocks", 0, kAnyCount,
                                   "While more blocks are in use, those that are far away leave the device for the "
                                   "host's memory, and come back before they are seen; 0 keeps all."),
+    number<&Rec::host_mib>("map.host_mib", "MiB", 0, kAnyCount,
+                           "Of the host's memory, for voxel blocks that left the device, compressed; beyond it they go "
+                           "to a temporary file. 0 sets no limit."),
     number<&Map::capacity_blocks>("map.initial_blocks", "blocks", 1, kAnyCount,
                                   "Blocks that the pool has room for at first; it grows when needed."),
     number<&Map::max_chunk_bytes>("map.max_chunk_bytes", "bytes", 2048, 4294967296.0,
@@ -449,10 +452,10 @@ static_assert(is_covered<SpecularSettings>());
 
 /// field_count() does not see through std::optional. A network is a file, given by --network, and has no row.
 [[maybe_unused]] void notice_fields(const ReconstructionSettings& settings) {
-    const auto& [map, fusion, input, near_m, remove_every, around_m, resident_blocks, gains, reflectance, segmentation,
-                 specular, network, tracking, keyframes, seed, view_every_frame] = settings;
-    static_assert(row_count<ReconstructionSettings>() == 6,
-                  "near_m, remove_every, around_m, resident_blocks, seed and view_every_frame");
+    const auto& [map, fusion, input, near_m, remove_every, around_m, resident_blocks, host_mib, gains, reflectance,
+                 segmentation, specular, network, tracking, keyframes, seed, view_every_frame] = settings;
+    static_assert(row_count<ReconstructionSettings>() == 7,
+                  "near_m, remove_every, around_m, resident_blocks, host_mib, seed and view_every_frame");
     (void)map;
 }
 

@@ -20,6 +20,9 @@ class StateVisitor {
   public:
     virtual ~StateVisitor() = default;
 
+    /// Whether what is visited is replaced by what was kept; else it stays as it is.
+    virtual bool brings_back() const = 0;
+
     /// On the device, by the names that they have there. All the work on them has finished.
     virtual void buffer(vulkan::BufferRef& buffer) = 0;
     virtual void array(vulkan::ChunkedBuffer& array) = 0;

@@ -175,6 +175,10 @@ void SessionCore::report_progress() {
         report(options_.callbacks,
                "warning: " + full_pool_warning(pool) + "; what does not fit is left out from here on");
     }
+    if (const std::string problem = pipeline_->stream_problem(); stream_problem_.empty() && !problem.empty()) {
+        stream_problem_ = problem;
+        report(options_.callbacks, "warning: " + problem);
+    }
     report(options_.callbacks, {.task = "frames",
                                 .done = ledger_.read(),
                                 .total = info_.frames,
@@ -270,6 +274,7 @@ std::optional<std::string> SessionCore::reach_warning() const {
 std::vector<std::string> SessionCore::warnings() const {
     std::vector<std::string> all;
     if (const auto reach = reach_warning()) all.push_back(*reach);
+    if (!stream_problem_.empty()) all.push_back(stream_problem_);
     if (inspector_) {
         for (std::string& implausible : inspector_->report().warnings) all.push_back(std::move(implausible));
     }

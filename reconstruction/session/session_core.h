@@ -152,6 +152,7 @@ class SessionCore {
     std::optional<RigidTransform> first_given_;  ///< of the first frame that has a pose
     std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
     std::set<std::string> full_pools_;           ///< those that were reported
+    std::string stream_problem_;                 ///< Pipeline::stream_problem(), the first that was reported
 };
 
 }  // namespace patina

@@ -39,6 +39,7 @@ class StateWriter : public StateTransfer {
     /// All work on the device must have finished. Both must outlive this.
     StateWriter(vulkan::Device& device, MapFile& map) : StateTransfer(device, map) {}
 
+    bool brings_back() const override { return false; }
     void buffer(vulkan::BufferRef& buffer) override;
     void array(vulkan::ChunkedBuffer& array) override;
     void image(vulkan::ImageRef& image) override;
@@ -67,6 +68,7 @@ class StateReader : public StateTransfer {
   public:
     StateReader(vulkan::Device& device, MapFile& map) : StateTransfer(device, map) {}
 
+    bool brings_back() const override { return true; }
     void buffer(vulkan::BufferRef& buffer) override;
     void array(vulkan::ChunkedBuffer& array) override;
     void image(vulkan::ImageRef& image) override;

@@ -66,7 +66,8 @@ uint32_t part_number(uint32_t key) { return hash_of_key(key) % gpu::kSweepParts;
 void BlockStore::Free::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
 void BlockStore::Free::operator()(ZSTD_DCtx_s* context) const { ZSTD_freeDCtx(context); }
 
-BlockStore::BlockStore() : compressor_(made(ZSTD_createCCtx())), decompressor_(made(ZSTD_createDCtx())) {}
+BlockStore::BlockStore(uint64_t most_bytes)
+    : most_bytes_(most_bytes), compressor_(made(ZSTD_createCCtx())), decompressor_(made(ZSTD_createDCtx())) {}
 BlockStore::~BlockStore() = default;
 
 const BlockStore::Part& BlockStore::part_of(uint32_t key) const { return parts_[part_number(key)]; }
@@ -90,17 +91,72 @@ void BlockStore::put(const gpu::StreamedBlock& block, const BlockWords& words) {
 
 void BlockStore::put_back(uint32_t key, Kept&& kept) {
     std::vector<uint32_t>& cell = cells_[cell_of(key)];
-    // Once there is room for the key, either both are done or nothing is.
+    // Once there is room for the key and an entry, nothing fails any more.
     if (cell.size() == cell.capacity()) cell.reserve(2 * cell.size() + 1);
-    if (part_of(key).insert_or_assign(key, std::move(kept)).second) cell.push_back(key);
+    const auto [entry, is_new] = part_of(key).try_emplace(key);
+    if (is_new) {
+        cell.push_back(key);
+    } else {
+        count(entry->second, false);
+    }
+    entry->second = std::move(kept);
+    count(entry->second, true);
+}
+
+void BlockStore::count(const Kept& kept, bool comes) {
+    bytes_ += comes ? kept.packed.size() : -kept.packed.size();
+    blocks_in_file_ += comes ? uint32_t{kept.in_file} : -uint32_t{kept.in_file};
+}
+
+std::vector<std::byte> BlockStore::packed_of(uint32_t key, const Kept& kept) const {
+    return kept.in_file ? file_->read(key) : kept.packed;
+}
+
+void BlockStore::make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m) {
+    if (most_bytes_ == 0 || bytes_ <= std::max(most_bytes_, try_at_)) return;
+    const double block_m = double{grid.voxel_m} * gpu::kBlockEdge;
+    std::vector<std::pair<double, uint32_t>> farthest;  // distance, cell
+    for (const auto& [cell, held] : cells_) {
+        const glm::dvec3 center = glm::dvec3(block_of_key(grid, cell)) + kCellEdge / 2.0;
+        farthest.emplace_back(glm::distance(center * block_m, from_m), cell);
+    }
+    std::sort(farthest.rbegin(), farthest.rend());
+    try {
+        if (!file_) file_ = std::make_unique<SpillFile>();
+        for (auto at = farthest.begin(); at != farthest.end() && bytes_ > most_bytes_ / 4 * 3; ++at)
+            move_to_file(cells_.at(at->second));
+        try_at_ = 0;
+        problem_.clear();
+    } catch (const std::exception& error) {
+        try_at_ = bytes_ + most_bytes_ / 4;
+        problem_ = reason_of(error);
+    }
+}
+
+void BlockStore::move_to_file(const std::vector<uint32_t>& keys) {
+    std::vector<std::pair<uint32_t, std::span<const std::byte>>> entries;
+    for (const uint32_t key : keys) {
+        const Kept& kept = part_of(key).at(key);
+        if (!kept.in_file) entries.emplace_back(key, kept.packed);
+    }
+    file_->put(entries);
+    for (const auto& [key, bytes] : entries) {
+        Kept& kept = part_of(key).at(key);
+        count(kept, false);
+        kept.packed = {};
+        kept.in_file = true;
+        count(kept, true);
+    }
 }
 
 gpu::StreamedBlock BlockStore::read(uint32_t key, std::span<uint32_t> tsdf, std::span<uint32_t> color,
                                     std::span<uint32_t> labels) const {
     const Kept& kept = part_of(key).at(key);
+    const std::vector<std::byte> from_file = kept.in_file ? file_->read(key) : std::vector<std::byte>();
+    const std::vector<std::byte>& packed = kept.in_file ? from_file : kept.packed;
     Bytes bytes;
     const size_t size =
-        ZSTD_decompressDCtx(decompressor_.get(), bytes.data(), bytes.size(), kept.packed.data(), kept.packed.size());
+        ZSTD_decompressDCtx(decompressor_.get(), bytes.data(), bytes.size(), packed.data(), packed.size());
     const size_t expected = labels.empty() ? kMostBytes / 3 * 2 : kMostBytes;
     if (size != expected) throw Error("a voxel block that was away has ", size, " bytes, not ", expected);
     unshuffle(bytes.data(), tsdf);
@@ -120,6 +176,7 @@ BlockStore::Kept BlockStore::take(uint32_t key) {
     Part& part = part_of(key);
     const auto at = part.find(key);
     PATINA_ASSERT(at != part.end(), "no block ", key, " is away");
+    count(at->second, false);
     Kept kept = std::move(at->second);
     part.erase(at);
     const auto cell = cells_.find(cell_of(key));
@@ -166,40 +223,45 @@ uint32_t BlockStore::blocks() const {
 void BlockStore::clear() {
     for (Part& part : parts_) part.clear();
     cells_.clear();
+    file_.reset();
+    bytes_ = try_at_ = blocks_in_file_ = 0;
+    problem_.clear();
 }
 
-void BlockStore::visit(graph::StateVisitor& visitor) {
+void BlockStore::visit(graph::StateVisitor& visitor, const gpu::VoxelGrid& grid) {
+    if (visitor.brings_back()) clear();
     for (uint32_t i = 0; i < parts_.size(); ++i) {
-        std::vector<uint32_t> heads;  // key, stamp, labels, bytes; of each block
-        std::vector<Kept::Label> labels;
-        std::vector<std::byte> packed;
-        for (const auto& [key, kept] : parts_[i]) {
-            heads.insert(heads.end(), {key, kept.label_stamp, static_cast<uint32_t>(kept.labels.size()),
-                                       static_cast<uint32_t>(kept.packed.size())});
-            labels.insert(labels.end(), kept.labels.begin(), kept.labels.end());
-            packed.insert(packed.end(), kept.packed.begin(), kept.packed.end());
-        }
-        const std::string name = text("away.", i);
-        visitor.values(name + ".blocks", heads);
-        visitor.values(name + ".labels", labels);
-        visitor.values(name + ".voxels", packed);
-        Part part;
-        auto label = labels.cbegin();
-        auto byte = packed.cbegin();
-        for (size_t at = 0; at + 4 <= heads.size(); at += 4) {
-            const auto label_count = static_cast<std::ptrdiff_t>(heads[at + 2]);
-            const auto byte_count = static_cast<std::ptrdiff_t>(heads[at + 3]);
-            if (labels.cend() - label < label_count || packed.cend() - byte < byte_count)
-                throw Error("'", name, "' ends within a block");
-            part[heads[at]] = {heads[at + 1], {label, label + label_count}, {byte, byte + byte_count}};
-            label += label_count;
-            byte += byte_count;
-        }
-        parts_[i] = std::move(part);
+        visit_part(visitor, i);
+        make_room(grid, glm::dvec3(0));
     }
-    cells_.clear();
-    for (const Part& part : parts_) {
-        for (const auto& [key, kept] : part) cells_[cell_of(key)].push_back(key);
+}
+
+void BlockStore::visit_part(graph::StateVisitor& visitor, uint32_t part) {
+    std::vector<uint32_t> heads;  // key, stamp, labels, bytes; of each block
+    std::vector<Kept::Label> labels;
+    std::vector<std::byte> all;
+    for (const auto& [key, kept] : parts_[part]) {
+        const std::vector<std::byte> packed = packed_of(key, kept);
+        heads.insert(heads.end(), {key, kept.label_stamp, static_cast<uint32_t>(kept.labels.size()),
+                                   static_cast<uint32_t>(packed.size())});
+        labels.insert(labels.end(), kept.labels.begin(), kept.labels.end());
+        all.insert(all.end(), packed.begin(), packed.end());
+    }
+    const std::string name = text("away.", part);
+    visitor.values(name + ".blocks", heads);
+    visitor.values(name + ".labels", labels);
+    visitor.values(name + ".voxels", all);
+    if (!visitor.brings_back()) return;
+    auto label = labels.cbegin();
+    auto byte = all.cbegin();
+    for (size_t at = 0; at + 4 <= heads.size(); at += 4) {
+        const auto label_count = static_cast<std::ptrdiff_t>(heads[at + 2]);
+        const auto byte_count = static_cast<std::ptrdiff_t>(heads[at + 3]);
+        if (labels.cend() - label < label_count || all.cend() - byte < byte_count)
+            throw Error("'", name, "' ends within a block");
+        put_back(heads[at], {heads[at + 1], {label, label + label_count}, {byte, byte + byte_count}});
+        label += label_count;
+        byte += byte_count;
     }
 }
 

@@ -6,9 +6,11 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/graph/state_visitor.h"
+#include "reconstruction/store/spill_file.h"
 #include "reconstruction/streaming/stream_region.h"
 #include "shared/fusion/stream_blocks.h"
 #include "shared/segmentation/segments.h"
@@ -23,11 +25,12 @@ struct BlockWords {
     std::span<const uint32_t> tsdf, color, labels;
 };
 
-/// Blocks that are away from the device, compressed in the host's memory. Their labels are kept apart, so that they can
-/// be counted and replaced where they are.
+/// Blocks that are away from the device, compressed in the host's memory, and beyond a limit in a temporary file. Their
+/// labels are kept apart, in memory, so that they can be counted and replaced where they are.
 class BlockStore {
   public:
-    BlockStore();
+    /// `most_bytes`: of compressed blocks in memory (make_room()); 0: all.
+    explicit BlockStore(uint64_t most_bytes = 0);
     ~BlockStore();
     BlockStore(const BlockStore&) = delete;
     BlockStore& operator=(const BlockStore&) = delete;
@@ -43,7 +46,8 @@ class BlockStore {
         };
         uint32_t label_stamp = 0;
         std::vector<Label> labels;      ///< that occur; in `packed` stand their places in this list
-        std::vector<std::byte> packed;  ///< distances, colours and labels, compressed
+        std::vector<std::byte> packed;  ///< distances, colours and labels, compressed; in the file: empty
+        bool in_file = false;
     };
 
     /// Writes the words of a block, gpu::kBlockVoxels to each span but an empty one for labels. It stays as it is.
@@ -61,18 +65,36 @@ class BlockStore {
     std::vector<uint32_t> count_labels(uint32_t part, uint32_t capacity) const;
     void relabel(uint32_t part, std::span<const uint32_t> parents);
 
+    /// Where more than the limit is in memory, the cells farthest from a point go to the file, until a quarter of the
+    /// limit is free. Where the file cannot be written, blocks stay in memory, and problem() says so; the next attempt
+    /// is made when they have become a quarter more.
+    void make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m);
+
     uint32_t blocks() const;
+    uint32_t blocks_in_file() const { return blocks_in_file_; }
+    uint64_t bytes_in_memory() const { return bytes_; }  ///< of compressed blocks
+    /// Why blocks are in memory that should not be; empty where none are.
+    const std::string& problem() const { return problem_; }
 
     void clear();
-    void visit(graph::StateVisitor& visitor);
+    void visit(graph::StateVisitor& visitor, const gpu::VoxelGrid& grid);
 
   private:
     using Part = std::map<uint32_t, Kept>;
+    void count(const Kept& kept, bool comes);
+    void move_to_file(const std::vector<uint32_t>& keys);
+    std::vector<std::byte> packed_of(uint32_t key, const Kept& kept) const;
+    void visit_part(graph::StateVisitor& visitor, uint32_t part);
     const Part& part_of(uint32_t key) const;
     Part& part_of(uint32_t key);
 
     std::map<uint32_t, std::vector<uint32_t>> cells_;  ///< keys by the cell of 16^3 blocks that they lie in
     std::array<Part, gpu::kSweepParts> parts_;
+    uint64_t most_bytes_;
+    uint64_t bytes_ = 0, try_at_ = 0;  ///< in memory; and how many there are when it is tried again
+    uint32_t blocks_in_file_ = 0;
+    std::string problem_;
+    std::unique_ptr<SpillFile> file_;  ///< null until something goes there
     struct Free {
         void operator()(ZSTD_CCtx_s* context) const;
         void operator()(ZSTD_DCtx_s* context) const;

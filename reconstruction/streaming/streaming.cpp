@@ -42,7 +42,8 @@ std::span<const uint32_t> words_at(const graph::Readback& read, size_t place) {
 
 }  // namespace
 
-Streaming::Streaming(graph::Runner& runner, Stages& stages) : runner_(runner), stages_(stages) {}
+Streaming::Streaming(graph::Runner& runner, Stages& stages)
+    : runner_(runner), stages_(stages), store_(uint64_t{stages.settings.host_mib} << 20) {}
 
 void Streaming::reset() {
     store_.clear();
@@ -75,6 +76,7 @@ bool Streaming::would_miss(const StreamRegion& near) const {
 
 uint32_t Streaming::plan(const StreamRegion& near, uint32_t index, bool many) {
     collect();
+    store_.make_room(map().grid(), near.center_m);
     const bool sweeps = SegmentationStage::sweeps(index);
     // What the device may refuse again has to be known, too.
     if (would_miss(near) || (sweeps && pends<Leaving>()) || (short_ && pends<Returning>())) collect_all();
@@ -304,7 +306,13 @@ std::vector<glm::ivec3> Streaming::blocks() {
 
 StreamCounts Streaming::counts() {
     collect();
-    return {store_.blocks(), left_, returned_, awaited_};
+    return {store_.blocks(), store_.blocks_in_file(), left_, returned_, awaited_};
+}
+
+std::string Streaming::problem() const {
+    if (store_.problem().empty()) return "";
+    return text(store_.bytes_in_memory() >> 20, " MiB of voxel blocks that are away stay in memory, more than ",
+                stages_.settings.host_mib, " MiB, as their file cannot be written: ", store_.problem());
 }
 
 bool Streaming::any_away() {
@@ -314,7 +322,7 @@ bool Streaming::any_away() {
 
 void Streaming::visit(graph::StateVisitor& visitor) {
     collect();  // all are there
-    store_.visit(visitor);
+    store_.visit(visitor, map().grid());
     visitor.value("streaming.left_outside", left_outside_);
     visitor.value("streaming.short", short_);
     visitor.value("streaming.left", left_);

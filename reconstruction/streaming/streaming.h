@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace patina {
 
 /// How many voxel blocks are where.
 struct StreamCounts {
-    uint32_t away = 0;      ///< blocks in the host's memory
+    uint32_t away = 0;      ///< blocks that the device does not have
+    uint32_t in_file = 0;   ///< of these, blocks in the temporary file
     uint64_t left = 0;      ///< over the whole run
     uint64_t returned = 0;  ///< over the whole run
     uint64_t awaited = 0;   ///< of these, blocks that a frame had to wait for, as they had not come back ahead of it
@@ -61,6 +63,8 @@ class Streaming {
     bool any_away();
     /// As far as the device has finished.
     StreamCounts counts();
+    /// A sentence where memory holds more than it should; else empty.
+    std::string problem() const;
 
     /// The device must have finished.
     void visit(graph::StateVisitor& visitor);

@@ -41,6 +41,17 @@ class Output : public RunFolderTest {
     }
 };
 
+TEST_F(Output, TilesAreResultsAsOthers) {
+    run_into(out(), {"--tiles"});
+    const auto files = files_in(out());
+    for (const char* name : {"tiles/tileset.json", "tiles/0/000000.glb", "tiles/2/000000.glb", "scene.glb"}) {
+        EXPECT_EQ(files.count(name), 1u) << name;
+        EXPECT_THAT(summary_of(out())["files"], ::testing::Contains(name));
+    }
+    run_into(out());
+    EXPECT_EQ(files_in(out()).count("tiles/tileset.json"), 0u) << "of an earlier run";
+}
+
 TEST_F(Output, InputsAreNotWrittenTo) {
     fs::create_symlink(sequence(), beside("link"));
     fs::create_directory(beside("kept"));

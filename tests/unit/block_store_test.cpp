@@ -1,11 +1,13 @@
 #include "reconstruction/streaming/block_store.h"
 
+#include <cstdlib>
 #include <map>
 #include <random>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "passes/state/block_keys.h"
+#include "tests/support/file_size_limit.h"
 
 namespace patina {
 namespace {
@@ -45,6 +47,7 @@ class MemoryVisitor : public graph::StateVisitor {
   public:
     explicit MemoryVisitor(bool keeps) : keeps_(keeps) {}
     void reverse() { keeps_ = false; }
+    bool brings_back() const override { return !keeps_; }
     void buffer(vulkan::BufferRef&) override {}
     void array(vulkan::ChunkedBuffer&) override {}
     void image(vulkan::ImageRef&) override {}
@@ -167,11 +170,11 @@ TEST(BlockStore, ComesBackFromItsState) {
         store.put({key, 0, i, 0}, blocks[key].spans());
     }
     MemoryVisitor visitor(true);
-    store.visit(visitor);
+    store.visit(visitor, {});
     visitor.reverse();
     BlockStore other;
     other.put({1, 0, 0, 0}, random_words(random, 2).spans());
-    other.visit(visitor);
+    other.visit(visitor, {});
     EXPECT_EQ(other.blocks(), blocks.size());
     for (const auto& [key, words] : blocks) EXPECT_EQ(read(other, key, true), words);
     EXPECT_EQ(other.keys({}, {}), store.keys({}, {}));
@@ -180,7 +183,140 @@ TEST(BlockStore, ComesBackFromItsState) {
     for (auto& [name, bytes] : visitor.kept) {
         if (name.ends_with(".voxels") && !bytes.empty()) bytes.pop_back();
     }
-    EXPECT_THROW(other.visit(visitor), Error);
+    EXPECT_THROW(other.visit(visitor, {}), Error);
+}
+
+/// Blocks along x, one every 0.8 m, so that each cell of 16 blocks has two. Random words do not compress: 6 KiB each.
+class BlockFileTest : public testing::Test {
+  protected:
+    static constexpr uint32_t kBlocks = 100, kCameraAt = 80;
+    static constexpr uint64_t kMostBytes = 200 << 10;
+
+    static uint32_t key(uint32_t i) { return (1024 + 8 * i) | 512u << 11 | 1024u << 21; }
+    glm::dvec3 camera_m() const { return glm::dvec3(block_of_key(grid_, key(kCameraAt))) * 0.1; }
+    void put(BlockStore& store, uint32_t i) {
+        words_[i] = random_words(random_, 7);
+        store.put({key(i), 0, i, 0}, words_[i].spans());
+    }
+    void put_all(BlockStore& store) {
+        for (uint32_t i = 0; i < kBlocks; ++i) {
+            put(store, i);
+            store.make_room(grid_, camera_m());
+        }
+    }
+    void expect_all(const BlockStore& store) const {
+        EXPECT_EQ(store.blocks(), words_.size());
+        for (const auto& [i, words] : words_) {
+            uint32_t stamp = 0;
+            EXPECT_EQ(read(store, key(i), true, &stamp), words);
+            EXPECT_EQ(stamp, i);
+        }
+    }
+
+    std::mt19937 random_{11};
+    gpu::VoxelGrid grid_ = [] {
+        gpu::VoxelGrid grid{};
+        grid.voxel_m = 0.0125f;  // blocks of 10 cm
+        return grid;
+    }();
+    std::map<uint32_t, Words> words_;
+};
+
+TEST_F(BlockFileTest, HoldsWhatMemoryIsNotToHold) {
+    BlockStore store(kMostBytes);
+    put_all(store);
+    EXPECT_LE(store.bytes_in_memory(), kMostBytes);
+    EXPECT_GT(store.blocks_in_file(), kBlocks / 2);
+    EXPECT_EQ(store.problem(), "");
+    expect_all(store);
+    // The farthest ones go first.
+    EXPECT_TRUE(store.take(key(0)).in_file);
+    EXPECT_FALSE(store.take(key(kCameraAt)).in_file);
+    words_.erase(0);
+    words_.erase(kCameraAt);
+    expect_all(store);
+
+    BlockStore all(0);
+    words_.clear();
+    put_all(all);
+    EXPECT_EQ(all.blocks_in_file(), 0u);
+    EXPECT_GT(all.bytes_in_memory(), 2 * kMostBytes);
+}
+
+TEST_F(BlockFileTest, WhatComesBackAndLeavesAgainIsTheNewOne) {
+    BlockStore store(kMostBytes);
+    put_all(store);
+    const uint32_t in_file = store.blocks_in_file();
+    BlockStore::Kept kept = store.take(key(1));
+    EXPECT_EQ(store.blocks_in_file(), in_file - 1);
+    store.put_back(key(1), std::move(kept));
+    EXPECT_EQ(store.blocks_in_file(), in_file);
+    expect_all(store);
+
+    const uint64_t bytes = store.bytes_in_memory();
+    put(store, 1);  // replaces it
+    EXPECT_EQ(store.blocks_in_file(), in_file - 1);
+    EXPECT_GT(store.bytes_in_memory(), bytes);
+    expect_all(store);
+    put_all(store);
+    expect_all(store);
+
+    // Labels are replaced wherever the voxels are.
+    std::vector<uint32_t> parents{0, 1, 1, 3, 4, 5, 6};
+    for (uint32_t part = 0; part < gpu::kSweepParts; ++part) store.relabel(part, parents);
+    for (auto& [i, words] : words_) {
+        for (uint32_t& word : words.labels) word = (word & 0xffff) == 2 ? word - 1 : word;
+    }
+    expect_all(store);
+    store.clear();
+    EXPECT_EQ(store.bytes_in_memory() + store.blocks_in_file() + store.blocks(), 0u);
+}
+
+TEST_F(BlockFileTest, IsPartOfTheState) {
+    BlockStore store(kMostBytes), other(kMostBytes);
+    put_all(store);
+    const uint32_t in_file = store.blocks_in_file();
+    MemoryVisitor visitor(true);
+    store.visit(visitor, grid_);
+    EXPECT_EQ(store.blocks_in_file(), in_file) << "keeping it changes nothing";
+    expect_all(store);
+    visitor.reverse();
+    other.visit(visitor, grid_);
+    expect_all(other);
+    EXPECT_LE(other.bytes_in_memory(), kMostBytes);
+    EXPECT_GT(other.blocks_in_file(), 0u);
+}
+
+TEST_F(BlockFileTest, AFullDiskLeavesAllInMemoryAndSaysSo) {
+    BlockStore store(kMostBytes);
+    {
+        const test::FileSizeLimit limit(100 << 10);
+        put_all(store);
+        EXPECT_THAT(store.problem(), testing::HasSubstr("patina-blocks-"));
+        EXPECT_GT(store.bytes_in_memory(), 2 * kMostBytes);
+        expect_all(store);
+    }
+    // Where there is room again, it goes on.
+    for (uint32_t i = kBlocks; i < kBlocks + 20; ++i) put(store, i);
+    store.make_room(grid_, camera_m());
+    EXPECT_EQ(store.problem(), "");
+    EXPECT_LE(store.bytes_in_memory(), kMostBytes);
+    expect_all(store);
+}
+
+TEST_F(BlockFileTest, AFolderThatIsNotThereIsNamed) {
+    const char* earlier = std::getenv("TMPDIR");
+    const std::string kept = earlier ? earlier : "";
+    setenv("TMPDIR", "/nowhere", 1);
+    BlockStore store(kMostBytes);
+    put_all(store);
+    EXPECT_THAT(store.problem(), testing::HasSubstr("'/nowhere/patina-blocks-"));
+    expect_all(store);
+    if (earlier) {
+        setenv("TMPDIR", kept.c_str(), 1);
+    } else {
+        unsetenv("TMPDIR");
+    }
 }
 
 TEST(StreamRegion, IsABallAndAConeThatGrowByAsMuch) {

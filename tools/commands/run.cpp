@@ -42,6 +42,8 @@ void declare(CLI::App& command, RunArguments& arguments) {
                     "by default given where there are any")
         ->transform(one_of<Poses>({{"given", Poses::kGiven}, {"track", Poses::kTrack}, {"prior", Poses::kPrior}}))
         ->option_text("given|track|prior");
+    command.add_flag("--tiles", run.tiles,
+                     "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
     command.add_option("--hold-out", run.hold_out,
                        "Keep the colours of every so many-th frame out of the model, and compare them in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");

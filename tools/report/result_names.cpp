@@ -19,17 +19,18 @@ using sensor::is_real_file;
 using sensor::is_real_folder;
 using sensor::is_taken;
 
-constexpr std::array<std::string_view, 8> kRunFiles{"run.json",    "scene.glb",          "materials.json",
-                                                    "lights.json", "gains.txt",          "trajectory.txt",
-                                                    "report.html", "held_out/scores.txt"};
+constexpr std::array<std::string_view, 9> kRunFiles{"run.json",    "scene.glb",           "materials.json",
+                                                    "lights.json", "gains.txt",           "trajectory.txt",
+                                                    "report.html", "held_out/scores.txt", "tiles/tileset.json"};
 constexpr std::array<std::string_view, 2> kEvaluationFiles{"eval.json", "report.html"};
 
-/// A folder of a run that holds one file per frame.
+/// A folder of a run that holds numbered files: of frames, of tiles.
 struct FrameFolder {
     std::string_view name, extension;
 };
-constexpr std::array kFrameFolders{FrameFolder{"frames", ".exr"}, FrameFolder{"previews", ".png"},
-                                   FrameFolder{"held_out", ".png"}};
+constexpr std::array kFrameFolders{FrameFolder{"frames", ".exr"},   FrameFolder{"previews", ".png"},
+                                   FrameFolder{"held_out", ".png"}, FrameFolder{"tiles/0", ".glb"},
+                                   FrameFolder{"tiles/1", ".glb"},  FrameFolder{"tiles/2", ".glb"}};
 
 /// NNNNNN.EXTENSION, with six digits or more.
 bool is_frame_name(const fs::path& name, std::string_view extension) {

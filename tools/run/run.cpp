@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -207,12 +208,19 @@ class Run {
         }
     }
 
-    /// Without what it reflects where that fails.
     void write_surface() {
-        const auto write = [this] {
-            const auto pieces = [this](const TakePiece& take) { session_.give_surface(scene_->scene(), take); };
-            glb_ = scene_->write(folder_, pieces, kVersion);
+        const auto pieces = [this](const TakePiece& take) { session_.give_surface(scene_->scene(), take); };
+        const auto write_glb = [&] {
+            with_reflectance_or_without([&] { glb_ = scene_->write(folder_, pieces, kVersion); });
         };
+        if (!options_.tiles) return write_glb();
+        with_reflectance_or_without([&] { scene_->write_tiles(folder_, pieces, kVersion); });
+        // A scene may be too large for one file.
+        attempt("scene.glb", write_glb);
+    }
+
+    /// Writes the surface, without what it reflects where that fails.
+    void with_reflectance_or_without(const std::function<void()>& write) {
         try {
             write();
         } catch (const std::exception& error) {
@@ -246,7 +254,7 @@ class Run {
         Outcome outcome;
         for (std::string& shortfall : shortfalls_of(session_)) outcome.fall_short(std::move(shortfall));
         if (!ended_.empty()) outcome.fall_short(ended_);
-        if (scene_ && glb_.triangles == 0)
+        if (scene_ && glb_ && glb_->triangles == 0)
             outcome.fall_short("the surface is empty: from none of the frames a triangle was reconstructed");
         if (!dumps_.problem().empty()) outcome.fall_short(dumps_.problem());
         for (const std::string& problem : problems_) outcome.fall_short(problem);
@@ -255,7 +263,7 @@ class Run {
 
     /// report.html and run.json, which comes last.
     void write_summary() {
-        RunSummary summary = summarise(options_, session_, glb_);
+        RunSummary summary = summarise(options_, session_, glb_.value_or(GlbSummary{}));
         attempt("the count of keyframes", [&] { add_keyframes(summary, session_); });
         summary.finished = ended_.empty();
         summary.ended = ended_;
@@ -287,7 +295,7 @@ class Run {
         if (failure_.empty()) outcome.print(options_.quiet);
         if (options_.quiet || !failure_.empty()) return;
         print_out("{} of {} frames, {} triangles in {}\n", session_.ledger().used(),
-                  session_.info().frames.value_or(session_.ledger().read()), glb_.triangles,
+                  session_.info().frames.value_or(session_.ledger().read()), glb_.value_or(GlbSummary{}).triangles,
                   printable(place_.string()));
         const std::string& found_by = session_.illumination().found_by;
         if (found_by != "file" && found_by != "none") print_lights(session_.illumination());
@@ -304,7 +312,7 @@ class Run {
     Pipeline& pipeline_;
     FrameDumps dumps_;
     std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
-    GlbSummary glb_;
+    std::optional<GlbSummary> glb_;    ///< of scene.glb; empty where there is none
     HeldOut held_out_;
     std::optional<HeldOutSummary> held_out_summary_;
     std::vector<std::pair<std::string, double>> times_s_;

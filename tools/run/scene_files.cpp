@@ -1,6 +1,7 @@
 #include "tools/run/scene_files.h"
 
 #include "export/materials.h"
+#include "export/write_tiles.h"
 
 namespace patina::tools {
 
@@ -14,6 +15,16 @@ GlbSummary SceneFiles::write(OutputFolder& folder, const GivePieces& pieces, con
         folder.publish("lights.json");
     }
     return summary;
+}
+
+void SceneFiles::write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
+    const auto write = [&](const std::string& name, const auto& write_to) {
+        write_to(folder.stage("tiles/" + name));
+        folder.publish("tiles/" + name);
+    };
+    TileWriter writer(write, glb_info(scene_, version));
+    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, reflectance); });
+    writer.finish();
 }
 
 void SceneFiles::add_to(RunSummary& summary) const {

@@ -23,6 +23,9 @@ class SceneFiles {
     /// Writes the files; `version`: of Patina. Throws Error as write_scene_glb() does.
     GlbSummary write(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
 
+    /// Writes tiles/ (TileWriter).
+    void write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
+
     /// Adds lights and segments to the run's summary.
     void add_to(RunSummary& summary) const;
 

@@ -1,0 +1,44 @@
+#include "export/coarser_mesh.h"
+
+#include <algorithm>
+#include <array>
+
+#include <meshoptimizer.h>
+
+namespace patina {
+
+CoarserMesh coarser(const Mesh& mesh, double part) {
+    CoarserMesh result;
+    if (mesh.triangles.empty()) return result;
+    const size_t count = 3 * mesh.triangles.size(), vertices = mesh.positions_m.size();
+    const float* positions = &mesh.positions_m.front().x;
+    std::vector<std::array<uint32_t, 3>> triangles(mesh.triangles.size());
+    constexpr float kAnyError = 1;  // of the mesh's extent
+    float error = 0;
+    const size_t kept = meshopt_simplify(
+        triangles.front().data(), mesh.triangles.front().data(), count, positions, vertices, sizeof(glm::vec3),
+        static_cast<size_t>(static_cast<double>(count) * part), kAnyError, meshopt_SimplifyLockBorder, &error);
+    triangles.resize(kept / 3);
+    result.error_m = double{error} * double{meshopt_simplifyScale(positions, vertices, sizeof(glm::vec3))};
+
+    constexpr uint32_t kUnused = UINT32_MAX;
+    std::vector<uint32_t> number(vertices, kUnused);
+    for (const auto& triangle : triangles) {
+        for (const uint32_t vertex : triangle) number[vertex] = 0;
+    }
+    for (uint32_t vertex = 0; vertex < vertices; ++vertex) {
+        if (number[vertex] == kUnused) continue;
+        number[vertex] = static_cast<uint32_t>(result.vertices.size());
+        result.vertices.push_back(vertex);
+        result.mesh.positions_m.push_back(mesh.positions_m[vertex]);
+        result.mesh.normals.push_back(mesh.normals[vertex]);
+        result.mesh.colors.push_back(mesh.colors[vertex]);
+    }
+    for (auto& triangle : triangles) {
+        for (uint32_t& vertex : triangle) vertex = number[vertex];
+    }
+    result.mesh.triangles = std::move(triangles);
+    return result;
+}
+
+}  // namespace patina
