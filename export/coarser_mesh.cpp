@@ -7,11 +7,15 @@
 
 namespace patina {
 
-CoarserMesh coarser(const Mesh& mesh, double part) {
+CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, double part) {
     CoarserMesh result;
     if (mesh.triangles.empty()) return result;
     const size_t count = 3 * mesh.triangles.size(), vertices = mesh.positions_m.size();
-    const float* positions = &mesh.positions_m.front().x;
+    // A step of the shade becomes one of the surface.
+    std::vector<glm::vec3> raised(vertices);
+    for (size_t i = 0; i < vertices; ++i)
+        raised[i] = mesh.positions_m[i] + kShade_m * std::clamp(shades[i], 0.0f, 1.0f) * mesh.normals[i];
+    const float* positions = &raised.front().x;
     std::vector<std::array<uint32_t, 3>> triangles(mesh.triangles.size());
     constexpr float kAnyError = 1;  // of the mesh's extent
     float error = 0;

@@ -3,10 +3,10 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "engine/core/error.h"
 
@@ -41,16 +41,12 @@ std::string json_of(tinygltf::Model& model, uint64_t buffer_bytes) {
 
 }  // namespace
 
-GlbFile::GlbFile(std::filesystem::path path, uint64_t most_bytes) : path_(std::move(path)), most_bytes_(most_bytes) {
-    buffer_.emplace(buffer_path());
+GlbFile::GlbFile(std::filesystem::path path, uint64_t most_bytes)
+    : path_(std::move(path)), buffer_path_(path_.string() + ".buffer"), most_bytes_(most_bytes) {
+    buffer_.emplace(buffer_path_);
 }
 
-GlbFile::~GlbFile() {
-    std::error_code failure;
-    std::filesystem::remove(buffer_path(), failure);
-}
-
-std::filesystem::path GlbFile::buffer_path() const { return path_.string() + ".buffer"; }
+GlbFile::~GlbFile() { unlink(buffer_path_.c_str()); }
 
 /// The whole file's. Throws Error where that is too much.
 uint64_t GlbFile::length_with(uint64_t json_bytes, uint64_t buffer_bytes) const {
@@ -86,15 +82,17 @@ void GlbFile::finish(tinygltf::Model& model) {
     if (bytes > 0) {
         write_word(file, aligned(bytes));
         write_word(file, kBufferChunk);
+        const uint64_t first = file.position();
         copy_buffer(file);
+        if (file.position() - first != bytes)
+            throw Error(buffer_path_, ": ", file.position() - first, " bytes can be read back, not ", bytes);
         file.write(std::string(aligned(bytes) - bytes, '\0'));
-        if (file.position() != length) throw Error(buffer_path(), " cannot be read back");
     }
     file.close();
 }
 
 void GlbFile::copy_buffer(sensor::NewFile& file) const {
-    std::ifstream buffer(buffer_path(), std::ios::binary);
+    std::ifstream buffer(buffer_path_, std::ios::binary);
     for (std::string some(kCopiedAtOnce, '\0'); buffer;) {
         buffer.read(some.data(), static_cast<std::streamsize>(some.size()));
         file.write({some.data(), static_cast<size_t>(buffer.gcount())});

@@ -13,7 +13,7 @@
 namespace patina {
 
 /// A GLB, whose JSON comes first, but is known last. The binary buffer goes to a file beside it meanwhile, so that
-/// memory holds none of it.
+/// memory holds none of it. While the one is copied to the other, the disk holds both.
 class GlbFile {
   public:
     static constexpr uint64_t kMostBytes = UINT32_MAX;  ///< lengths in a GLB have 32 bits
@@ -35,10 +35,9 @@ class GlbFile {
 
   private:
     uint64_t length_with(uint64_t json_bytes, uint64_t buffer_bytes) const;
-    std::filesystem::path buffer_path() const;
     void copy_buffer(sensor::NewFile& file) const;
 
-    std::filesystem::path path_;
+    std::filesystem::path path_, buffer_path_;
     uint64_t most_bytes_;
     std::optional<sensor::NewFile> buffer_;
 };

@@ -35,7 +35,7 @@ struct GlbScene {
 
 /// What became of a mesh on its way into the file.
 struct GlbSummary {
-    uint64_t vertices = 0;              ///< written; those between segments once for each
+    uint64_t vertices = 0;              ///< written; those between segments or pieces once for each
     uint64_t triangles = 0;             ///< written
     uint64_t degenerate_triangles = 0;  ///< left out: a repeated vertex, or no area
     uint64_t clamped_colors = 0;        ///< vertices with a channel of COLOR_0 outside 0..1
@@ -57,7 +57,7 @@ struct GlbSummary {
 /// of candela: the extras say that it is not calibrated, and the lamp's radius where that is known.
 ///
 /// Without a triangle left the node "surface" has no mesh. A normal without direction becomes that of the triangles
-/// around it. The same scene gives the same bytes.
+/// of its piece around it. The same scene gives the same bytes.
 ///
 /// The mesh may come in pieces, each with its own vertices. A segment has a primitive of each piece that it reaches
 /// into. Memory holds one piece, and what describes the others.

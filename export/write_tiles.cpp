@@ -40,6 +40,17 @@ nlohmann::ordered_json volume_of(const Box& box) {
     return {{"box", {center.x, center.y, center.z, half.x, 0, 0, 0, half.y, 0, 0, 0, half.z}}};
 }
 
+/// How bright vertices look under light of one brightness: by their albedo, where it is known.
+std::vector<float> shades_of(const Mesh& mesh, const MeshReflectance& reflectance) {
+    std::vector<float> shades;
+    for (size_t i = 0; i < mesh.colors.size(); ++i) {
+        const bool known = !reflectance.kd.empty() && reflectance.kd[i].a > 0;
+        const glm::vec3 color = known ? glm::vec3(reflectance.kd[i]) : mesh.colors[i];
+        shades.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+    }
+    return shades;
+}
+
 MeshReflectance of_vertices(const MeshReflectance& reflectance, const std::vector<uint32_t>& vertices) {
     MeshReflectance some;
     some.segments = reflectance.segments;
@@ -61,8 +72,9 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
     if (mesh.triangles.empty()) return;
     std::array<Level, kLevels> levels;
     CoarserMesh coarse;
+    const std::vector<float> shades = shades_of(mesh, reflectance);
     for (uint32_t level = 0; level < kLevels; ++level) {
-        if (level > 0) coarse = coarser(mesh, std::pow(kPartOfLevel, level));
+        if (level > 0) coarse = coarser(mesh, shades, std::pow(kPartOfLevel, level));
         levels[level] = {fmt::format("{}/{:06}.glb", level, cells_),
                          level > 0 ? std::max(coarse.error_m, levels[level - 1].error_m) : 0};
         write_(levels[level].name, [&](const std::filesystem::path& path) {
@@ -73,7 +85,8 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
                 const MeshReflectance some = of_vertices(reflectance, coarse.vertices);
                 writer.add(coarse.mesh, &some);
             }
-            writer.finish();
+            const GlbSummary written = writer.finish();
+            if (level == 0) add(written);
         });
     }
     add_tile(mesh, levels);
@@ -95,7 +108,15 @@ void TileWriter::add_tile(const Mesh& mesh, const std::array<Level, kLevels>& le
     tiles_.push_back(std::move(tile));
 }
 
-void TileWriter::finish() {
+void TileWriter::add(const GlbSummary& tile) {
+    summary_.vertices += tile.vertices;
+    summary_.triangles += tile.triangles;
+    summary_.degenerate_triangles += tile.degenerate_triangles;
+    summary_.clamped_colors += tile.clamped_colors;
+    summary_.unknown_albedo += tile.unknown_albedo;
+}
+
+GlbSummary TileWriter::finish() {
     const Box box = cells_ > 0 ? Box{low_, high_} : Box{glm::dvec3(0), glm::dvec3(0)};
     // Of a scene that is not drawn at all, all is missing.
     const double all_m = glm::distance(box.low, box.high);
@@ -105,6 +126,7 @@ void TileWriter::finish() {
                                      {"geometricError", all_m},
                                      {"root", std::move(root)}};
     write_("tileset.json", [&](const std::filesystem::path& path) { sensor::write_bytes(path, set.dump(2) + "\n"); });
+    return summary_;
 }
 
 }  // namespace patina

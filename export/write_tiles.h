@@ -29,18 +29,21 @@ class TileWriter {
     /// Adds a cell with what its vertices reflect; without triangles nothing. Throws Error as GlbWriter.
     void add(const Mesh& mesh, const MeshReflectance& reflectance);
 
-    /// Writes tileset.json; nothing may follow. Throws Error where the disk refuses.
-    void finish();
+    /// Writes tileset.json; nothing may follow. Returns what became of the finest level. Throws Error where the disk
+    /// refuses.
+    GlbSummary finish();
 
   private:
     struct Level {
         std::string name;
         double error_m = 0;
     };
+    void add(const GlbSummary& tile);
     void add_tile(const Mesh& mesh, const std::array<Level, kLevels>& levels);
 
     Write write_;
     GlbInfo info_;
+    GlbSummary summary_;
     uint32_t cells_ = 0;
     glm::dvec3 low_{1e9}, high_{-1e9};  ///< of all tiles, z up
     nlohmann::ordered_json tiles_ = nlohmann::ordered_json::array();

@@ -77,7 +77,8 @@ class Pipeline {
 
     /// The surface piece by piece, so that memory need not hold it at once: in cells of `cell_m`, with the vertices at
     /// their borders on both sides. A map that fits into one is one piece, the mesh of extract_surface(). `segments`:
-    /// of segments(); empty: without what pieces reflect. Waits.
+    /// of segments(); empty: without what pieces reflect. Waits. Throws Error as SurfaceCells does, and what `take`
+    /// throws.
     static constexpr double kSurfaceCell_m = 8;
     using TakeSurface = std::function<void(const Mesh&, const MeshReflectance&)>;
     void give_surface(const std::vector<SegmentReflectance>& segments, const TakeSurface& take,

@@ -165,8 +165,8 @@ constexpr std::array kRows = {
                                   "While more blocks are in use, those that are far away leave the device for the "
                                   "host's memory, and come back before they are seen; 0 keeps all."),
     number<&Rec::host_mib>("map.host_mib", "MiB", 0, kAnyCount,
-                           "Of the host's memory, for voxel blocks that left the device, compressed; beyond it they go "
-                           "to a temporary file. 0 sets no limit."),
+                           "Host memory for compressed voxel blocks that left the device; what exceeds it goes to a "
+                           "temporary file (TMPDIR, else /var/tmp). 0 sets no limit."),
     number<&Map::capacity_blocks>("map.initial_blocks", "blocks", 1, kAnyCount,
                                   "Blocks that the pool has room for at first; it grows when needed."),
     number<&Map::max_chunk_bytes>("map.max_chunk_bytes", "bytes", 2048, 4294967296.0,

@@ -274,7 +274,8 @@ std::optional<std::string> SessionCore::reach_warning() const {
 std::vector<std::string> SessionCore::warnings() const {
     std::vector<std::string> all;
     if (const auto reach = reach_warning()) all.push_back(*reach);
-    if (!stream_problem_.empty()) all.push_back(stream_problem_);
+    const std::string problem = pipeline_->stream_problem();
+    if (!problem.empty() || !stream_problem_.empty()) all.push_back(problem.empty() ? stream_problem_ : problem);
     if (inspector_) {
         for (std::string& implausible : inspector_->report().warnings) all.push_back(std::move(implausible));
     }
@@ -313,18 +314,18 @@ Scene SessionCore::scene_without_surface() const {
 
 void SessionCore::add_segments(Scene& scene) {
     scene.reflectance.segments = pipeline_->segments();
-    if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
+    scene.segment_names = segment_names();
 }
 
-void SessionCore::give_surface(const Scene& scene, const Pipeline::TakeSurface& take) {
-    pipeline_->give_surface(scene.reflectance.segments, take);
+std::vector<std::string> SessionCore::segment_names() const {
+    return options_.labels == Labels::kTruth ? truth_->names() : std::vector<std::string>();
 }
 
 Scene SessionCore::scene() {
     Scene scene = scene_without_surface();
     scene.mesh = pipeline_->extract_surface();
     scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
-    if (options_.labels == Labels::kTruth) scene.segment_names = truth_->names();
+    scene.segment_names = segment_names();
     return scene;
 }
 

@@ -105,10 +105,9 @@ class SessionCore {
     /// Surface, materials, lights and trajectory of what was fused so far; waits.
     Scene scene();
     /// The same in steps, so that a failure of one costs no other, and memory need not hold the surface: what does not
-    /// depend on it; the segments; and the surface piece by piece (Pipeline::give_surface).
+    /// depend on it, and the segments. Pipeline::give_surface has the surface.
     Scene scene_without_surface() const;
     void add_segments(Scene& scene);
-    void give_surface(const Scene& scene, const Pipeline::TakeSurface& take);
 
   private:
     bool tracks() const { return settings().tracking.has_value(); }
@@ -126,6 +125,7 @@ class SessionCore {
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);
     void report_progress();
+    std::vector<std::string> segment_names() const;
 
     vulkan::Device& device_;  // outlives the source, which may compute on it
     SessionOptions options_;

@@ -14,23 +14,28 @@ namespace patina {
 
 namespace {
 
-std::filesystem::path new_file() {
+/// A database in a file that has no name any more.
+Database open_unnamed() {
     const char* folder = std::getenv("TMPDIR");
     std::string path = std::filesystem::path(folder && *folder ? folder : "/var/tmp") / "patina-blocks-XXXXXX";
     const int file = mkstemp(path.data());
     if (file < 0) throw Error("'", path, "' cannot be created: ", std::generic_category().message(errno));
     close(file);
-    return path;
+    struct Remove {
+        ~Remove() { unlink(path.c_str()); }
+        const std::string& path;
+    };
+    const Remove after{path};
+    return Database(path);
 }
 
 }  // namespace
 
-SpillFile::SpillFile() : database_(new_file()) {
+SpillFile::SpillFile() : database_(open_unnamed()) {
     // Only this process ever reads it, so nothing has to survive it.
     database_.run(
         "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
         "CREATE TABLE blocks (key INTEGER PRIMARY KEY, bytes BLOB NOT NULL)");
-    std::filesystem::remove(database_.file());
 }
 
 void SpillFile::put(std::span<const std::pair<uint32_t, std::span<const std::byte>>> entries) {

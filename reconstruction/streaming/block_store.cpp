@@ -90,21 +90,21 @@ void BlockStore::put(const gpu::StreamedBlock& block, const BlockWords& words) {
 }
 
 void BlockStore::put_back(uint32_t key, Kept&& kept) {
-    std::vector<uint32_t>& cell = cells_[cell_of(key)];
+    Cell& cell = cells_[cell_of(key)];
     // Once there is room for the key and an entry, nothing fails any more.
-    if (cell.size() == cell.capacity()) cell.reserve(2 * cell.size() + 1);
+    if (cell.keys.size() == cell.keys.capacity()) cell.keys.reserve(2 * cell.keys.size() + 1);
     const auto [entry, is_new] = part_of(key).try_emplace(key);
     if (is_new) {
-        cell.push_back(key);
+        cell.keys.push_back(key);
     } else {
-        count(entry->second, false);
+        count(cell, entry->second, false);
     }
     entry->second = std::move(kept);
-    count(entry->second, true);
+    count(cell, entry->second, true);
 }
 
-void BlockStore::count(const Kept& kept, bool comes) {
-    bytes_ += comes ? kept.packed.size() : -kept.packed.size();
+void BlockStore::count(Cell& cell, const Kept& kept, bool comes) {
+    for (uint64_t* bytes : {&bytes_, &cell.bytes}) *bytes += comes ? kept.packed.size() : -kept.packed.size();
     blocks_in_file_ += comes ? uint32_t{kept.in_file} : -uint32_t{kept.in_file};
 }
 
@@ -113,15 +113,21 @@ std::vector<std::byte> BlockStore::packed_of(uint32_t key, const Kept& kept) con
 }
 
 void BlockStore::make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m) {
-    if (most_bytes_ == 0 || bytes_ <= std::max(most_bytes_, try_at_)) return;
-    const double block_m = double{grid.voxel_m} * gpu::kBlockEdge;
-    std::vector<std::pair<double, uint32_t>> farthest;  // distance, cell
-    for (const auto& [cell, held] : cells_) {
-        const glm::dvec3 center = glm::dvec3(block_of_key(grid, cell)) + kCellEdge / 2.0;
-        farthest.emplace_back(glm::distance(center * block_m, from_m), cell);
+    if (most_bytes_ == 0 || bytes_ <= most_bytes_) {
+        try_at_ = 0;
+        problem_.clear();
+        return;
     }
-    std::sort(farthest.rbegin(), farthest.rend());
+    if (bytes_ <= try_at_) return;
     try {
+        const double block_m = double{grid.voxel_m} * gpu::kBlockEdge;
+        std::vector<std::pair<double, uint32_t>> farthest;  // distance, cell
+        for (const auto& [key, cell] : cells_) {
+            if (cell.bytes == 0) continue;
+            const glm::dvec3 center = glm::dvec3(block_of_key(grid, key)) + kCellEdge / 2.0;
+            farthest.emplace_back(glm::distance(center * block_m, from_m), key);
+        }
+        std::sort(farthest.rbegin(), farthest.rend());
         if (!file_) file_ = std::make_unique<SpillFile>();
         for (auto at = farthest.begin(); at != farthest.end() && bytes_ > most_bytes_ / 4 * 3; ++at)
             move_to_file(cells_.at(at->second));
@@ -133,19 +139,20 @@ void BlockStore::make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m) {
     }
 }
 
-void BlockStore::move_to_file(const std::vector<uint32_t>& keys) {
+void BlockStore::move_to_file(Cell& cell) {
     std::vector<std::pair<uint32_t, std::span<const std::byte>>> entries;
-    for (const uint32_t key : keys) {
+    for (const uint32_t key : cell.keys) {
         const Kept& kept = part_of(key).at(key);
         if (!kept.in_file) entries.emplace_back(key, kept.packed);
     }
     file_->put(entries);
+    filed_ += entries.size();
     for (const auto& [key, bytes] : entries) {
         Kept& kept = part_of(key).at(key);
-        count(kept, false);
-        kept.packed = {};
+        count(cell, kept, false);
+        std::vector<std::byte>().swap(kept.packed);  // gives its memory back
         kept.in_file = true;
-        count(kept, true);
+        count(cell, kept, true);
     }
 }
 
@@ -158,7 +165,8 @@ gpu::StreamedBlock BlockStore::read(uint32_t key, std::span<uint32_t> tsdf, std:
     const size_t size =
         ZSTD_decompressDCtx(decompressor_.get(), bytes.data(), bytes.size(), packed.data(), packed.size());
     const size_t expected = labels.empty() ? kMostBytes / 3 * 2 : kMostBytes;
-    if (size != expected) throw Error("a voxel block that was away has ", size, " bytes, not ", expected);
+    if (ZSTD_isError(size)) throw Error("voxel block ", key, ", which was away, is damaged: ", ZSTD_getErrorName(size));
+    if (size != expected) throw Error("voxel block ", key, ", which was away, has ", size, " bytes, not ", expected);
     unshuffle(bytes.data(), tsdf);
     unshuffle(bytes.data() + kWords * 4, color);
     if (!labels.empty()) {
@@ -176,20 +184,20 @@ BlockStore::Kept BlockStore::take(uint32_t key) {
     Part& part = part_of(key);
     const auto at = part.find(key);
     PATINA_ASSERT(at != part.end(), "no block ", key, " is away");
-    count(at->second, false);
+    const auto cell = cells_.find(cell_of(key));
+    count(cell->second, at->second, false);
     Kept kept = std::move(at->second);
     part.erase(at);
-    const auto cell = cells_.find(cell_of(key));
-    std::erase(cell->second, key);
-    if (cell->second.empty()) cells_.erase(cell);
+    std::erase(cell->second.keys, key);
+    if (cell->second.keys.empty()) cells_.erase(cell);
     return kept;
 }
 
 std::vector<uint32_t> BlockStore::keys(const gpu::VoxelGrid& grid, const StreamRegion& region) const {
     std::vector<uint32_t> keys;
-    for (const auto& [cell, held] : cells_) {
-        if (held.empty() || !region.meets(grid, block_of_key(grid, cell), kCellEdge)) continue;
-        std::copy_if(held.begin(), held.end(), std::back_inserter(keys),
+    for (const auto& [lowest, cell] : cells_) {
+        if (cell.keys.empty() || !region.meets(grid, block_of_key(grid, lowest), kCellEdge)) continue;
+        std::copy_if(cell.keys.begin(), cell.keys.end(), std::back_inserter(keys),
                      [&](uint32_t key) { return region.holds(grid, block_of_key(grid, key)); });
     }
     std::sort(keys.begin(), keys.end());
@@ -232,7 +240,7 @@ void BlockStore::visit(graph::StateVisitor& visitor, const gpu::VoxelGrid& grid)
     if (visitor.brings_back()) clear();
     for (uint32_t i = 0; i < parts_.size(); ++i) {
         visit_part(visitor, i);
-        make_room(grid, glm::dvec3(0));
+        if (visitor.brings_back()) make_room(grid, glm::dvec3(0));
     }
 }
 

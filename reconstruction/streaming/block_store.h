@@ -65,13 +65,14 @@ class BlockStore {
     std::vector<uint32_t> count_labels(uint32_t part, uint32_t capacity) const;
     void relabel(uint32_t part, std::span<const uint32_t> parents);
 
-    /// Where more than the limit is in memory, the cells farthest from a point go to the file, until a quarter of the
-    /// limit is free. Where the file cannot be written, blocks stay in memory, and problem() says so; the next attempt
-    /// is made when they have become a quarter more.
+    /// Where more than the limit is in memory, the blocks farthest from a point go to the file, until three quarters of
+    /// the limit are left. Where the file cannot be written, blocks stay in memory, and problem() says so; the next
+    /// attempt is made when they have become a quarter of the limit more.
     void make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m);
 
     uint32_t blocks() const;
     uint32_t blocks_in_file() const { return blocks_in_file_; }
+    uint64_t filed() const { return filed_; }            ///< blocks that ever went to the file
     uint64_t bytes_in_memory() const { return bytes_; }  ///< of compressed blocks
     /// Why blocks are in memory that should not be; empty where none are.
     const std::string& problem() const { return problem_; }
@@ -81,18 +82,24 @@ class BlockStore {
 
   private:
     using Part = std::map<uint32_t, Kept>;
-    void count(const Kept& kept, bool comes);
-    void move_to_file(const std::vector<uint32_t>& keys);
+    /// Of 16^3 blocks.
+    struct Cell {
+        std::vector<uint32_t> keys;
+        uint64_t bytes = 0;  ///< of them in memory
+    };
+    void count(Cell& cell, const Kept& kept, bool comes);
+    void move_to_file(Cell& cell);
     std::vector<std::byte> packed_of(uint32_t key, const Kept& kept) const;
     void visit_part(graph::StateVisitor& visitor, uint32_t part);
     const Part& part_of(uint32_t key) const;
     Part& part_of(uint32_t key);
 
-    std::map<uint32_t, std::vector<uint32_t>> cells_;  ///< keys by the cell of 16^3 blocks that they lie in
+    std::map<uint32_t, Cell> cells_;  ///< by the key of their lowest block
     std::array<Part, gpu::kSweepParts> parts_;
     uint64_t most_bytes_;
     uint64_t bytes_ = 0, try_at_ = 0;  ///< in memory; and how many there are when it is tried again
     uint32_t blocks_in_file_ = 0;
+    uint64_t filed_ = 0;
     std::string problem_;
     std::unique_ptr<SpillFile> file_;  ///< null until something goes there
     struct Free {

@@ -51,6 +51,11 @@ bool StreamRegion::meets(const gpu::VoxelGrid& grid, glm::ivec3 low, uint32_t ed
     return glm::distance(nearest, center_m) <= std::max(radius_m, far_m);
 }
 
+glm::dvec3 StreamRegion::middle_m(const gpu::VoxelGrid& grid) const {
+    if (radius_m < kUnbounded_m) return center_m;
+    return (glm::dvec3(low_block) + glm::dvec3(high_block) + 1.0) / 2.0 * block_m(grid);
+}
+
 gpu::StreamRegion StreamRegion::gpu() const {
     const glm::vec4 cone(glm::vec3(axis * far_m), far_m > 0 ? static_cast<float>(std::cos(half_angle)) : 2.0f);
     return {glm::vec4(glm::vec3(center_m), static_cast<float>(radius_m)), cone, glm::ivec4(low_block, 0),

@@ -14,8 +14,9 @@ struct StreamRegion {
     /// How many edges of a block what passes look at lies beside what they are about: two diagonals.
     static constexpr double kBlocksBeside = 4;
 
+    static constexpr double kUnbounded_m = 1e9;
     glm::dvec3 center_m{0};
-    double radius_m = 1e9;
+    double radius_m = kUnbounded_m;
     glm::dvec3 axis{0, 0, 1};               ///< of the cone, unit length
     double far_m = 0;                       ///< how far it reaches from its tip; 0: there is none
     double half_angle = 0;                  ///< of the cone, at most kWidest
@@ -34,6 +35,8 @@ struct StreamRegion {
     bool holds(const gpu::VoxelGrid& grid, glm::ivec3 block) const;
     /// Whether it may hold a block of the cube of `edge` blocks that begins at `low`.
     bool meets(const gpu::VoxelGrid& grid, glm::ivec3 low, uint32_t edge) const;
+    /// The middle of the ball, or of the box where it is one; metres.
+    glm::dvec3 middle_m(const gpu::VoxelGrid& grid) const;
     gpu::StreamRegion gpu() const;
 };
 

@@ -254,6 +254,7 @@ void Streaming::note(const Swept& swept) { store_.relabel(swept.part, swept.pare
 void Streaming::require(const StreamRegion& wanted) {
     const StreamRegion region = wanted.grown(kNeeded_m);
     collect_all();
+    store_.make_room(map().grid(), region.middle_m(map().grid()));
     const std::vector<uint32_t> needed = store_.keys(map().grid(), region);
     if (needed.empty()) return;
     make_room(region, needed.size());
@@ -306,13 +307,13 @@ std::vector<glm::ivec3> Streaming::blocks() {
 
 StreamCounts Streaming::counts() {
     collect();
-    return {store_.blocks(), store_.blocks_in_file(), left_, returned_, awaited_};
+    return {store_.blocks(), left_, returned_, awaited_, store_.filed()};
 }
 
 std::string Streaming::problem() const {
     if (store_.problem().empty()) return "";
-    return text(store_.bytes_in_memory() >> 20, " MiB of voxel blocks that are away stay in memory, more than ",
-                stages_.settings.host_mib, " MiB, as their file cannot be written: ", store_.problem());
+    return text("voxel blocks that are away stay in memory, ", store_.bytes_in_memory() >> 20,
+                " MiB where map.host_mib is ", stages_.settings.host_mib, ": ", store_.problem());
 }
 
 bool Streaming::any_away() {

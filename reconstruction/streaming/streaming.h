@@ -18,10 +18,10 @@ namespace patina {
 /// How many voxel blocks are where.
 struct StreamCounts {
     uint32_t away = 0;      ///< blocks that the device does not have
-    uint32_t in_file = 0;   ///< of these, blocks in the temporary file
     uint64_t left = 0;      ///< over the whole run
     uint64_t returned = 0;  ///< over the whole run
     uint64_t awaited = 0;   ///< of these, blocks that a frame had to wait for, as they had not come back ahead of it
+    uint64_t filed = 0;     ///< blocks that went to the temporary file, since the run began or went on
 };
 
 /// Takes voxel blocks that are far from the camera off the device while many are in use, and brings them back before a

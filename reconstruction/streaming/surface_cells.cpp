@@ -29,7 +29,6 @@ struct Division {
     int cube_of(int block) const { return block / cell * per_cell() + block % cell / cube; }
     int low(int index) const { return index / per_cell() * cell + index % per_cell() * cube; }
     int high(int index) const { return std::min(low(index) + cube, (index / per_cell() + 1) * cell) - 1; }
-    bool ends_cell(int index) const { return index % per_cell() == per_cell() - 1; }
 };
 
 /// Ascending in z, y, x, as keys are.
@@ -140,7 +139,7 @@ SurfaceCells::SurfaceCells(graph::Runner& runner, const VoxelMap& map, Streaming
 void SurfaceCells::choose_cubes(const std::vector<glm::ivec3>& blocks, uint64_t most_blocks) {
     uint64_t fullest = fullest_cube(blocks, {cell_, cube_});
     while (fullest > most_blocks && cube_ > kSmallestCube) {
-        cube_ = (cube_ + 1) / 2;
+        cube_ = std::max((cube_ + 1) / 2, kSmallestCube);
         fullest = fullest_cube(blocks, {cell_, cube_});
     }
     if (fullest > most_blocks)

@@ -253,10 +253,13 @@ TEST(WriteGlb, RefusesMoreThanAGlbCanHold) {
     }
     EXPECT_EQ(bytes_of(folder / "a.glb").size() % 4, 0u);
     EXPECT_FALSE(std::filesystem::exists(folder / "a.glb.buffer"));
-    GlbFile file(folder / "b.glb", 1060);
-    file.append(bytes);
-    EXPECT_THAT([&] { file.finish(model); }, throws_error_with("a GLB file holds at most 1060 bytes"))
-        << "the JSON counts";
+    {
+        GlbFile file(folder / "b.glb", 1060);
+        file.append(bytes);
+        EXPECT_THAT([&] { file.finish(model); }, throws_error_with("a GLB file holds at most 1060 bytes"))
+            << "the JSON counts";
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "b.glb") || std::filesystem::exists(folder / "b.glb.buffer"));
 }
 
 TEST(WriteGlb, SaysThatTheDiskRefused) {

@@ -28,7 +28,7 @@ using Points = std::set<glm::vec3, Less>;
 
 TEST(CoarserMesh, HasFewerTrianglesAndTheBordersOfBefore) {
     const Mesh fine = wavy_sheet(60, 50);
-    const CoarserMesh coarse = coarser(fine, 0.125);
+    const CoarserMesh coarse = coarser(fine, std::vector<float>(fine.positions_m.size(), 0.3f), 0.125);
     const size_t borders = 2 * (59 + 49);
     EXPECT_LT(coarse.mesh.triangles.size(), fine.triangles.size() / 8 + borders);
     EXPECT_GT(coarse.mesh.triangles.size(), borders);
@@ -51,9 +51,58 @@ TEST(CoarserMesh, HasFewerTrianglesAndTheBordersOfBefore) {
 }
 
 TEST(CoarserMesh, OfNothingIsNothing) {
-    EXPECT_TRUE(coarser(Mesh{}, 0.5).mesh.positions_m.empty());
+    EXPECT_TRUE(coarser(Mesh{}, {}, 0.5).mesh.positions_m.empty());
     const Mesh one = wavy_sheet(2, 2);
-    EXPECT_EQ(coarser(one, 0.01).mesh.triangles.size(), 2u) << "all is border";
+    EXPECT_EQ(coarser(one, std::vector<float>(4), 0.01).mesh.triangles.size(), 2u) << "all is border";
+}
+
+/// A flat sheet with a pattern has no shape to keep but that of its shades.
+TEST(CoarserMesh, KeepsShadesAsShape) {
+    Mesh flat = wavy_sheet(60, 60);
+    std::vector<float> plain(flat.positions_m.size(), 0.5f), checked;
+    for (size_t i = 0; i < flat.positions_m.size(); ++i) {
+        flat.positions_m[i].z = 0;
+        flat.normals[i] = {0, 0, 1};
+        checked.push_back((i % 60 / 15 + i / 60 / 15) % 2 == 0 ? 0.1f : 0.9f);
+    }
+    EXPECT_LT(coarser(flat, plain, 1.0 / 64).error_m, 1e-6);
+    EXPECT_GT(coarser(flat, checked, 1.0 / 64).error_m, 0.001);
+    const CoarserMesh coarse = coarser(flat, checked, 1.0 / 8);
+    // Triangles that mix the shades are few: those along the edges of the pattern.
+    size_t mixed = 0;
+    float mixed_m2 = 0, all_m2 = 0;
+    for (const auto& [a, b, c] : coarse.mesh.triangles) {
+        const auto at = [&](uint32_t v) { return coarse.mesh.positions_m[v]; };
+        const float area = glm::length(glm::cross(at(b) - at(a), at(c) - at(a))) / 2;
+        const auto shade = [&](uint32_t v) { return checked[coarse.vertices[v]]; };
+        all_m2 += area;
+        if (shade(a) == shade(b) && shade(b) == shade(c)) continue;
+        ++mixed;
+        mixed_m2 += area;
+    }
+    EXPECT_GT(mixed, 0u);
+    EXPECT_LT(mixed_m2, 0.25f * all_m2);
+}
+
+/// Two halves of one sheet, each made coarser by itself.
+TEST(CoarserMesh, MeshesThatMeetStillDo) {
+    const Mesh whole = wavy_sheet(41, 40);
+    const auto border_of = [&](uint32_t first, uint32_t last) {
+        Mesh half = whole;
+        std::erase_if(half.triangles, [&](const auto& t) {
+            return std::ranges::any_of(t, [&](uint32_t v) { return v % 41 < first || v % 41 > last; });
+        });
+        std::vector<float> shades;
+        for (const glm::vec3& color : half.colors) shades.push_back(color.r);
+        Points border;
+        for (const glm::vec3& position : coarser(half, shades, 1.0 / 64).mesh.positions_m) {
+            if (position.x == whole.positions_m[20].x) border.insert(position);
+        }
+        return border;
+    };
+    const Points left = border_of(0, 20), right = border_of(20, 40);
+    EXPECT_EQ(left, right);
+    EXPECT_EQ(left.size(), 40u);
 }
 
 /// What was written, by name.
@@ -107,7 +156,8 @@ TEST(WriteTiles, EachCellHasLevelsOfDetail) {
     writer.add(first, halves(first));
     writer.add(Mesh{}, MeshReflectance{});  // has no tile
     writer.add(second, halves(second));
-    writer.finish();
+    const GlbSummary summary = writer.finish();
+    EXPECT_EQ(summary.triangles, first.triangles.size() + second.triangles.size());
     EXPECT_THAT(tiles.names, ElementsAre("0/000000.glb", "0/000001.glb", "1/000000.glb", "1/000001.glb", "2/000000.glb",
                                          "2/000001.glb", "tileset.json"));
 

@@ -145,7 +145,7 @@ class WorkingFolder {
 TEST(Resolved, APathThatNamesNothingIsAnError) {
     const TemporaryFolder folder;
     EXPECT_EQ(error_of([] { resolved(""); }), "a path is empty, but must name a file or a folder");
-    EXPECT_THAT(error_of([] { NewFolder(fs::path()); }), HasSubstr("a path is empty"));
+    EXPECT_THAT(error_of([] { NewFolder{fs::path()}; }), HasSubstr("a path is empty"));
     fs::create_directory(folder / "gone");
     const WorkingFolder working(folder / "gone");
     fs::remove(folder / "gone");

@@ -1,12 +1,15 @@
 #include "reconstruction/streaming/block_store.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <random>
 
 #include <gmock/gmock.h>
 
 #include "passes/state/block_keys.h"
+#include "tests/export/temporary_folder.h"
 #include "tests/support/file_size_limit.h"
 
 namespace patina {
@@ -186,6 +189,29 @@ TEST(BlockStore, ComesBackFromItsState) {
     EXPECT_THROW(other.visit(visitor, {}), Error);
 }
 
+/// Temporary files go to an empty folder, or to another.
+class TemporaryPlace {
+  public:
+    explicit TemporaryPlace(const std::string& folder = "") {
+        if (const char* earlier = std::getenv("TMPDIR")) earlier_ = earlier;
+        setenv("TMPDIR", folder.empty() ? folder_.path().c_str() : folder.c_str(), 1);
+    }
+    ~TemporaryPlace() {
+        if (earlier_) {
+            setenv("TMPDIR", earlier_->c_str(), 1);
+        } else {
+            unsetenv("TMPDIR");
+        }
+    }
+    TemporaryPlace(const TemporaryPlace&) = delete;
+    TemporaryPlace& operator=(const TemporaryPlace&) = delete;
+    bool holds_nothing() const { return std::filesystem::is_empty(folder_.path()); }
+
+  private:
+    const test::TemporaryFolder folder_;
+    std::optional<std::string> earlier_;
+};
+
 /// Blocks along x, one every 0.8 m, so that each cell of 16 blocks has two. Random words do not compress: 6 KiB each.
 class BlockFileTest : public testing::Test {
   protected:
@@ -223,14 +249,19 @@ class BlockFileTest : public testing::Test {
 };
 
 TEST_F(BlockFileTest, HoldsWhatMemoryIsNotToHold) {
+    const TemporaryPlace place;
     BlockStore store(kMostBytes);
     put_all(store);
+    EXPECT_TRUE(place.holds_nothing()) << "the file has no name";
     EXPECT_LE(store.bytes_in_memory(), kMostBytes);
     EXPECT_GT(store.blocks_in_file(), kBlocks / 2);
+    EXPECT_EQ(store.filed(), store.blocks_in_file());
     EXPECT_EQ(store.problem(), "");
     expect_all(store);
     // The farthest ones go first.
-    EXPECT_TRUE(store.take(key(0)).in_file);
+    const BlockStore::Kept kept = store.take(key(0));
+    EXPECT_TRUE(kept.in_file);
+    EXPECT_EQ(kept.packed.capacity(), 0u) << "its memory was given back";
     EXPECT_FALSE(store.take(key(kCameraAt)).in_file);
     words_.erase(0);
     words_.erase(kCameraAt);
@@ -288,35 +319,57 @@ TEST_F(BlockFileTest, IsPartOfTheState) {
 }
 
 TEST_F(BlockFileTest, AFullDiskLeavesAllInMemoryAndSaysSo) {
+    for (const rlim_t bytes : {0, 4096, 100 << 10}) {
+        const TemporaryPlace place;
+        BlockStore store(kMostBytes);
+        {
+            const test::FileSizeLimit limit(bytes);
+            put_all(store);
+            EXPECT_THAT(store.problem(), testing::HasSubstr("patina-blocks-"));
+            EXPECT_GT(store.bytes_in_memory(), 2 * kMostBytes);
+            expect_all(store);
+        }
+        EXPECT_TRUE(place.holds_nothing());
+        // Where there is room again, it goes on.
+        for (uint32_t i = kBlocks; i < kBlocks + 20; ++i) put(store, i);
+        store.make_room(grid_, camera_m());
+        EXPECT_EQ(store.problem(), "");
+        EXPECT_LE(store.bytes_in_memory(), kMostBytes);
+        expect_all(store);
+        words_.clear();
+    }
+}
+
+TEST_F(BlockFileTest, WhatWasWrittenStaysWhereTheDiskFillsUp) {
     BlockStore store(kMostBytes);
+    for (uint32_t i = 0; i < kBlocks / 2; ++i) put(store, i);
+    store.make_room(grid_, camera_m());
+    const uint32_t in_file = store.blocks_in_file();
+    EXPECT_GT(in_file, 0u);
     {
-        const test::FileSizeLimit limit(100 << 10);
-        put_all(store);
-        EXPECT_THAT(store.problem(), testing::HasSubstr("patina-blocks-"));
-        EXPECT_GT(store.bytes_in_memory(), 2 * kMostBytes);
+        const test::FileSizeLimit limit(in_file * 6400);
+        for (uint32_t i = kBlocks / 2; i < kBlocks; ++i) put(store, i);
+        store.make_room(grid_, camera_m());
+        EXPECT_NE(store.problem(), "");
         expect_all(store);
     }
-    // Where there is room again, it goes on.
-    for (uint32_t i = kBlocks; i < kBlocks + 20; ++i) put(store, i);
+    // What comes back to the device takes the problem along.
+    for (uint32_t i = 0; i < kBlocks; ++i) {
+        if (store.bytes_in_memory() <= kMostBytes) break;
+        store.take(key(i));
+        words_.erase(i);
+    }
     store.make_room(grid_, camera_m());
     EXPECT_EQ(store.problem(), "");
-    EXPECT_LE(store.bytes_in_memory(), kMostBytes);
     expect_all(store);
 }
 
 TEST_F(BlockFileTest, AFolderThatIsNotThereIsNamed) {
-    const char* earlier = std::getenv("TMPDIR");
-    const std::string kept = earlier ? earlier : "";
-    setenv("TMPDIR", "/nowhere", 1);
+    const TemporaryPlace place("/nowhere");
     BlockStore store(kMostBytes);
     put_all(store);
     EXPECT_THAT(store.problem(), testing::HasSubstr("'/nowhere/patina-blocks-"));
     expect_all(store);
-    if (earlier) {
-        setenv("TMPDIR", kept.c_str(), 1);
-    } else {
-        unsetenv("TMPDIR");
-    }
 }
 
 TEST(StreamRegion, IsABallAndAConeThatGrowByAsMuch) {
@@ -352,6 +405,14 @@ TEST(StreamRegion, IsABallAndAConeThatGrowByAsMuch) {
     EXPECT_FALSE(holds(more, 0, 3.7));
     EXPECT_FALSE(holds(more, 0, -1.6));
     EXPECT_FALSE(holds(more, 2.9, 0)) << "the cone does not open all round";
+}
+
+TEST(StreamRegion, HasItsMiddle) {
+    gpu::VoxelGrid grid{};
+    grid.voxel_m = 0.0125f;  // blocks of 10 cm
+    EXPECT_EQ(StreamRegion::ball({1, 2, 3}, 4).middle_m(grid), glm::dvec3(1, 2, 3));
+    EXPECT_LT(glm::distance(StreamRegion::box({0, 10, -20}, {9, 19, -1}).middle_m(grid), glm::dvec3(0.5, 1.5, -1)),
+              1e-6);
 }
 
 TEST(StreamRegion, ACubeMeetsItWhereOneOfItsBlocksMay) {

@@ -87,6 +87,14 @@ void OutputFolder::discard_staged() {
     staged_.clear();
 }
 
+void OutputFolder::withdraw(const std::string& beginning) {
+    for (auto at = digests_.lower_bound(beginning); at != digests_.end() && at->first.starts_with(beginning);) {
+        std::error_code ignored;
+        fs::remove(partial_->path() / at->first, ignored);
+        at = digests_.erase(at);
+    }
+}
+
 fs::path OutputFolder::published(const std::string& name) const {
     PATINA_ASSERT(digests_.contains(name), "not published: ", name);
     return partial_->path() / name;

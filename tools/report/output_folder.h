@@ -42,6 +42,9 @@ class OutputFolder {
     /// Removes what was staged and not published, where that failed and the results do without it.
     void discard_staged();
 
+    /// Removes published files whose names begin so, where the results do without them.
+    void withdraw(const std::string& beginning);
+
     /// Where a published file lies until commit().
     std::filesystem::path published(const std::string& name) const;
 

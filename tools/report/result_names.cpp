@@ -69,7 +69,10 @@ std::set<std::string> names_of_results(const fs::path& folder, ResultKind kind) 
     }
     add_fixed_names(folder, kRunFiles, names);
     for (const auto& [name, extension] : kFrameFolders) {
-        if (is_taken(folder / name) && !is_real_folder(folder / name)) names.emplace(name);
+        const fs::path first = folder / *fs::path(name).begin();
+        for (const fs::path& place : {first, folder / name}) {
+            if (is_taken(place) && !is_real_folder(place)) names.insert(place.lexically_relative(folder).string());
+        }
         for (const std::string& file : names_in(folder / name)) {
             if (is_frame_name(file, extension)) names.insert((fs::path(name) / file).string());
         }

@@ -198,6 +198,7 @@ class Run {
             Scene scene = session_.scene_without_surface();
             attempt("what the surface reflects", [&] { session_.add_segments(scene); });
             scene_.emplace(std::move(scene));
+            attempt("materials.json and lights.json", [&] { scene_->write_lists(folder_); });
             write_surface();
             times_s_.emplace_back("scene", seconds_since(start));
         } catch (const std::exception& error) {
@@ -208,28 +209,38 @@ class Run {
         }
     }
 
+    /// Throws what kept scene.glb from being written, where there are no tiles in its place.
     void write_surface() {
-        const auto pieces = [this](const TakePiece& take) { session_.give_surface(scene_->scene(), take); };
-        const auto write_glb = [&] {
-            with_reflectance_or_without([&] { glb_ = scene_->write(folder_, pieces, kVersion); });
-        };
-        if (!options_.tiles) return write_glb();
-        with_reflectance_or_without([&] { scene_->write_tiles(folder_, pieces, kVersion); });
-        // A scene may be too large for one file.
-        attempt("scene.glb", write_glb);
+        try {
+            write_glb();
+        } catch (const std::exception& error) {
+            folder_.discard_staged();
+            if (!options_.tiles) throw;
+            glb_ = scene_->write_tiles(folder_, surface(scene_->segments()), kVersion);
+            problems_.push_back(fmt::format("scene.glb could not be written: {}", reason_of(error)));
+            return;
+        }
+        if (!options_.tiles) return;
+        const size_t problems = problems_.size();
+        attempt("tiles/", [&] { scene_->write_tiles(folder_, surface(scene_->segments()), kVersion); });
+        if (problems_.size() > problems) folder_.withdraw("tiles/");
     }
 
-    /// Writes the surface, without what it reflects where that fails.
-    void with_reflectance_or_without(const std::function<void()>& write) {
+    /// Without what it reflects where that fails.
+    void write_glb() {
         try {
-            write();
+            glb_ = scene_->write_glb(folder_, surface(scene_->segments()), kVersion);
         } catch (const std::exception& error) {
-            if (scene_->scene().reflectance.segments.empty()) throw;
+            if (scene_->segments().empty()) throw;
             folder_.discard_staged();
-            scene_->forget_reflectance();
-            write();
+            glb_ = scene_->write_glb(folder_, surface({}), kVersion);
             problems_.push_back(fmt::format("what the surface reflects could not be written: {}", reason_of(error)));
         }
+    }
+
+    /// The surface in pieces, with what it reflects where there are segments.
+    GivePieces surface(const std::vector<SegmentReflectance>& segments) {
+        return [this, segments](const TakePiece& take) { pipeline_.give_surface(segments, take); };
     }
 
     void write_graph() const {

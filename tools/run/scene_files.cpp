@@ -5,26 +5,29 @@
 
 namespace patina::tools {
 
-GlbSummary SceneFiles::write(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
-    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, version);
-    folder.publish("scene.glb");
+void SceneFiles::write_lists(OutputFolder& folder) const {
     if (!scene_.reflectance.segments.empty())
         folder.write("materials.json", materials_json(scene_.reflectance.segments, scene_.segment_names));
     if (const Lighting lighting = in_recorded_world(scene_); !lighting.empty()) {
         write_lighting(folder.stage("lights.json"), lighting);
         folder.publish("lights.json");
     }
+}
+
+GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
+    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, version);
+    folder.publish("scene.glb");
     return summary;
 }
 
-void SceneFiles::write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
+GlbSummary SceneFiles::write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
     const auto write = [&](const std::string& name, const auto& write_to) {
         write_to(folder.stage("tiles/" + name));
         folder.publish("tiles/" + name);
     };
     TileWriter writer(write, glb_info(scene_, version));
     pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, reflectance); });
-    writer.finish();
+    return writer.finish();
 }
 
 void SceneFiles::add_to(RunSummary& summary) const {

@@ -16,15 +16,14 @@ class SceneFiles {
     /// The scene has no surface: it comes in pieces.
     explicit SceneFiles(Scene scene) : scene_(std::move(scene)) {}
 
-    const Scene& scene() const { return scene_; }
-    /// What the surface reflects could not be had.
-    void forget_reflectance() { scene_.reflectance = {}; }
+    const std::vector<SegmentReflectance>& segments() const { return scene_.reflectance.segments; }
 
-    /// Writes the files; `version`: of Patina. Throws Error as write_scene_glb() does.
-    GlbSummary write(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
-
+    /// Writes materials.json and lights.json, where there are any. Throws Error where the disk refuses.
+    void write_lists(OutputFolder& folder) const;
+    /// Writes scene.glb; `version`: of Patina. Throws Error as write_scene_glb() does.
+    GlbSummary write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
     /// Writes tiles/ (TileWriter).
-    void write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
+    GlbSummary write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
 
     /// Adds lights and segments to the run's summary.
     void add_to(RunSummary& summary) const;

@@ -77,7 +77,7 @@ void add_stream_totals(RunSummary& summary, const StreamCounts& streamed) {
     summary.totals.emplace_back("blocks that left the device", streamed.left);
     summary.totals.emplace_back("blocks that came back", streamed.returned);
     summary.totals.emplace_back("blocks that a frame waited for", streamed.awaited);
-    summary.totals.emplace_back("blocks in the temporary file", streamed.in_file);
+    if (streamed.filed > 0) summary.totals.emplace_back("blocks that went to the temporary file", streamed.filed);
 }
 
 void add_segment_totals(RunSummary& summary, const PipelineCounters& counters) {

@@ -121,7 +121,12 @@ class StreamingTest : public GpuTest {
 
 TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
     const Result all = reconstruct(settings(0)), few = reconstruct(settings(1));
-    EXPECT_EQ(all.streamed.left, 0u);
+    ReconstructionSettings with_file = settings(1);
+    with_file.host_mib = 1;
+    const Result fewer = reconstruct(with_file);
+    EXPECT_GT(fewer.streamed.filed, 100u);
+    expect_same_scene(fewer, all);
+    EXPECT_EQ(all.streamed.left + all.streamed.filed + few.streamed.filed, 0u);
     EXPECT_GT(few.streamed.left, 1000u);
     EXPECT_GT(few.streamed.returned, 200u);
     EXPECT_GT(few.streamed.away, 500u);
@@ -162,6 +167,11 @@ TEST_F(StreamingTest, CellsAreTogetherTheWholeSurface) {
         pipeline.set_lights(tour_.lights);
         add(pipeline, 0, tour_.frames.size());
         const std::vector<SegmentReflectance> segments = pipeline.segments();
+        if (resident_blocks > 0) {
+            const gpu::MapCounters map = pipeline.counters().map;
+            EXPECT_GT(pipeline.stream_counts().away + map.capacity - map.free_blocks, map.capacity)
+                << "the pool cannot hold the whole at once";
+        }
         std::vector<Mesh> cells;
         std::vector<std::array<Corner, 3>> together;
         const auto take = [&](const Mesh& cell, const MeshReflectance& reflectance) {
@@ -198,6 +208,8 @@ TEST_F(StreamingTest, CellsAreTogetherTheWholeSurface) {
         ASSERT_EQ(cells.size(), kept.size());
         for (size_t i = 0; i < cells.size(); ++i) {
             EXPECT_TRUE(same_bytes(cells[i].positions_m, kept[i].positions_m));
+            EXPECT_TRUE(same_bytes(cells[i].normals, kept[i].normals));
+            EXPECT_TRUE(same_bytes(cells[i].colors, kept[i].colors));
             EXPECT_TRUE(same_bytes(cells[i].triangles, kept[i].triangles));
         }
     }
