@@ -216,14 +216,22 @@ class Run {
         } catch (const std::exception& error) {
             folder_.discard_staged();
             if (!options_.tiles) throw;
-            glb_ = scene_->write_tiles(folder_, surface(scene_->segments()), kVersion);
+            glb_ = write_tiles();
             problems_.push_back(fmt::format("scene.glb could not be written: {}", reason_of(error)));
             return;
         }
-        if (!options_.tiles) return;
-        const size_t problems = problems_.size();
-        attempt("tiles/", [&] { scene_->write_tiles(folder_, surface(scene_->segments()), kVersion); });
-        if (problems_.size() > problems) folder_.withdraw("tiles/");
+        if (options_.tiles) attempt("tiles/", [&] { write_tiles(); });
+    }
+
+    /// All of them, or none.
+    GlbSummary write_tiles() {
+        try {
+            return scene_->write_tiles(folder_, surface(scene_->segments()), kVersion);
+        } catch (...) {
+            folder_.discard_staged();
+            folder_.withdraw("tiles/");
+            throw;
+        }
     }
 
     /// Without what it reflects where that fails.
@@ -323,7 +331,7 @@ class Run {
     Pipeline& pipeline_;
     FrameDumps dumps_;
     std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
-    std::optional<GlbSummary> glb_;    ///< of scene.glb; empty where there is none
+    std::optional<GlbSummary> glb_;    ///< of scene.glb, or of tiles/ in its place; empty where there is neither
     HeldOut held_out_;
     std::optional<HeldOutSummary> held_out_summary_;
     std::vector<std::pair<std::string, double>> times_s_;
