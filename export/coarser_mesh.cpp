@@ -5,6 +5,8 @@
 
 #include <meshoptimizer.h>
 
+#include "engine/core/used_vertices.h"
+
 namespace patina {
 
 CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, double part) {
@@ -25,21 +27,11 @@ CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, double part
     triangles.resize(kept / 3);
     result.error_m = double{error} * double{meshopt_simplifyScale(positions, vertices, sizeof(glm::vec3))};
 
-    constexpr uint32_t kUnused = UINT32_MAX;
-    std::vector<uint32_t> number(vertices, kUnused);
-    for (const auto& triangle : triangles) {
-        for (const uint32_t vertex : triangle) number[vertex] = 0;
-    }
-    for (uint32_t vertex = 0; vertex < vertices; ++vertex) {
-        if (number[vertex] == kUnused) continue;
-        number[vertex] = static_cast<uint32_t>(result.vertices.size());
-        result.vertices.push_back(vertex);
+    result.vertices = number_used(triangles, vertices);
+    for (const uint32_t vertex : result.vertices) {
         result.mesh.positions_m.push_back(mesh.positions_m[vertex]);
         result.mesh.normals.push_back(mesh.normals[vertex]);
         result.mesh.colors.push_back(mesh.colors[vertex]);
-    }
-    for (auto& triangle : triangles) {
-        for (uint32_t& vertex : triangle) vertex = number[vertex];
     }
     result.mesh.triangles = std::move(triangles);
     return result;

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "engine/core/error.h"
+#include "engine/core/used_vertices.h"
 #include "passes/state/block_keys.h"
 
 namespace patina {
@@ -91,19 +92,10 @@ void keep_triangles(Mesh& mesh, std::span<const SurfaceElements> blocks) {
     }
     mesh.triangles.erase(end, mesh.triangles.end());
 
-    std::vector<uint32_t> number(mesh.positions_m.size(), 0);
-    for (const auto& triangle : mesh.triangles) {
-        for (const uint32_t vertex : triangle) number[vertex] = 1;
-    }
-    uint32_t used = 0;
-    for (uint32_t vertex = 0; vertex < number.size(); ++vertex) {
-        if (number[vertex] == 0) continue;
-        for (auto* vectors : {&mesh.positions_m, &mesh.normals, &mesh.colors}) (*vectors)[used] = (*vectors)[vertex];
-        number[vertex] = used++;
-    }
-    for (auto* vectors : {&mesh.positions_m, &mesh.normals, &mesh.colors}) vectors->resize(used);
-    for (auto& triangle : mesh.triangles) {
-        for (uint32_t& vertex : triangle) vertex = number[vertex];
+    const std::vector<uint32_t> used = number_used(mesh.triangles, mesh.positions_m.size());
+    for (auto* vectors : {&mesh.positions_m, &mesh.normals, &mesh.colors}) {
+        for (size_t i = 0; i < used.size(); ++i) (*vectors)[i] = (*vectors)[used[i]];
+        vectors->resize(used.size());
     }
 }
 
