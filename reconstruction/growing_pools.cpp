@@ -18,8 +18,14 @@ namespace {
 constexpr uint32_t kSmallestShare = 16;
 /// And where that is in vain, this many frames go by until the next attempt.
 constexpr uint32_t kFramesBetweenAttempts = 8;
-/// Where blocks leave the device, the pool grows by this part of what should be there.
+/// Where things leave the device, their pool grows by this part of what should be there.
 constexpr uint32_t kStepsOfResident = 8;
+
+/// By how much a pool grows at most, unless more is asked for; without any that leave, `most`.
+uint32_t step_of(uint32_t capacity, uint32_t resident, uint32_t most) {
+    const bool many = resident > 0 && capacity >= resident;
+    return many ? std::max(resident / kStepsOfResident, 1u) : most;
+}
 
 uint32_t sum_of(std::span<const uint32_t> counts) { return std::accumulate(counts.begin(), counts.end(), 0u); }
 
@@ -31,21 +37,18 @@ auto counter_of(graph::Readback PoolReadbacks::*read) {
 }  // namespace
 
 GrowingPools::GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation,
-                           ReflectanceStage* reflectance, SpecularStage* specular, uint32_t resident_blocks)
-    : device_(device) {
-    add_voxel_pool(map, segmentation, resident_blocks);
+                           ReflectanceStage* reflectance, SpecularStage* specular, ResidentPlaces resident)
+    : device_(device), resident_(resident) {
+    add_voxel_pool(map, segmentation);
     if (reflectance) add_observation_pools(*reflectance);
     if (segmentation) add_label_pool(*segmentation, reflectance, specular);
 }
 
-void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation, uint32_t resident_blocks) {
+void GrowingPools::add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation) {
     Pool pool{{"voxel blocks", "map.capacity_blocks"}, map.settings().limit_blocks};
     pool.capacity = [&map] { return map.capacity(); };
     pool.most = [&map] { return map.most_blocks(); };
-    pool.step = [&map, resident_blocks] {
-        const bool many = resident_blocks > 0 && map.capacity() >= resident_blocks;
-        return many ? std::max(resident_blocks / kStepsOfResident, 1u) : map.chunk_blocks();
-    };
+    pool.step = [this, &map] { return step_of(map.capacity(), resident_.voxel_blocks, map.chunk_blocks()); };
     pool.enlarge = [&map, segmentation](graph::Enlargement& enlargement, uint32_t blocks) {
         map.enlarge(enlargement, blocks);
         if (segmentation) segmentation->enlarge_blocks(enlargement, blocks);
@@ -83,7 +86,9 @@ void GrowingPools::add_observation_pools(ReflectanceStage& reflectance) {
                &PoolReadbacks::observed_records, add_grow_records);
     pool->capacity = [&map] { return map.capacity_records(); };
     pool->most = [&map] { return map.most_records(); };
-    pool->step = [&map] { return map.chunk_records(); };
+    pool->step = [this, &map] {
+        return step_of(map.capacity_records(), resident_.observed_records, map.chunk_records());
+    };
     pool->enlarge = [&reflectance](graph::Enlargement& enlargement, uint32_t count) {
         reflectance.enlarge_records(enlargement, count);
     };
@@ -151,18 +156,31 @@ void GrowingPools::note_before(uint32_t index) {
     note_until(std::max(index, PoolDemand::kFramesAhead) - PoolDemand::kFramesAhead);
 }
 
-bool GrowingPools::has_many_blocks(uint32_t index, uint32_t most) {
-    note_before(index);
-    const Pool& voxels = pools_.front();
-    return voxels.demand.used() > most || voxels.state.limit != PoolLimit::kNone;
+bool GrowingPools::has_many(const Pool& pool, uint32_t resident) {
+    return resident > 0 && (pool.demand.used() > resident || pool.state.limit != PoolLimit::kNone);
 }
 
-bool GrowingPools::grow(graph::Runner& runner, uint32_t index, uint32_t coming_blocks) {
+bool GrowingPools::has_many_blocks(uint32_t index) {
+    note_before(index);
+    return has_many(pools_.front(), resident_.voxel_blocks);
+}
+
+bool GrowingPools::has_many_records(uint32_t index) {
+    note_before(index);
+    const Pool &blocks = pools_.at(1), &records = pools_.at(2);
+    // A record takes a block at most.
+    return has_many(records, resident_.observed_records) || has_many(blocks, resident_.observed_records);
+}
+
+bool GrowingPools::grow(graph::Runner& runner, uint32_t index, ComingPlaces coming) {
     graph::FrameGraph frame = runner.begin();  // waits for frame `index` - 2
     note_before(index);
-    auto& coming = pools_.front().coming;
-    std::rotate(coming.begin(), coming.end() - 1, coming.end());
-    coming.front() = coming_blocks;
+    const std::array places{coming.voxel_blocks, coming.observed_blocks, coming.observed_records};
+    for (size_t i = 0; i < std::min(places.size(), pools_.size()); ++i) {
+        std::rotate(pools_[i].coming.begin(), pools_[i].coming.end() - 1, pools_[i].coming.end());
+        // Without reflectance, the next pool is that of labels, and nothing of those comes back.
+        pools_[i].coming.front() = places[i];
+    }
     std::vector<graph::Enlargement> committed;
     std::vector<Pool*> grown;
     for (Pool& pool : pools_) {

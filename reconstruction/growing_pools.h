@@ -46,14 +46,24 @@ struct PoolReadbacks {
     graph::Readback labels{};                               ///< gpu::SegmentCounters, with segmentation
 };
 
+/// Places that are taken besides with a frame, by what comes back to the device.
+struct ComingPlaces {
+    uint32_t voxel_blocks = 0, observed_blocks = 0, observed_records = 0;
+};
+
+/// How much stays on the device while there is much; 0: all. Beyond it, pools grow by small steps, as what is far away
+/// leaves then.
+struct ResidentPlaces {
+    uint32_t voxel_blocks = 0, observed_records = 0;
+};
+
 /// Lets the pools of a reconstruction grow between frames. What is decided before frame n follows from the counters of
 /// frame n - 2 (before the first frames: of frame 0), so that every run decides alike, whenever the device answers.
 class GrowingPools {
   public:
-    /// All but the map may be null. All must outlive this. Beyond `resident_blocks`, above 0, the pool of voxel blocks
-    /// grows by small steps, as blocks leave then.
+    /// All but the map may be null. All must outlive this.
     GrowingPools(vulkan::Device& device, VoxelMap& map, SegmentationStage* segmentation, ReflectanceStage* reflectance,
-                 SpecularStage* specular, uint32_t resident_blocks);
+                 SpecularStage* specular, ResidentPlaces resident);
 
     /// Nothing was asked for yet; whenever the map is reset.
     void reset();
@@ -63,13 +73,13 @@ class GrowingPools {
 
     /// Enlarges what is short for frame `index`, in a frame of its own, and returns true; or returns false where
     /// nothing is short or nothing can be had. Waits for frame `index` - 2. Throws as Runner::submit() does; then the
-    /// pools are as before.
-    /// `coming_blocks`: voxel blocks that will come back to the device in that frame.
-    bool grow(graph::Runner& runner, uint32_t index, uint32_t coming_blocks = 0);
+    /// pools are as before. `coming`: with that frame.
+    bool grow(graph::Runner& runner, uint32_t index, ComingPlaces coming = {});
 
-    /// Before frame `index`: whether more than `most` voxel blocks are in use, or their pool cannot grow. Frame
-    /// `index` - 2 must have finished.
-    bool has_many_blocks(uint32_t index, uint32_t most);
+    /// Before frame `index`: whether more are in use than should stay, or their pools cannot grow. Frame `index` - 2
+    /// must have finished.
+    bool has_many_blocks(uint32_t index);
+    bool has_many_records(uint32_t index);
 
     /// Whether frame 0 found a pool full that can grow. It must have finished.
     bool first_was_refused();
@@ -109,7 +119,7 @@ class GrowingPools {
         bool ready() const { return !counts.empty() || counters.voxels.ready(); }
     };
 
-    void add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation, uint32_t resident_blocks);
+    void add_voxel_pool(VoxelMap& map, SegmentationStage* segmentation);
     void add_observation_pools(ReflectanceStage& reflectance);
     void add_label_pool(SegmentationStage& segmentation, ReflectanceStage* reflectance, SpecularStage* specular);
     /// The counts of a frame that is ready, by pool.
@@ -120,8 +130,12 @@ class GrowingPools {
     std::optional<graph::Enlargement> grow(graph::FrameGraph& frame, Pool& pool, uint32_t index);
     std::optional<graph::Enlargement> try_capacity(graph::FrameGraph& frame, const Pool& pool, uint32_t capacity);
 
+    /// Whether more are in use than should stay, or the pool cannot grow.
+    static bool has_many(const Pool& pool, uint32_t resident);
+
     vulkan::Device& device_;
-    std::vector<Pool> pools_;
+    ResidentPlaces resident_;
+    std::vector<Pool> pools_;  ///< voxel blocks first; then, with reflectance, observed blocks and observed voxels
     std::deque<Pending> pending_;
 };
 

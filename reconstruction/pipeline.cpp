@@ -85,7 +85,7 @@ void Pipeline::give_surface(const std::vector<SegmentReflectance>& segments, con
         const Mesh mesh = cells.extract(i);
         MeshReflectance sampled;
         if (!segments.empty()) {
-            sampled = sample_vertices(runner_, *stages_.reflectance, mesh);
+            sampled = sample_part_by_part(mesh);
             sampled.segments = segments;
         }
         take(mesh, sampled);
@@ -95,8 +95,10 @@ void Pipeline::give_surface(const std::vector<SegmentReflectance>& segments, con
 void Pipeline::refine_all() {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     fuse_waiting();
-    for (const MapTile& tile : tiles_of_records(runner_, stages_.reflectance->observations(), settings().around_m)) {
-        streaming_.require(tile.around);
+    const double block_m = double{stages_.reflectance->observations().settings().block_m};
+    for (const MapTile& tile : tiles_of_records(streaming_.observed_blocks(), block_m, settings().around_m)) {
+        streaming_.require_blocks(tile.around);
+        streaming_.require_records(tile.cube);
         graph::FrameGraph graph = runner_.begin();
         stages_.reflectance->refine_all(graph, map().import(graph), tile.part);
         runner_.submit(std::move(graph));
@@ -121,9 +123,17 @@ std::vector<SegmentReflectance> Pipeline::segments() {
 MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     std::vector<SegmentReflectance> known = segments();
-    MeshReflectance sampled = sample_vertices(runner_, *stages_.reflectance, mesh);
+    MeshReflectance sampled = sample_part_by_part(mesh);
     sampled.segments = std::move(known);
     return sampled;
+}
+
+/// So that the device need not hold the records of all vertices at once.
+MeshReflectance Pipeline::sample_part_by_part(const Mesh& mesh) {
+    if (!streaming_.any_records_away()) return sample_vertices(runner_, *stages_.reflectance, mesh);
+    const double block_m = double{stages_.reflectance->observations().settings().block_m};
+    return sample_cube_by_cube(runner_, *stages_.reflectance, mesh, block_m,
+                               [&](const StreamRegion& region) { return streaming_.require_records(region); });
 }
 
 /// How sure the fits of the segments' gloss are.

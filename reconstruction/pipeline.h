@@ -106,8 +106,9 @@ class Pipeline {
     /// settings estimate none.
     std::span<const gpu::ColorGains> gains();
 
-    /// How many voxel blocks are away from the device, as far as it has finished.
-    StreamCounts stream_counts() { return streaming_.counts(); }
+    /// How many voxel blocks, and how many observed voxels, are away from the device, as far as it has finished.
+    StreamCounts streamed_blocks() { return streaming_.block_counts(); }
+    StreamCounts streamed_records() { return streaming_.record_counts(); }
     /// A sentence where more of those stay in memory than should; else empty.
     std::string stream_problem() const { return streaming_.problem(); }
 
@@ -125,6 +126,7 @@ class Pipeline {
 
   private:
     void fuse_waiting();
+    MeshReflectance sample_part_by_part(const Mesh& mesh);
     void add_confidence(std::vector<SegmentReflectance>& segments);
 
     graph::Runner runner_;

@@ -5,12 +5,20 @@
 
 namespace patina {
 
+namespace {
+
+ResidentPlaces resident_of(const ReconstructionSettings& settings) {
+    return {settings.resident_blocks, settings.reflectance ? settings.reflectance->resident_records : 0};
+}
+
+}  // namespace
+
 PosedFusion::PosedFusion(graph::Runner& runner, Stages& stages, Streaming& streaming)
     : runner_(runner),
       stages_(stages),
       streaming_(streaming),
       pools_(runner.device(), stages.geometry.map(), pointer_to(stages.segmentation), pointer_to(stages.reflectance),
-             pointer_to(stages.specular), stages.settings.resident_blocks) {}
+             pointer_to(stages.specular), resident_of(stages.settings)) {}
 
 void PosedFusion::add(const RgbdFrame& frame) {
     if (history_.frames == 0) return add_first(frame);
@@ -47,17 +55,19 @@ PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFra
 
 graph::FrameGraph PosedFusion::begin(const RgbdFrame& frame) {
     runner_.begin();  // waits for the frame before the last
-    const uint32_t index = history_.frames, most = stages_.settings.resident_blocks;
+    const uint32_t index = history_.frames;
     const FrameCameras cameras = make_frame_cameras(frame);
     const StreamRegion around = stages_.geometry.around(cameras.depth, cameras.color);
-    const uint32_t coming = streaming_.plan(around, index, most > 0 && pools_.has_many_blocks(index, most));
-    pools_.grow(runner_, index, coming);
+    const Streaming::Many many{pools_.has_many_blocks(index), stages_.reflectance && pools_.has_many_records(index)};
+    pools_.grow(runner_, index, streaming_.plan(around, index, many));
     streaming_.move_surplus();
     return runner_.begin();
 }
 
 void PosedFusion::require(const Intrinsics& camera, const RigidTransform& world_from_camera) {
-    streaming_.require(stages_.geometry.around_view(make_posed_camera(camera, world_from_camera)));
+    const StreamRegion seen = stages_.geometry.around_view(make_posed_camera(camera, world_from_camera));
+    streaming_.require_blocks(seen);
+    streaming_.require_records(seen);
 }
 
 PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdFrame& frame,

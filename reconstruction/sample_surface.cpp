@@ -1,6 +1,9 @@
 #include "reconstruction/sample_surface.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
 #include <span>
 
 namespace patina {
@@ -22,6 +25,61 @@ SegmentReflectance to_segment(const gpu::SegmentAlbedo& sums, const gpu::Segment
         segment.confidence = static_cast<float>(least) / (gpu::kCertaintySteps * static_cast<float>(segment.voxels));
     return segment;
 }
+
+// Blocks along the edge of a cube whose vertices are sampled at once: at first, and at least.
+constexpr int kLargestCube = 64, kSmallestCube = 4;
+// What interpolation between records looks at lies within so many blocks of a vertex's own.
+constexpr int kBesideVertex = 1;
+
+/// Samples some vertices of a mesh, which may lie in one cube or in several.
+class CubeSampler {
+  public:
+    CubeSampler(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh, double block_m,
+                const BringRecords& bring)
+        : runner_(runner), model_(model), mesh_(mesh), block_m_(block_m), bring_(bring) {
+        sampled.kd.resize(mesh.positions_m.size());
+        sampled.labels.resize(mesh.positions_m.size());
+    }
+
+    void sample(const std::vector<uint32_t>& vertices, int edge) {
+        std::map<std::array<int, 3>, std::vector<uint32_t>> cubes;
+        for (const uint32_t vertex : vertices) {
+            const glm::ivec3 cube(glm::floor(glm::dvec3(mesh_.positions_m[vertex]) / (edge * block_m_)));
+            cubes[{cube.z, cube.y, cube.x}].push_back(vertex);
+        }
+        for (const auto& [at, own] : cubes) {
+            const glm::ivec3 low = glm::ivec3(at[2], at[1], at[0]) * edge;
+            if (!bring_(StreamRegion::box(low - kBesideVertex, low + edge - 1 + kBesideVertex)) &&
+                edge > kSmallestCube) {
+                sample(own, edge / 2);
+            } else {
+                take(own);
+            }
+        }
+    }
+
+    MeshReflectance sampled;
+
+  private:
+    void take(const std::vector<uint32_t>& vertices) {
+        Mesh part;
+        for (const uint32_t vertex : vertices) {
+            part.positions_m.push_back(mesh_.positions_m[vertex]);
+            part.normals.push_back(mesh_.normals[vertex]);
+        }
+        const MeshReflectance own = sample_vertices(runner_, model_, part);
+        for (size_t i = 0; i < vertices.size(); ++i) {
+            sampled.kd[vertices[i]] = own.kd[i];
+            sampled.labels[vertices[i]] = own.labels[i];
+        }
+    }
+
+    graph::Runner& runner_;
+    ReflectanceStage& model_;
+    const Mesh& mesh_;
+    double block_m_;
+    const BringRecords& bring_;
+};
 
 }  // namespace
 
@@ -56,6 +114,15 @@ MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, 
         }
     }
     return reflectance;
+}
+
+MeshReflectance sample_cube_by_cube(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh, double block_m,
+                                    const BringRecords& bring) {
+    CubeSampler sampler(runner, model, mesh, block_m, bring);
+    std::vector<uint32_t> all(mesh.positions_m.size());
+    std::iota(all.begin(), all.end(), 0u);
+    sampler.sample(all, kLargestCube);
+    return std::move(sampler.sampled);
 }
 
 }  // namespace patina

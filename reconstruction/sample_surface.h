@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/graph/runner.h"
 #include "patina/scene.h"
 #include "reconstruction/stages/reflectance_stage.h"
+#include "reconstruction/streaming/stream_region.h"
 
 namespace patina {
 
@@ -16,5 +18,12 @@ std::vector<SegmentReflectance> read_segments(graph::Runner& runner, Reflectance
 /// (above 0) are sampled at once, which changes nothing about the result. Throws Error when memory runs out.
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,
                                 uint32_t batch_points = 1u << 20);
+
+/// The same where records may be away: vertices are taken cube by cube, once `bring` has brought the records of the
+/// blocks of a region to the device. Where it returns false, as there are too many, smaller cubes are tried. `block_m`:
+/// edge of a block.
+using BringRecords = std::function<bool(const StreamRegion&)>;
+MeshReflectance sample_cube_by_cube(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh, double block_m,
+                                    const BringRecords& bring);
 
 }  // namespace patina

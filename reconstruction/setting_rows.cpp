@@ -164,9 +164,11 @@ constexpr std::array kRows = {
     number<&Rec::resident_blocks>("map.resident_blocks", "blocks", 0, kAnyCount,
                                   "While more blocks are in use, those that are far away leave the device for the "
                                   "host's memory, and come back before they are seen; 0 keeps all."),
-    number<&Rec::host_mib>("map.host_mib", "MiB", 0, kAnyCount,
-                           "Host memory for compressed voxel blocks that left the device; what exceeds it goes to a "
-                           "temporary file (TMPDIR, else /var/tmp). 0 sets no limit."),
+    number<&Rec::host_mib>(
+        "map.host_mib", "MiB", 0, kAnyCount,
+        "Host memory for what left the device, compressed: voxel blocks, and half of it for observed "
+        "voxels where there are any. What exceeds it goes to a temporary file (TMPDIR, else "
+        "/var/tmp). 0 sets no limit."),
     number<&Map::capacity_blocks>("map.initial_blocks", "blocks", 1, kAnyCount,
                                   "Blocks that the pool has room for at first; it grows when needed."),
     number<&Map::max_chunk_bytes>("map.max_chunk_bytes", "bytes", 2048, 4294967296.0,
@@ -285,6 +287,10 @@ constexpr std::array kRows = {
                                  "observed voxels is checked for surface that went; 0 keeps all."),
     number<&Refl::limit_records>("reflectance.capacity_records", "records", 0, kAnyCount,
                                  "The pool of observed voxels does not grow beyond this; 0 sets no limit."),
+    number<&Refl::resident_records>("reflectance.resident_records", "records", 0, kAnyCount,
+                                    "While more observed voxels are in use, those that are far away leave the device "
+                                    "for the host's memory (map.host_mib), and come back before they are seen; 0 keeps "
+                                    "all."),
     choice<&Refine::shadows>("reflectance.shadows",
                              "Finds which lights reach a surface; without it every light reaches every surface."),
     number<&Refine::first_marched_records>("reflectance.first_marched_records", "records", 1, kAnyCount,

@@ -25,11 +25,12 @@ void add_due_window(graph::FrameGraph& frame, ReflectanceFrame& reflectance, con
     bind(pass, reflectance, due.march, due.refine);
     const ObservationMapIds& ids = reflectance.records;
     pass.read("Keys", ids.keys).read("Blocks", ids.blocks).read("RecordTable", ids.record_table);
-    pass.read("RecordCounters", ids.record_counters).read("ChangedList", changed.list);
-    reflectance.state.cursors = pass.modify("Cursors", reflectance.state.cursors);
-    const uint32_t buckets =
-        std::min(reflectance.params.max_window + gpu::kMaxProbes, reflectance.map.table_slots() / gpu::kBucketSlots);
-    pass.dispatch_covering(buckets * gpu::kBucketSlots);
+    pass.read("ChangedList", changed.list);
+    reflectance.state.windows = pass.modify("Windows", reflectance.state.windows);
+    const uint32_t buckets = reflectance.map.table_slots() / gpu::kBucketSlots;
+    const uint32_t rows = std::min(buckets, gpu::kWindowSteps);
+    const uint32_t looked_at = std::min(reflectance.params.max_steps + gpu::kMaxProbes, rows) * (buckets / rows);
+    pass.dispatch_covering(looked_at * gpu::kBucketSlots);
 }
 
 /// Records that wait for marching.

@@ -10,7 +10,7 @@ namespace patina {
 
 namespace {
 
-constexpr uint32_t kLeastUpdates = 8;  // in which the window goes through the table, however few records there are
+constexpr uint32_t kLeastUpdates = 8;  // in which the window goes through all, however few records there are
 constexpr uint32_t kEverything = UINT32_MAX;
 
 void check_budget(const char* name, uint32_t records) {
@@ -18,14 +18,15 @@ void check_budget(const char* name, uint32_t records) {
 }
 
 gpu::ReflectanceParams make_params(const ReflectanceModels& models, const ReflectanceSettings& settings,
-                                   uint32_t max_window, float least_share) {
+                                   uint32_t max_steps, float least_share) {
     gpu::ReflectanceParams params{};
     params.records = models.observation_map.grid();
     params.voxels = models.voxel_map.grid();
     params.edge_shift = models.observation_map.edge_shift();
     params.stamp = models.state.next_stamp();
     params.refreshed = settings.refreshed_records;
-    params.max_window = max_window;
+    params.max_steps = max_steps;
+    params.all = max_steps == gpu::kWindowSteps ? 1 : 0;
     params.shadows = settings.shadows ? 1 : 0;
     params.materials = models.materials.capacity();
     params.least_share = least_share;
@@ -69,10 +70,8 @@ RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const Reflec
     check_budget("first_marched_records", settings.first_marched_records);
     check_budget("marched_records", settings.marched_records);
     check_budget("refreshed_records", settings.refreshed_records);
-    const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
     return add_update(frame, models, voxels, records, changed, access,
-                      make_params(models, settings, std::max(buckets / kLeastUpdates, 1u), gpu::kLeastRefreshed),
-                      settings);
+                      make_params(models, settings, gpu::kWindowSteps / kLeastUpdates, gpu::kLeastRefreshed), settings);
 }
 
 RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
@@ -81,8 +80,8 @@ RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const Re
     ReflectanceSettings all = settings;
     all.first_marched_records = all.marched_records = all.refreshed_records = kEverything;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
-    const uint32_t buckets = models.observation_map.table_slots() / gpu::kBucketSlots;
-    return add_update(frame, models, voxels, records, none, access, make_params(models, all, buckets, 1), all);
+    return add_update(frame, models, voxels, records, none, access, make_params(models, all, gpu::kWindowSteps, 1),
+                      all);
 }
 
 }  // namespace patina

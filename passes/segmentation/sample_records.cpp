@@ -6,15 +6,15 @@
 namespace patina {
 
 void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
-                        const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations,
-                        uint32_t seed) {
+                        const SegmentSamples& samples, SegmentSampleIds& ids, const SampleChoice& choice) {
     const uint32_t labels = samples.labels(), capacity = map.capacity_records();
-    const gpu::SegmentSampleParams params{seed, labels, min_observations, 0};
+    const gpu::SegmentSampleParams params{choice.seed, labels, choice.min_observations, 0};
+    const gpu::SampledPart part{choice.voxels, choice.region, params};
     const auto zeros = [&](const char* name, uint64_t words) {
         return frame.fill(frame.create_buffer(name, words * sizeof(uint32_t)), 0);
     };
     auto count = frame.compute("segmentation.count_samples", spirv::count_samples);
-    count.read("RecordCounters", records.record_counters).read("Records", records.records).push(params);
+    count.read("RecordCounters", records.record_counters).read("Records", records.records).push(part);
     const graph::BufferId levels =
         count.modify("Levels", zeros("segmentation.sample_levels", uint64_t{labels} * gpu::kSampleLevels));
     count.dispatch_covering(capacity);
@@ -26,7 +26,7 @@ void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, con
     choose.dispatch_covering(labels);
 
     auto collect = frame.compute("segmentation.collect_samples", spirv::collect_samples);
-    collect.read("RecordCounters", records.record_counters).read("Records", records.records).push(params);
+    collect.read("RecordCounters", records.record_counters).read("Records", records.records).push(part);
     collect.read("Counts", ids.counts).read("Albedo", records.albedo);
     ids.kd = collect.modify("SegmentKds", ids.kd);
     collect.modify("Filled", zeros("segmentation.samples_filled", labels));
@@ -49,6 +49,15 @@ graph::BufferId add_draw_records(graph::FrameGraph& frame, const ObservationMapI
     const graph::BufferId drawn = pass.modify("Drawn", none);
     pass.dispatch(gpu::kGroupsPerRow, (samples.labels() + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
     return drawn;
+}
+
+void add_drop_samples(graph::FrameGraph& frame, const ObservationMapIds& records, const SegmentSamples& samples,
+                      SegmentSampleIds& ids) {
+    auto drop = frame.compute("segmentation.drop_samples", spirv::drop_samples);
+    drop.read("Records", records.records).push(gpu::SegmentSampleParams{0, samples.labels(), 0, 0});
+    ids.counts = drop.modify("Counts", ids.counts);
+    ids.kept = drop.modify("Kept", ids.kept);
+    drop.dispatch_covering(samples.labels());
 }
 
 }  // namespace patina

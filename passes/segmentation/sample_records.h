@@ -6,10 +6,21 @@
 
 namespace patina {
 
-/// Chooses anew which records of each segment are kept, among those with at least `min_observations`, and
-/// sums up their albedo.
+/// Which records of segments may be kept.
+struct SampleChoice {
+    gpu::VoxelGrid voxels{};     ///< the voxel map's
+    gpu::StreamRegion region{};  ///< where their blocks lie
+    uint32_t min_observations = 4;
+    uint32_t seed = 1;
+};
+
+/// Chooses anew which records of each segment are kept, and sums up their albedo.
 void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
-                        const SegmentSamples& samples, SegmentSampleIds& ids, uint32_t min_observations, uint32_t seed);
+                        const SegmentSamples& samples, SegmentSampleIds& ids, const SampleChoice& choice);
+
+/// Between frames, when records have left the device: segments keep them no longer.
+void add_drop_samples(graph::FrameGraph& frame, const ObservationMapIds& records, const SegmentSamples& samples,
+                      SegmentSampleIds& ids);
 
 /// Draws `draws` different records of each segment at random, from those it keeps (paper, Section 3.6: 25). Returns u32
 /// record ids, `draws` per label; gpu::kNoRecord for segments that keep fewer. The same seed draws the same voxels.

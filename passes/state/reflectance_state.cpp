@@ -5,13 +5,14 @@ namespace patina {
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
     : status_(device.create_buffer(
           {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
-      cursors_(device.create_buffer({.name = "reflectance.cursors", .bytes = sizeof(gpu::RefreshCursors)})) {}
+      windows_(
+          device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})) {}
 
 void ReflectanceState::reset(graph::FrameGraph& frame) {
     stamp_ = 0;
     ReflectanceStateIds ids = import(frame);
     ids.status = frame.fill(ids.status, 0);
-    ids.cursors = frame.fill(ids.cursors, 0);
+    ids.windows = frame.fill(ids.windows, 0);
     keep(frame, ids);
 }
 
@@ -20,18 +21,18 @@ void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {
-    return {frame.import(status_), frame.import(cursors_)};
+    return {frame.import(status_), frame.import(windows_)};
 }
 
 void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids) {
     frame.keep(ids.status);
-    frame.keep(ids.cursors);
+    frame.keep(ids.windows);
 }
 
 void ReflectanceState::visit(graph::StateVisitor& visitor) {
     visitor.value("reflectance.stamp", stamp_);
     visitor.buffer(status_);
-    visitor.buffer(cursors_);
+    visitor.buffer(windows_);
 }
 
 }  // namespace patina

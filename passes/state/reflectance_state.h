@@ -13,7 +13,7 @@ namespace patina {
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
     graph::BufferId status;   ///< gpu::RecordStatus per record
-    graph::BufferId cursors;  ///< gpu::RefreshCursors
+    graph::BufferId windows;  ///< gpu::RefreshWindow[gpu::kWindows]
 };
 
 /// What the visibility and the albedo of an observation map's records were computed from, and which of them have their
@@ -38,7 +38,7 @@ class ReflectanceState {
     uint32_t next_stamp() { return ++stamp_; }
 
   private:
-    vulkan::BufferRef status_, cursors_;
+    vulkan::BufferRef status_, windows_;
     uint32_t stamp_ = 0;
 };
 

@@ -36,6 +36,7 @@ ReflectanceStage::ReflectanceStage(vulkan::Device& device, const VoxelMap& map,
       observations_(device, observations_of(map, settings)),
       materials_(device, settings.capacity_labels),
       state_(device, observations_),
+      away_(device, settings.capacity_labels),
       access_(preferred_reflectance_access(device.caps(), map, observations_)) {}
 
 void ReflectanceStage::set_lights(std::span<const Light> lights, glm::dvec3 ambient) { lights_.set(lights, ambient); }
@@ -45,6 +46,8 @@ void ReflectanceStage::set_material(uint32_t label, glm::vec3 ks, float alpha) {
 void ReflectanceStage::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
     observations_.reset(graph, center_m);
     state_.reset(graph);
+    away_.reset(graph);
+    any_left_ = false;
     reclaim_at_ = settings_.reclaim_every;
     reclaim_turn_ = 0;
     // Uploaded before a frame that replaces them.
@@ -60,6 +63,34 @@ void ReflectanceStage::enlarge_records(graph::Enlargement& enlargement, uint32_t
     state_.enlarge(enlargement, records);
 }
 
+void ReflectanceStage::enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) {
+    materials_.enlarge(enlargement, labels);
+    away_.enlarge(enlargement, labels);
+}
+
+LeavingRecords ReflectanceStage::add_leave(graph::FrameGraph& graph, const gpu::StreamRegion& region, uint32_t most) {
+    any_left_ = true;
+    ObservationMapIds records = observations_.import(graph);
+    ReflectanceStateIds state = state_.import(graph);
+    graph::BufferId away = away_.import(graph);
+    return add_leave_records(graph, {observations_, records, state, away}, map_.grid(), region, most);
+}
+
+graph::BufferId ReflectanceStage::add_return(graph::FrameGraph& graph, const ReturningRecords& returning) {
+    ObservationMapIds records = observations_.import(graph);
+    ReflectanceStateIds state = state_.import(graph);
+    graph::BufferId away = away_.import(graph);
+    return add_return_records(graph, {observations_, records, state, away}, returning);
+}
+
+std::optional<graph::BufferId> ReflectanceStage::away(graph::FrameGraph& graph) const {
+    return any_left_ ? std::optional(away_.import(graph)) : std::nullopt;
+}
+
+graph::BufferId ReflectanceStage::add_average(graph::FrameGraph& graph, const ObservationMapIds& records) const {
+    return add_average_segments(graph, observations_, records, materials_.capacity(), away(graph));
+}
+
 void ReflectanceStage::reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxels, float near_m,
                                const FrameContext& frame) {
     if (settings_.reclaim_every == 0 || uint64_t{frame.index} + 1 < reclaim_at_) return;
@@ -73,6 +104,7 @@ void ReflectanceStage::reclaim(graph::FrameGraph& graph, const VoxelMapIds& voxe
 void ReflectanceStage::keep(graph::FrameGraph& graph) const {
     ObservationMap::keep(graph, observations_.import(graph));
     ReflectanceState::keep(graph, state_.import(graph));
+    if (any_left_) graph.keep(away_.import(graph));
 }
 
 RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
@@ -83,6 +115,7 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
     add_refine_reflectance(graph, models(part_around(frame)), voxels, records, collected.changed, access_,
                            settings_.refine);
     ObservationMap::keep(graph, records);
+    if (any_left_) graph.keep(away_.import(graph));
     return collected.changed;
 }
 
@@ -115,7 +148,7 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     inputs.materials = materials_.import(graph);
     inputs.material_count = materials_.capacity();
     const ObservationMapIds records = observations_.import(graph);
-    inputs.segments = add_average_segments(graph, observations_, records, materials_.capacity());
+    inputs.segments = add_average(graph, records);
     inputs.shadows = settings_.refine.shadows;
     inputs.access = access_.voxels;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
@@ -123,8 +156,7 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
 }
 
 SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {
-    return {add_average_segments(graph, observations_, observations_.import(graph), materials_.capacity()),
-            materials_.import(graph)};
+    return {add_average(graph, observations_.import(graph)), materials_.import(graph)};
 }
 
 graph::BufferId ReflectanceStage::add_sample(graph::FrameGraph& graph, graph::BufferId positions_m,
@@ -133,10 +165,16 @@ graph::BufferId ReflectanceStage::add_sample(graph::FrameGraph& graph, graph::Bu
     const SampleReflectanceInputs inputs{positions_m,
                                          normals,
                                          add_pack_records(graph, observations_, records, state_.import(graph)),
-                                         add_average_segments(graph, observations_, records, materials_.capacity()),
+                                         add_average(graph, records),
                                          points,
                                          materials_.capacity()};
     return add_sample_reflectance(graph, observations_, records, inputs);
+}
+
+std::vector<VoxelMap::PoolBytes> ReflectanceStage::memory() const {
+    std::vector<VoxelMap::PoolBytes> memory = observations_.memory();
+    memory.push_back({"albedo of what is away", away_.bytes()});
+    return memory;
 }
 
 void ReflectanceStage::visit(graph::StateVisitor& visitor) {
@@ -144,6 +182,8 @@ void ReflectanceStage::visit(graph::StateVisitor& visitor) {
     lights_.visit(visitor);
     materials_.visit(visitor);
     state_.visit(visitor);
+    away_.visit(visitor);
+    visitor.value("reflectance.any_left", any_left_);
     visitor.value("reflectance.reclaim_at", reclaim_at_);
     visitor.value("reflectance.reclaim_turn", reclaim_turn_);
 }

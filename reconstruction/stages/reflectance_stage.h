@@ -6,10 +6,12 @@
 
 #include "passes/fusion/raycast.h"
 #include "passes/observation/observation.h"
+#include "passes/observation/stream_records.h"
 #include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "passes/shading/sample_reflectance.h"
+#include "passes/state/away_albedo.h"
 #include "reconstruction/frame_context.h"
 
 namespace patina {
@@ -21,6 +23,8 @@ struct ReflectanceStageSettings {
     uint32_t capacity_records = 262144;  ///< at first
     uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far as buffers and memory allow
     uint32_t limit_records = 0;          ///< likewise
+    /// While more are in use, observed voxels that are far away leave the device; 0: none do.
+    uint32_t resident_records = 524288;
     /// Frames after which a part of the observations gives back what holds no surface any more; 0: never
     uint32_t reclaim_every = 16;
     ObservationSettings observe;
@@ -82,7 +86,14 @@ class ReflectanceStage {
     void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks);
     void enlarge_records(graph::Enlargement& enlargement, uint32_t records);
     /// Announces that there will be `labels` materials.
-    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) { materials_.enlarge(enlargement, labels); }
+    void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
+
+    /// Records outside a region leave the device, and records come back to it (observation/stream_records.h). add() or
+    /// keep() comes after it.
+    LeavingRecords add_leave(graph::FrameGraph& graph, const gpu::StreamRegion& region, uint32_t most);
+    graph::BufferId add_return(graph::FrameGraph& graph, const ReturningRecords& returning);
+    /// What is away by label: AwayAlbedo; empty where nothing ever left. add() or keep() comes after it.
+    std::optional<graph::BufferId> away(graph::FrameGraph& graph) const;
 
     /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
     const ObservationMap& observations() const { return observations_; }
@@ -110,11 +121,12 @@ class ReflectanceStage {
 
     void visit(graph::StateVisitor& visitor);
 
-    std::vector<VoxelMap::PoolBytes> memory() const { return observations_.memory(); }
+    std::vector<VoxelMap::PoolBytes> memory() const;
     const ReflectanceStageSettings& settings() const { return settings_; }
     const Lights& lights() const { return lights_; }
 
   private:
+    graph::BufferId add_average(graph::FrameGraph& graph, const ObservationMapIds& records) const;
     ReflectanceModels models(const RefinedPart& part) {
         return {map_, observations_, lights_, materials_, state_, part};
     }
@@ -125,6 +137,8 @@ class ReflectanceStage {
     Lights lights_;
     SegmentMaterials materials_;
     ReflectanceState state_;
+    AwayAlbedo away_;
+    bool any_left_ = false;    ///< records, since the map was reset
     uint64_t reclaim_at_ = 0;  ///< the frame from which on that is due
     uint32_t reclaim_turn_ = 0;
     ReflectanceAccess access_;

@@ -8,6 +8,7 @@
 #include "passes/segmentation/count_overlaps.h"
 #include "passes/segmentation/label_pixels.h"
 #include "passes/segmentation/list_due_blocks.h"
+#include "passes/segmentation/relabel_away.h"
 #include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sample_records.h"
@@ -23,6 +24,9 @@ namespace {
 
 // Not in the frames in which samples are chosen, which add passes of their own.
 constexpr uint32_t kSweepTurn = 1, kRelabelTurn = 3;
+
+constexpr double kBlocksBesideSamples = 2;
+static_assert(kBlocksBesideSamples < StreamRegion::kBlocksBeside);
 
 /// In the beginning, when most records are new, more often: after 4, 8, ... frames.
 bool samples_are_due(uint32_t frame_index, uint32_t every) {
@@ -142,6 +146,8 @@ graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapId
 
 bool SegmentationStage::sweeps(uint32_t frame_index) { return (frame_index + 1) % gpu::kSweepEvery == kSweepTurn; }
 
+bool SegmentationStage::relabels(uint32_t frame_index) { return (frame_index + 1) % gpu::kSweepEvery == kRelabelTurn; }
+
 uint32_t SegmentationStage::swept_part(uint32_t frame_index) {
     return (frame_index + 1) / gpu::kSweepEvery % gpu::kSweepParts;
 }
@@ -150,17 +156,30 @@ bool SegmentationStage::may_lose_records(uint32_t frame_index) const {
     return settings_.sample_every == 0 || samples_are_due(frame_index, settings_.sample_every);
 }
 
-void SegmentationStage::add_records(graph::FrameGraph& graph, const ObservationMap& map, uint32_t frame_index) const {
+void SegmentationStage::drop_samples(graph::FrameGraph& graph, const ObservationMap& map) const {
+    SegmentSampleIds ids = samples_.import(graph);
+    add_drop_samples(graph, map.import(graph), samples_, ids);
+    SegmentSamples::keep(graph, ids);
+}
+
+void SegmentationStage::add_records(graph::FrameGraph& graph, const ObservationMap& map,
+                                    std::optional<graph::BufferId> away, const FrameContext& frame) const {
     ObservationMapIds records = map.import(graph);
     gpu::SegmentationParams values{};
-    values.stamp = frame_index + 1;
+    values.stamp = frame.index + 1;
     const auto uniforms = graph.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
-    if (values.stamp % gpu::kSweepEvery == kRelabelTurn)
-        add_relabel_records(graph, map, records, table_.import(graph), uniforms);
-    if (!samples_are_due(frame_index, settings_.sample_every)) return;
+    if (relabels(frame.index)) {
+        const SegmentTableIds table = table_.import(graph);
+        add_relabel_records(graph, map, records, table, uniforms);
+        if (away) add_relabel_away(graph, *away, table, uniforms);
+    }
+    if (!samples_are_due(frame.index, settings_.sample_every)) return;
     SegmentSampleIds ids = samples_.import(graph);
-    add_sample_records(graph, map, records, samples_, ids, settings_.sample_observations,
-                       settings_.sample_seed + frame_index);
+    // What estimates look at beside a record lies in the region, too.
+    const double beside_m = kBlocksBesideSamples * double{map_.settings().voxel_m} * gpu::kBlockEdge;
+    add_sample_records(graph, map, records, samples_, ids,
+                       {map_.grid(), frame.around.grown(-beside_m).gpu(), settings_.sample_observations,
+                        settings_.sample_seed + frame.index});
     SegmentSamples::keep(graph, ids);
 }
 

@@ -105,11 +105,19 @@ class SegmentationStage {
 
     /// Whether a frame's graph sweeps over a part of the map's labels, and which (segmentation/sweep_labels.h).
     static bool sweeps(uint32_t frame_index);
+    /// Whether it brings the labels of observations up to date, of the same part.
+    static bool relabels(uint32_t frame_index);
     static uint32_t swept_part(uint32_t frame_index);
 
     /// Brings one part of the observations' labels up to date with merged and pruned segments, another every few
-    /// frames, and chooses the segments' records when that is due. To be called in every frame in which add() was.
-    void add_records(graph::FrameGraph& graph, const ObservationMap& map, uint32_t frame_index) const;
+    /// frames, and chooses the segments' records when that is due, of those around the camera: the same ones wherever
+    /// others are. To be called in every frame in which add() was.
+    /// `away`: of the records that are not on the device (AwayAlbedo); it is replaced.
+    void add_records(graph::FrameGraph& graph, const ObservationMap& map, std::optional<graph::BufferId> away,
+                     const FrameContext& frame) const;
+
+    /// Between frames, when records have left the device: segments keep them no longer.
+    void drop_samples(graph::FrameGraph& graph, const ObservationMap& map) const;
 
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::FrameGraph& graph, const SurfaceView& surface) const;

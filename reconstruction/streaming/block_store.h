@@ -12,31 +12,18 @@
 #include "engine/graph/state_visitor.h"
 #include "reconstruction/store/spill_file.h"
 #include "reconstruction/streaming/stream_region.h"
-#include "shared/fusion/stream_blocks.h"
 #include "shared/segmentation/segments.h"
 
-struct ZSTD_CCtx_s;
-struct ZSTD_DCtx_s;
-
 namespace patina {
-
-/// The words of a block's voxels, as they are on the device. Without labels `labels` is empty.
-struct BlockWords {
-    std::span<const uint32_t> tsdf, color, labels;
-};
 
 /// Blocks that are away from the device, compressed in the host's memory, and beyond a limit in a temporary file. Their
 /// labels are kept apart, in memory, so that they can be counted and replaced where they are.
 class BlockStore {
   public:
-    /// `most_bytes`: of compressed blocks in memory (make_room()); 0: all.
-    explicit BlockStore(uint64_t most_bytes = 0);
-    ~BlockStore();
+    /// `most_bytes`: of compressed blocks in memory (make_room()); 0: all. `name`: of its state (visit()).
+    explicit BlockStore(uint64_t most_bytes = 0, std::string name = "away");
     BlockStore(const BlockStore&) = delete;
     BlockStore& operator=(const BlockStore&) = delete;
-
-    /// Keeps a block; one of the same key is replaced. Throws std::bad_alloc; then nothing has changed.
-    void put(const gpu::StreamedBlock& block, const BlockWords& words);
 
     /// What is kept of one block.
     struct Kept {
@@ -46,16 +33,27 @@ class BlockStore {
         };
         uint32_t label_stamp = 0;
         std::vector<Label> labels;      ///< that occur; in `packed` stand their places in this list
-        std::vector<std::byte> packed;  ///< distances, colours and labels, compressed; in the file: empty
+        std::vector<std::byte> packed;  ///< all words, compressed; in the file: empty
         bool in_file = false;
+
+        /// The label with which a word begins, in place of its place in the list. One that was given up takes what
+        /// else the word holds along, as sweep_labels.comp does.
+        uint32_t with_label(uint32_t word) const {
+            const uint32_t label = labels.at(word & 0xffff).label;
+            return label == 0 ? 0 : (word & 0xffff0000u) | label;
+        }
+        /// The other way; adds a label that is not in the list.
+        uint32_t with_place(uint32_t word);
     };
 
-    /// Writes the words of a block, gpu::kBlockVoxels to each span but an empty one for labels. It stays as it is.
-    gpu::StreamedBlock read(uint32_t key, std::span<uint32_t> tsdf, std::span<uint32_t> color,
-                            std::span<uint32_t> labels) const;
+    /// Keeps a block; one of the same key is replaced. Throws std::bad_alloc; then nothing has changed.
+    void put(uint32_t key, Kept&& kept);
+    /// Of a block that is here.
+    const Kept& at(uint32_t key) const { return part_of(key).at(key); }
+    /// Kept::packed, wherever it is. Throws Error where the file cannot be read.
+    std::vector<std::byte> packed(uint32_t key) const;
     /// Takes a block out.
     Kept take(uint32_t key);
-    void put_back(uint32_t key, Kept&& kept);
 
     /// The keys of the blocks within a region, in ascending order.
     std::vector<uint32_t> keys(const gpu::VoxelGrid& grid, const StreamRegion& region) const;
@@ -71,6 +69,7 @@ class BlockStore {
     void make_room(const gpu::VoxelGrid& grid, glm::dvec3 from_m);
 
     uint32_t blocks() const;
+    uint64_t voxels() const { return voxels_; }  ///< whose labels are kept
     uint32_t blocks_in_file() const { return blocks_in_file_; }
     uint64_t filed() const { return filed_; }            ///< blocks that ever went to the file
     uint64_t bytes_in_memory() const { return bytes_; }  ///< of compressed blocks
@@ -89,7 +88,6 @@ class BlockStore {
     };
     void count(Cell& cell, const Kept& kept, bool comes);
     void move_to_file(Cell& cell);
-    std::vector<std::byte> packed_of(uint32_t key, const Kept& kept) const;
     void visit_part(graph::StateVisitor& visitor, uint32_t part);
     const Part& part_of(uint32_t key) const;
     Part& part_of(uint32_t key);
@@ -99,15 +97,11 @@ class BlockStore {
     uint64_t most_bytes_;
     uint64_t bytes_ = 0, try_at_ = 0;  ///< in memory; and how many there are when it is tried again
     uint32_t blocks_in_file_ = 0;
+    uint64_t voxels_ = 0;
     uint64_t filed_ = 0;
     std::string problem_;
     std::unique_ptr<SpillFile> file_;  ///< null until something goes there
-    struct Free {
-        void operator()(ZSTD_CCtx_s* context) const;
-        void operator()(ZSTD_DCtx_s* context) const;
-    };
-    std::unique_ptr<ZSTD_CCtx_s, Free> compressor_;
-    std::unique_ptr<ZSTD_DCtx_s, Free> decompressor_;
+    std::string name_;
 };
 
 }  // namespace patina

@@ -3,26 +3,12 @@
 #include <array>
 #include <set>
 
-#include "passes/state/block_keys.h"
-
 namespace patina {
 
 namespace {
 
 // Of the ball's radius: half the diagonal of what one ball is enough for, and the edge of cubes where it is not.
 constexpr double kOneBall = 0.75, kEdge = 0.5;
-
-std::vector<glm::ivec3> observed_blocks(graph::Runner& runner, const ObservationMap& map) {
-    graph::FrameGraph graph = runner.begin();
-    const graph::Readback keys = graph.read_back(map.import(graph).block_keys);
-    runner.submit(std::move(graph));
-    runner.wait();
-    std::vector<glm::ivec3> blocks;
-    for (const uint32_t key : keys.as<uint32_t>()) {
-        if (key != gpu::kEmptyKey) blocks.push_back(block_of_key(map.grid(), key));
-    }
-    return blocks;
-}
 
 MapTile tile_at(glm::dvec3 center_m, double known_m, double block_m) {
     MapTile tile;
@@ -33,9 +19,7 @@ MapTile tile_at(glm::dvec3 center_m, double known_m, double block_m) {
 
 }  // namespace
 
-std::vector<MapTile> tiles_of_records(graph::Runner& runner, const ObservationMap& map, double known_m) {
-    const double block_m = double{map.settings().block_m};
-    const std::vector<glm::ivec3> blocks = observed_blocks(runner, map);
+std::vector<MapTile> tiles_of_records(const std::vector<glm::ivec3>& blocks, double block_m, double known_m) {
     if (blocks.empty()) return {};
     glm::ivec3 low = blocks.front(), high = low;
     for (const glm::ivec3& block : blocks) {
@@ -55,9 +39,11 @@ std::vector<MapTile> tiles_of_records(graph::Runner& runner, const ObservationMa
     }
     std::vector<MapTile> tiles;
     for (const auto& [x, y, z] : cubes) {
-        const glm::dvec3 center = glm::dvec3(low + glm::ivec3(x, y, z) * edge) + edge / 2.0;
+        const glm::ivec3 lowest = low + glm::ivec3(x, y, z) * edge;
+        const glm::dvec3 center = glm::dvec3(lowest) + edge / 2.0;
         MapTile& tile = tiles.emplace_back(tile_at(center * block_m, known_m, block_m));
         tile.part.cube_m = glm::vec4(glm::vec3(center * block_m), static_cast<float>(edge / 2.0 * block_m));
+        tile.cube = StreamRegion::box(lowest, lowest + edge - 1);
     }
     return tiles;
 }

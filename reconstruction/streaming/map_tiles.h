@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "engine/graph/runner.h"
+#include <glm/glm.hpp>
+
 #include "passes/reflectance/reflectance.h"
 #include "reconstruction/stages/reflectance_stage.h"
 #include "reconstruction/streaming/stream_region.h"
@@ -14,10 +15,11 @@ namespace patina {
 struct MapTile {
     RefinedPart part;
     StreamRegion around;  ///< the voxel blocks that reach into the ball
+    StreamRegion cube;    ///< the blocks of its records
 };
 
-/// Tiles that together hold all records of the observations, in a fixed order; waits. One, where a ball of `known_m`
-/// holds them all with what is around them.
-std::vector<MapTile> tiles_of_records(graph::Runner& runner, const ObservationMap& map, double known_m);
+/// Tiles that together hold all records of the blocks, in a fixed order. One, where a ball of `known_m` holds them all
+/// with what is around them.
+std::vector<MapTile> tiles_of_records(const std::vector<glm::ivec3>& blocks, double block_m, double known_m);
 
 }  // namespace patina

@@ -29,7 +29,8 @@ StreamRegion StreamRegion::grown(double by_m) const {
     region.radius_m += by_m;
     if (far_m > 0) {
         // Within the ball the cone does not matter.
-        region.half_angle = std::min(half_angle + std::asin(std::min(by_m / std::max(radius_m, by_m), 1.0)), kWidest);
+        const double turned = std::asin(std::clamp(by_m / std::max(radius_m, by_m), -1.0, 1.0));
+        region.half_angle = std::clamp(half_angle + turned, 0.0, kWidest);
         region.far_m += by_m;
     }
     return region;

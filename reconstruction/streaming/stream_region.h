@@ -29,7 +29,8 @@ struct StreamRegion {
     /// Blocks by their coordinates, both corners included.
     static StreamRegion box(glm::ivec3 low, glm::ivec3 high);
 
-    /// The region with everything that is as near to it as `by_m`; where it is a box, the same one.
+    /// The region with everything that is as near to it as `by_m`; below 0, what is as deep in it. Where it is a box,
+    /// the same one.
     StreamRegion grown(double by_m) const;
 
     bool holds(const gpu::VoxelGrid& grid, glm::ivec3 block) const;

@@ -118,7 +118,7 @@ SurfaceCells::SurfaceCells(graph::Runner& runner, const VoxelMap& map, Streaming
     const double block_m = double{map.grid().voxel_m} * gpu::kBlockEdge;
     if (edge_m) cell_ = std::clamp(static_cast<int>(std::lround(*edge_m / block_m)), 1, cell_);
 
-    any_away_ = streaming.any_away();
+    any_away_ = streaming.any_blocks_away();
     std::set<glm::ivec3, KeyOrder> cells;
     for (const glm::ivec3& block : blocks) cells.insert(block / cell_);
     cells_.assign(cells.begin(), cells.end());
@@ -155,7 +155,7 @@ std::vector<SurfacePart> SurfaceCells::cubes_of(const std::vector<glm::ivec3>& b
 
 void SurfaceCells::bring(const SurfacePart& cube) {
     if (any_away_)
-        streaming_.require(StreamRegion::box(cube.low - SurfacePart::kBelow, cube.high + SurfacePart::kAbove));
+        streaming_.require_blocks(StreamRegion::box(cube.low - SurfacePart::kBelow, cube.high + SurfacePart::kAbove));
     runner_.forget_shapes();  // extraction may need their memory
 }
 

@@ -20,7 +20,7 @@ void main() {
     const uint key = block_keys[block];
     if (key == kEmptyKey || stays(params.grid, params.region, key)) return;
     if (!is_accepted(hash_of_key(key), leaving[kLeavingAccepted])) return;
-    streamed[atomicAdd(streamed_count.x, 1u)] = StreamedBlock(key, block, 0u, 0u);
+    streamed[atomicAdd(streamed_count.x, 1u)] = StreamedBlock(key, block, 0u, 0u, 0u, 0u);
     block_keys[block] = kEmptyKey;
     free_list[atomicAdd(counters.free_blocks, 1u)] = block;
     atomicAdd(counters.left_blocks, 1u);

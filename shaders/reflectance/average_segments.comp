@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // Sums up the albedo of each segment over its records, and counts these and their observations.
-#include "lib/records/reflectance.glsl"
+#include "lib/records/segment_albedo.glsl"
 
 layout(local_size_x = kRecordGroup) in;
 layout(constant_id = 0) const uint kRecordsPerItem = 1u;  // a group of the dispatch has as many groups of records
@@ -14,15 +14,13 @@ layout(std430, binding = 3) buffer Segments { SegmentAlbedo segments[]; };
 void add_record(uint record) {
     const uint label = record_label(records[record]);
     if (label == 0u || label >= uint(segments.length())) return;
-    atomicAdd(segments[label].kd.w, 1u);
-    atomicAdd(segments[label].weight.w, observation_count(records[record]));
-    const uvec2 stored = albedo[record];
-    const uvec3 weight = uvec3(round(albedo_certainty(stored) * kCertaintySteps));
-    const uvec3 kd = uvec3(round(clamp(albedo_kd(stored), 0.0, 1.0) * kAlbedoSteps)) * weight;
-    if (weight == uvec3(0u)) return;
+    const SegmentAlbedo sums = albedo_sums(records[record], albedo[record]);
+    atomicAdd(segments[label].kd.w, sums.kd.w);
+    atomicAdd(segments[label].weight.w, sums.weight.w);
+    if (sums.weight.rgb == uvec3(0u)) return;
     [[unroll]] for (int c = 0; c < 3; ++c) {
-        atomicAdd(segments[label].kd[c], kd[c]);
-        atomicAdd(segments[label].weight[c], weight[c]);
+        atomicAdd(segments[label].kd[c], sums.kd[c]);
+        atomicAdd(segments[label].weight[c], sums.weight[c]);
     }
 }
 

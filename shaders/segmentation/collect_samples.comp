@@ -12,7 +12,7 @@ layout(std430, binding = 3) buffer Filled { uint filled[]; };
 layout(std430, binding = 4) writeonly buffer Kept { uint kept[]; };  // kSegmentSamples per label
 layout(std430, binding = 5) readonly buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 6) buffer SegmentKds { SegmentKd kds[]; };
-layout(push_constant) uniform Push { SegmentSampleParams params; };
+layout(push_constant) uniform Push { SampledPart part; };
 
 void add_kd(uint label, uvec2 stored) {
     const vec3 certainty = albedo_certainty(stored);
@@ -28,9 +28,9 @@ void main() {
     const uint item = gl_GlobalInvocationID.x;
     if (item >= counters.high_water) return;
     const VoxelRecord record = records[item];
-    if (!is_eligible(record, params)) return;
+    if (!is_eligible(record, part)) return;
     const uint label = record_label(record);
-    if (sample_level(sample_hash(record, params.seed)) < counts[label].level) return;
+    if (sample_level(sample_hash(record, part.samples.seed)) < counts[label].level) return;
     kept[label * kSegmentSamples + atomicAdd(filled[label], 1u)] = item;
     add_kd(label, albedo[item]);
 }

@@ -7,13 +7,13 @@ layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) buffer Levels { uint levels[]; };  // kSampleLevels per label
-layout(push_constant) uniform Push { SegmentSampleParams params; };
+layout(push_constant) uniform Push { SampledPart part; };
 
 void main() {
     const uint item = gl_GlobalInvocationID.x;
     if (item >= counters.high_water) return;
     const VoxelRecord record = records[item];
-    if (!is_eligible(record, params)) return;
-    const uint level = sample_level(sample_hash(record, params.seed));
+    if (!is_eligible(record, part)) return;
+    const uint level = sample_level(sample_hash(record, part.samples.seed));
     atomicAdd(levels[record_label(record) * kSampleLevels + level], 1u);
 }

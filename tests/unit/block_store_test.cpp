@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 
 #include "passes/state/block_keys.h"
+#include "reconstruction/streaming/voxel_codec.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/support/file_size_limit.h"
 
@@ -20,7 +21,7 @@ constexpr size_t kWords = gpu::kBlockVoxels;
 struct Words {
     std::vector<uint32_t> tsdf, color, labels;
 
-    BlockWords spans() const { return {tsdf, color, labels}; }
+    VoxelWords<const uint32_t> spans() const { return {tsdf, color, labels}; }
     bool operator==(const Words&) const = default;
 };
 
@@ -36,12 +37,17 @@ Words random_words(std::mt19937& random, uint32_t labels) {
     return words;
 }
 
+void put_words(BlockStore& store, uint32_t key, uint32_t stamp, const Words& words) {
+    Packer packer;
+    store.put(key, pack_voxels(packer, stamp, words.spans()));
+}
+
 Words read(const BlockStore& store, uint32_t key, bool labelled, uint32_t* stamp = nullptr) {
     Words words{std::vector<uint32_t>(kWords), std::vector<uint32_t>(kWords),
                 std::vector<uint32_t>(labelled ? kWords : 0)};
-    const gpu::StreamedBlock block = store.read(key, words.tsdf, words.color, words.labels);
-    EXPECT_EQ(block.key, key);
-    if (stamp) *stamp = block.label_stamp;
+    Packer packer;
+    unpack_voxels(packer, store, key, {words.tsdf, words.color, words.labels});
+    if (stamp) *stamp = store.at(key).label_stamp;
     return words;
 }
 
@@ -76,14 +82,14 @@ TEST(BlockStore, GivesBackWhatItWasGiven) {
         for (uint32_t i = 0; i < 40; ++i) {
             const uint32_t key = random() & 0x7fffffffu;
             blocks[key] = random_words(random, labels);
-            store.put({key, 7, i, 0}, blocks[key].spans());
+            put_words(store, key, i, blocks[key]);
         }
         EXPECT_EQ(store.blocks(), blocks.size());
         for (const auto& [key, words] : blocks) {
             EXPECT_EQ(read(store, key, labels > 0), words);
             BlockStore::Kept kept = store.take(key);
             EXPECT_EQ(store.blocks(), blocks.size() - 1);
-            store.put_back(key, std::move(kept));
+            store.put(key, std::move(kept));
             EXPECT_EQ(read(store, key, labels > 0), words);
         }
         store.clear();
@@ -95,8 +101,8 @@ TEST(BlockStore, ABlockOfTheSameKeyIsReplaced) {
     std::mt19937 random(4);
     BlockStore store;
     const Words first = random_words(random, 3), second = random_words(random, 3);
-    store.put({42, 0, 1, 0}, first.spans());
-    store.put({42, 0, 2, 0}, second.spans());
+    put_words(store, 42, 1, first);
+    put_words(store, 42, 2, second);
     uint32_t stamp = 0;
     EXPECT_EQ(store.blocks(), 1u);
     EXPECT_EQ(read(store, 42, true, &stamp), second);
@@ -112,7 +118,7 @@ TEST(BlockStore, LabelsAreCountedAndReplacedByPart) {
     std::map<uint32_t, Words> blocks;
     for (uint32_t key = 100; key < 260; ++key) {
         blocks[key] = random_words(random, kLabels);
-        store.put({key, 0, 0, 0}, blocks[key].spans());
+        put_words(store, key, 0, blocks[key]);
     }
     std::vector<uint32_t> parents(kLabels);
     for (uint32_t label = 1; label < kLabels; ++label) parents[label] = label % 3 == 0 ? 0 : label % 3 == 1 ? 1 : label;
@@ -146,7 +152,7 @@ TEST(BlockStore, KeysOfARegionAreThoseThatARegionHolds) {
     for (uint32_t i = 0; i < 600; ++i) {
         const uint32_t key = (1024 + random() % 60) | (512 + random() % 60) << 11 | (1024 + random() % 60) << 21;
         keys.push_back(key);
-        store.put({key, 0, 0, 0}, words.spans());
+        put_words(store, key, 0, words);
     }
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -170,13 +176,13 @@ TEST(BlockStore, ComesBackFromItsState) {
     for (uint32_t i = 0; i < 50; ++i) {
         const uint32_t key = random() & 0x7fffffffu;
         blocks[key] = random_words(random, 1 + i % 7);
-        store.put({key, 0, i, 0}, blocks[key].spans());
+        put_words(store, key, i, blocks[key]);
     }
     MemoryVisitor visitor(true);
     store.visit(visitor, {});
     visitor.reverse();
     BlockStore other;
-    other.put({1, 0, 0, 0}, random_words(random, 2).spans());
+    put_words(other, 1, 0, random_words(random, 2));
     other.visit(visitor, {});
     EXPECT_EQ(other.blocks(), blocks.size());
     for (const auto& [key, words] : blocks) EXPECT_EQ(read(other, key, true), words);
@@ -184,7 +190,7 @@ TEST(BlockStore, ComesBackFromItsState) {
 
     visitor.kept.begin()->second.resize(visitor.kept.begin()->second.size() / 2 / 16 * 16);
     for (auto& [name, bytes] : visitor.kept) {
-        if (name.ends_with(".voxels") && !bytes.empty()) bytes.pop_back();
+        if (name.ends_with(".packed") && !bytes.empty()) bytes.pop_back();
     }
     EXPECT_THROW(other.visit(visitor, {}), Error);
 }
@@ -222,7 +228,7 @@ class BlockFileTest : public testing::Test {
     glm::dvec3 camera_m() const { return glm::dvec3(block_of_key(grid_, key(kCameraAt))) * 0.1; }
     void put(BlockStore& store, uint32_t i) {
         words_[i] = random_words(random_, 7);
-        store.put({key(i), 0, i, 0}, words_[i].spans());
+        put_words(store, key(i), i, words_[i]);
     }
     void put_all(BlockStore& store) {
         for (uint32_t i = 0; i < kBlocks; ++i) {
@@ -280,7 +286,7 @@ TEST_F(BlockFileTest, WhatComesBackAndLeavesAgainIsTheNewOne) {
     const uint32_t in_file = store.blocks_in_file();
     BlockStore::Kept kept = store.take(key(1));
     EXPECT_EQ(store.blocks_in_file(), in_file - 1);
-    store.put_back(key(1), std::move(kept));
+    store.put(key(1), std::move(kept));
     EXPECT_EQ(store.blocks_in_file(), in_file);
     expect_all(store);
 

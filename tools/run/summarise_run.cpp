@@ -72,12 +72,20 @@ void add_pools(RunSummary& summary, SessionCore& session) {
     summary.memory.push_back({"transient resources", pipeline.runner().transient_bytes(), 0, 0});
 }
 
-void add_stream_totals(RunSummary& summary, const StreamCounts& streamed) {
-    if (streamed.left == 0) return;
-    summary.totals.emplace_back("blocks that left the device", streamed.left);
-    summary.totals.emplace_back("blocks that came back", streamed.returned);
-    summary.totals.emplace_back("blocks that a frame waited for", streamed.awaited);
-    if (streamed.filed > 0) summary.totals.emplace_back("blocks that went to the temporary file", streamed.filed);
+void add_stream_totals(RunSummary& summary, Pipeline& pipeline) {
+    const StreamCounts blocks = pipeline.streamed_blocks(), records = pipeline.streamed_records();
+    if (blocks.left > 0) {
+        summary.totals.emplace_back("blocks that left the device", blocks.left);
+        summary.totals.emplace_back("blocks that came back", blocks.returned);
+        summary.totals.emplace_back("blocks that a frame waited for", blocks.awaited);
+    }
+    if (blocks.filed > 0) summary.totals.emplace_back("blocks that went to the temporary file", blocks.filed);
+    if (records.left > 0) {
+        summary.totals.emplace_back("observed voxels that left the device", records.left);
+        summary.totals.emplace_back("blocks of them that came back", records.returned);
+        summary.totals.emplace_back("blocks of them that a frame waited for", records.awaited);
+    }
+    if (records.filed > 0) summary.totals.emplace_back("blocks of them that went to the temporary file", records.filed);
 }
 
 void add_segment_totals(RunSummary& summary, const PipelineCounters& counters) {
@@ -120,7 +128,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"triangles", scene.triangles},
                       {"degenerate triangles left out", scene.degenerate_triangles},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
-    add_stream_totals(summary, pipeline.stream_counts());
+    add_stream_totals(summary, pipeline);
     if (pipeline.segmentation()) add_segment_totals(summary, counters);
     summary.tracking = session.tracked();
     summary.color_gains = gain_ranges(pipeline);

@@ -33,9 +33,11 @@ INTEROP_CONST uint kLeavingWords = kLeavingBins + kAcceptBins;
 // A block on its way.
 struct StreamedBlock {
     uint key;
-    uint block;        // its id on the device; kNoBlock: it found no place there
-    uint label_stamp;  // as LabelMapIds::stamps
-    uint pad0;
+    uint block;         // its id on the device; kNoBlock: it found no place there
+    uint fresh;         // 1: it took that place, 0: it had it
+    uint label_stamp;   // of a block of voxels: as LabelMapIds::stamps
+    uint first_record;  // of a block of observed voxels: the first of its records in their list
+    uint records;       // likewise: their number
 };
 
 struct StreamParams {

@@ -38,10 +38,16 @@ struct RecordStatus {
     uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
 };
 
-// Where the next update goes on; its parity says which entry it reads, and it writes the other.
-struct RefreshCursors {
-    uvec2 window;  // bucket of the table
+// Which records had their turn in one update: those of blocks whose keys' hashes lie in a window of kWindowSteps steps.
+// How large the table is does not matter, nor what else it holds.
+struct RefreshWindow {
+    uint first;    // step
+    uint steps;    // 0: there was no such update
+    uint records;  // that it looked at
+    uint pad0;
 };
+INTEROP_CONST uint kWindowSteps = 32768u;  // a power of two
+INTEROP_CONST uint kWindows = 3u;          // of this update, of the one before, and of the next, which counts from 0
 
 struct ReflectanceParams {
     VoxelGrid records;  // the observation map's grid
@@ -49,13 +55,13 @@ struct ReflectanceParams {
     uint edge_shift;    // of the observation map
     uint stamp;         // the update's index + 1
     uint refreshed;     // records looked at again in one update though nothing says that they have changed, about
-    uint max_window;    // buckets of the table looked at
+    uint max_steps;     // of a window
     uint shadows;       // 0: every light reaches every voxel
     uint materials;     // entries of the table
     float least_share;  // of the records looked at, that is marched again although no record changed
-    uint pad0;
-    vec4 ball_m;  // centre in the world, radius: what lies outside throws no shadow
-    vec4 cube_m;  // centre in the world, half edge: of records outside none has its turn
+    uint all;           // 1: the window is as large as it may be
+    vec4 ball_m;        // centre in the world, radius: what lies outside throws no shadow
+    vec4 cube_m;        // centre in the world, half edge: of records outside none has its turn
 };
 
 // Which of the records that wait for marching are taken.

@@ -2,6 +2,7 @@
 // passes/state/segment_samples.h.
 #ifndef PATINA_SHARED_SEGMENT_SAMPLES_H
 #define PATINA_SHARED_SEGMENT_SAMPLES_H
+#include "shared/fusion/stream_blocks.h"
 #include "shared/observation/observations.h"
 INTEROP_BEGIN
 
@@ -33,6 +34,13 @@ struct SegmentSampleParams {
     uint labels;            // label 0 included
     uint min_observations;  // of an eligible record
     uint draws;             // samples to draw from each segment
+};
+
+// Where eligible records lie.
+struct SampledPart {
+    VoxelGrid voxels;  // the voxel map's, whose blocks' coordinates the region is about
+    StreamRegion region;
+    SegmentSampleParams samples;
 };
 
 INTEROP_END

@@ -68,7 +68,7 @@ class StreamBlocksTest : public GpuTest {
         std::vector<gpu::StreamedBlock> list;
         std::vector<uint32_t> tsdf, color, labels;
         for (const auto& [key, block] : blocks) {
-            list.push_back({key, 0, block.stamp, 0});
+            list.push_back({key, 0, 0, block.stamp, 0, 0});
             tsdf.insert(tsdf.end(), block.tsdf.begin(), block.tsdf.end());
             color.insert(color.end(), block.color.begin(), block.color.end());
             labels.insert(labels.end(), block.labels.begin(), block.labels.end());

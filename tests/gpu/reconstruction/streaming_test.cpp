@@ -64,7 +64,7 @@ struct Tour {
 struct Result {
     Mesh mesh;
     MeshReflectance reflectance;
-    StreamCounts streamed;  ///< before the mesh was extracted
+    StreamCounts streamed, records;  ///< before the mesh was extracted
     PipelineCounters counters;
 };
 
@@ -75,12 +75,25 @@ void expect_same_scene(const Result& a, const Result& b) {
     EXPECT_TRUE(same_bytes(a.mesh.triangles, b.mesh.triangles));
     EXPECT_TRUE(same_bytes(a.reflectance.labels, b.reflectance.labels));
     EXPECT_TRUE(same_bytes(a.reflectance.kd, b.reflectance.kd));
+    ASSERT_EQ(a.reflectance.segments.size(), b.reflectance.segments.size());
+    for (size_t label = 0; label < a.reflectance.segments.size(); ++label) {
+        const SegmentReflectance &one = a.reflectance.segments[label], &other = b.reflectance.segments[label];
+        EXPECT_EQ(one.kd, other.kd) << label;
+        EXPECT_EQ(one.voxels, other.voxels) << label;
+        EXPECT_EQ(one.observations, other.observations) << label;
+        EXPECT_EQ(one.confidence, other.confidence) << label;
+        ASSERT_EQ(one.gloss.has_value(), other.gloss.has_value()) << label;
+        if (!one.gloss) continue;
+        EXPECT_EQ(one.gloss->ks, other.gloss->ks) << label;
+        EXPECT_EQ(one.gloss->alpha, other.gloss->alpha) << label;
+        EXPECT_EQ(one.gloss->confidence, other.gloss->confidence) << label;
+    }
 }
 
 class StreamingTest : public GpuTest {
   protected:
-    /// Of a camera that sees 1.6 m far.
-    static ReconstructionSettings settings(uint32_t resident_blocks) {
+    /// Of a camera that sees 1.6 m far. `resident`: voxel blocks, and observed voxels, that are to stay; 0: all.
+    static ReconstructionSettings settings(uint32_t resident) {
         ReconstructionSettings settings;
         settings.map.voxel_m = 0.02f;
         settings.map.capacity_blocks = 512;
@@ -88,10 +101,15 @@ class StreamingTest : public GpuTest {
         settings.fusion.max_depth_m = 1.6f;
         settings.around_m = 1.6f;
         settings.remove_every = 4;
-        settings.resident_blocks = resident_blocks;
+        settings.resident_blocks = resident;
         settings.segmentation.emplace();
+        settings.segmentation->sample_every = 8;
         settings.reflectance.emplace();
         settings.reflectance->voxel_m = 0.04f;
+        settings.reflectance->resident_records = resident;
+        settings.reflectance->capacity_blocks = 256;
+        settings.reflectance->capacity_records = 2048;
+        settings.specular.emplace();
         return settings;
     }
 
@@ -109,7 +127,8 @@ class StreamingTest : public GpuTest {
     static Result result_of(Pipeline& pipeline) {
         pipeline.wait();
         Result result;
-        result.streamed = pipeline.stream_counts();
+        result.streamed = pipeline.streamed_blocks();
+        result.records = pipeline.streamed_records();
         result.counters = pipeline.counters();
         result.mesh = pipeline.extract_surface();
         result.reflectance = pipeline.sample_reflectance(result.mesh);
@@ -125,8 +144,10 @@ TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
     with_file.host_mib = 1;
     const Result fewer = reconstruct(with_file);
     EXPECT_GT(fewer.streamed.filed, 100u);
+    EXPECT_GT(fewer.records.filed, 100u);
     expect_same_scene(fewer, all);
     EXPECT_EQ(all.streamed.left + all.streamed.filed + few.streamed.filed, 0u);
+    EXPECT_EQ(all.records.left + all.records.filed + few.records.filed, 0u);
     EXPECT_GT(few.streamed.left, 1000u);
     EXPECT_GT(few.streamed.returned, 200u);
     EXPECT_GT(few.streamed.away, 500u);
@@ -134,6 +155,14 @@ TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
     EXPECT_LT(few.counters.map.capacity - few.counters.map.free_blocks,
               all.counters.map.capacity - all.counters.map.free_blocks);
     EXPECT_EQ(few.counters.map.refused_blocks, 0u);
+    const auto in_use = [](const gpu::MapCounters& pool) { return pool.capacity - pool.free_blocks; };
+    const gpu::MapCounters &records = few.counters.observations.records, &whole = all.counters.observations.records;
+    EXPECT_GT(few.records.left, 3000u);
+    EXPECT_GT(few.records.returned, 200u);
+    EXPECT_EQ(few.records.away + in_use(records), in_use(whole));
+    EXPECT_LT(in_use(records), in_use(whole) / 2);
+    EXPECT_LT(records.capacity, whole.capacity);
+    EXPECT_EQ(records.refused_blocks + few.counters.observations.blocks.refused_blocks, 0u);
     ASSERT_GT(all.mesh.positions_m.size(), 10000u);
     expect_same_scene(few, all);
     EXPECT_EQ(few.counters.segments.created, all.counters.segments.created);
@@ -169,7 +198,7 @@ TEST_F(StreamingTest, CellsAreTogetherTheWholeSurface) {
         const std::vector<SegmentReflectance> segments = pipeline.segments();
         if (resident_blocks > 0) {
             const gpu::MapCounters map = pipeline.counters().map;
-            EXPECT_GT(pipeline.stream_counts().away + map.capacity - map.free_blocks, map.capacity)
+            EXPECT_GT(pipeline.streamed_blocks().away + map.capacity - map.free_blocks, map.capacity)
                 << "the pool cannot hold the whole at once";
         }
         std::vector<Mesh> cells;
@@ -225,6 +254,7 @@ TEST_F(StreamingTest, ACameraThatJumpsFindsWhatItHadLeft) {
     };
     const Result all = jump(0), few = jump(1);
     EXPECT_GT(few.streamed.awaited, 500u);
+    EXPECT_GT(few.records.awaited, 300u);
     EXPECT_LE(few.streamed.awaited, few.streamed.returned);
     EXPECT_EQ(few.counters.map.refused_blocks, 0u);
     expect_same_scene(few, all);
@@ -237,7 +267,7 @@ TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
     whole.set_lights(tour_.lights);
     add(pipeline, 0, 60);
     add(whole, 0, 60);
-    ASSERT_GT(pipeline.stream_counts().away, 500u);
+    ASSERT_GT(pipeline.streamed_blocks().away, 500u);
     const auto view = [&](Pipeline& of, const RigidTransform& pose) {
         const ViewReadback seen = of.view(tour_.info.depth, pose);
         of.wait();
@@ -293,25 +323,28 @@ TEST_F(StreamingTest, TilesHoldEachRecordOnce) {
     graph::FrameGraph graph = runner().begin();
     const graph::Readback read = graph.read_back(map.import(graph).block_keys);
     run(std::move(graph));
-    EXPECT_EQ(tiles_of_records(runner(), map, 100).size(), 1u) << "one ball holds all";
-    const std::vector<MapTile> tiles = tiles_of_records(runner(), map, 1.6);
-    EXPECT_GT(tiles.size(), 10u);
-    uint32_t blocks = 0;
+    std::vector<glm::ivec3> observed;
     for (const uint32_t key : read.as<uint32_t>()) {
-        if (key == gpu::kEmptyKey) continue;
-        ++blocks;
-        const glm::vec3 center_m = (glm::vec3(block_of_key(map.grid(), key)) + 0.5f) * map.settings().block_m;
+        if (key != gpu::kEmptyKey) observed.push_back(block_of_key(map.grid(), key));
+    }
+    const double block_m = double{map.settings().block_m};
+    EXPECT_EQ(tiles_of_records(observed, block_m, 100).size(), 1u) << "one ball holds all";
+    const std::vector<MapTile> tiles = tiles_of_records(observed, block_m, 1.6);
+    EXPECT_GT(tiles.size(), 10u);
+    for (const glm::ivec3& block : observed) {
+        const glm::vec3 center_m = (glm::vec3(block) + 0.5f) * map.settings().block_m;
         uint32_t holding = 0;
         for (const MapTile& tile : tiles) {
             const glm::vec3 apart = glm::abs(center_m - glm::vec3(tile.part.cube_m));
             if (std::max({apart.x, apart.y, apart.z}) > tile.part.cube_m.w) continue;
             ++holding;
             EXPECT_LT(glm::distance(center_m, glm::vec3(tile.part.ball_m)), 0.5f * tile.part.ball_m.w);
-            EXPECT_TRUE(tile.around.holds(pipeline.map().grid(), block_of_key(map.grid(), key)));
+            EXPECT_TRUE(tile.around.holds(pipeline.map().grid(), block));
+            EXPECT_TRUE(tile.cube.holds(pipeline.map().grid(), block));
         }
         EXPECT_EQ(holding, 1u);
     }
-    EXPECT_GT(blocks, 300u);
+    EXPECT_GT(observed.size(), 300u);
 }
 
 TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
@@ -327,20 +360,22 @@ TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
         pipeline.visit(writer);
         writer.finish();
         change.commit();
-        ASSERT_GT(pipeline.stream_counts().away, 500u);
+        ASSERT_GT(pipeline.streamed_blocks().away, 500u);
     }
     Pipeline pipeline(device(), settings(1));
     pipeline.set_lights(tour_.lights);
     StateReader reader(device(), map);
     pipeline.visit(reader);
     reader.finish();
-    ASSERT_GT(pipeline.stream_counts().away, 500u);
+    ASSERT_GT(pipeline.streamed_blocks().away, 500u);
     add(pipeline, 66, tour_.frames.size());
     const Result again = result_of(pipeline);
     expect_same_scene(again, whole);
     EXPECT_EQ(again.streamed.left, whole.streamed.left);
     EXPECT_EQ(again.streamed.away, whole.streamed.away);
     EXPECT_EQ(again.streamed.returned, whole.streamed.returned);
+    EXPECT_EQ(again.records.left, whole.records.left);
+    EXPECT_EQ(again.records.away, whole.records.away);
 }
 
 TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
@@ -351,23 +386,30 @@ TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
     for (size_t i = 0; i < 60; ++i) fusion.add(patina::to_rgbd(tour_.info, tour_.frames[i]));
     runner().wait();
     const auto all_blocks = [&] {
-        std::set<std::array<int, 3>> blocks;
-        for (const glm::ivec3& block : streaming.blocks()) blocks.insert({block.x, block.y, block.z});
+        std::set<std::array<int, 4>> blocks;
+        for (const glm::ivec3& block : streaming.blocks()) blocks.insert({0, block.x, block.y, block.z});
+        for (const glm::ivec3& block : streaming.observed_blocks()) blocks.insert({1, block.x, block.y, block.z});
         return blocks;
     };
     const auto before = all_blocks();
-    const uint32_t away = streaming.counts().away;
+    const uint64_t away = streaming.block_counts().away, records_away = streaming.record_counts().away;
     ASSERT_GT(away, 500u);
+    ASSERT_GT(records_away, 1000u);
     const PosedCamera start = make_posed_camera(tour_.info.depth, *tour_.frames[3].world_from_camera);
     for (uint32_t index = 60; index < 64; ++index) {  // in one of them blocks leave, too
-        ASSERT_GT(streaming.plan(stages.geometry.around(start, start), index, true), 100u);
+        const ComingPlaces coming = streaming.plan(stages.geometry.around(start, start), index, {true, true});
+        ASSERT_GT(coming.voxel_blocks, 100u);
+        ASSERT_GT(coming.observed_blocks, 50u);
+        ASSERT_GT(coming.observed_records, coming.observed_blocks);
         graph::FrameGraph graph = runner().begin();
         streaming.add(graph);
     }
-    EXPECT_EQ(streaming.counts().away, away);
+    EXPECT_EQ(streaming.block_counts().away, away);
+    EXPECT_EQ(streaming.record_counts().away, records_away);
     EXPECT_EQ(all_blocks(), before);
-    streaming.require(stages.geometry.around(start, start));
-    EXPECT_LT(streaming.counts().away, away);
+    EXPECT_TRUE(streaming.require_blocks(stages.geometry.around(start, start)));
+    EXPECT_TRUE(streaming.require_records(stages.geometry.around(start, start)));
+    EXPECT_LT(streaming.block_counts().away, away);
     EXPECT_EQ(all_blocks(), before);
 }
 

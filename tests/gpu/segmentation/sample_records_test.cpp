@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "passes/state/block_keys.h"
+#include "reconstruction/streaming/stream_region.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace patina {
@@ -31,7 +33,7 @@ class SampleRecords : public GpuTest {
 
     /// `albedo`: by record, as the refinement stores it; none: nothing is known.
     Sampled sample(const std::vector<gpu::VoxelRecord>& records, uint32_t seed, uint32_t draw_seed,
-                   const std::vector<glm::uvec2>& albedo = {}) {
+                   const std::vector<glm::uvec2>& albedo = {}, const StreamRegion& region = {}) {
         graph::FrameGraph frame = runner().begin();
         ObservationMapIds ids = map_.import(frame);
         gpu::MapCounters counters{};
@@ -40,7 +42,7 @@ class SampleRecords : public GpuTest {
         ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(records)), false);
         if (!albedo.empty()) ids.albedo = frame.upload_bytes(ids.albedo, 0, std::as_bytes(std::span(albedo)), false);
         SegmentSampleIds sampled = samples_.import(frame);
-        add_sample_records(frame, map_, ids, samples_, sampled, 4, seed);
+        add_sample_records(frame, map_, ids, samples_, sampled, {voxels_, region.gpu(), 4, seed});
         ObservationMap::keep(frame, ids);
         SegmentSamples::keep(frame, sampled);
         const graph::Readback counts = frame.read_back(sampled.counts), kept = frame.read_back(sampled.kept),
@@ -65,6 +67,12 @@ class SampleRecords : public GpuTest {
         return result;
     }
 
+    /// Blocks of 4 cm, as those of the observations.
+    gpu::VoxelGrid voxels_ = [] {
+        gpu::VoxelGrid grid{};
+        grid.voxel_m = 0.005f;
+        return grid;
+    }();
     ObservationMap map_{device(), {.capacity_blocks = 1024, .capacity_records = 8192}};
     SegmentSamples samples_{device(), kLabels};
 };
@@ -125,6 +133,55 @@ TEST_F(SampleRecords, SumsUpTheAlbedoOfTheRecordsThatAreKept) {
     EXPECT_EQ(sampled.kd[3].samples, sampled.kept[3].size());
     EXPECT_NEAR(sampled.kd[3].g / (float(sampled.kd[3].samples) * gpu::kKdSteps), 0.7, 2e-3);
     EXPECT_EQ(sample({record(0, 1)}, 1, 2, {glm::uvec2(0)}).kd[1].samples, 0u) << "begun anew, and nothing is known";
+}
+
+TEST_F(SampleRecords, RecordsOutsideTheRegionAreNotKept) {
+    std::vector<gpu::VoxelRecord> records;
+    for (uint32_t i = 0; i < 2000; ++i) records.push_back(record(i, 1));
+    const glm::dvec3 middle_m = (glm::dvec3(block_of_key(voxels_, records[800].block_key)) + 0.5) * 0.04;
+    const StreamRegion region = StreamRegion::ball(middle_m, 0.5);
+    std::set<uint32_t> within;
+    for (uint32_t i = 0; i < 2000; ++i) {
+        if (region.holds(voxels_, block_of_key(voxels_, records[i].block_key))) within.insert(i);
+    }
+    EXPECT_EQ(within.size(), 25 * 8u) << "0.5 m to both sides along x";
+    const Sampled sampled = sample(records, 1, 2, {}, region);
+    EXPECT_EQ(sampled.kept[1], within);
+    EXPECT_EQ(sampled.counts[1].eligible, within.size());
+}
+
+TEST_F(SampleRecords, RecordsThatWereGivenBackAreDropped) {
+    std::vector<gpu::VoxelRecord> records;
+    for (uint32_t i = 0; i < 300; ++i) records.push_back(record(i, i < 100 ? 1 : i < 110 ? 2 : 3));
+    const Sampled before = sample(records, 1, 2);
+    for (uint32_t i = 0; i < 110; ++i) {
+        if (i % 3 == 0 || i >= 100) records[i].block_key = gpu::kEmptyKey;
+    }
+    graph::FrameGraph frame = runner().begin();
+    ObservationMapIds ids = map_.import(frame);
+    ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(records)), false);
+    SegmentSampleIds sampled = samples_.import(frame);
+    add_drop_samples(frame, ids, samples_, sampled);
+    ObservationMap::keep(frame, ids);
+    SegmentSamples::keep(frame, sampled);
+    const graph::Readback counts_read = frame.read_back(sampled.counts), kept_read = frame.read_back(sampled.kept);
+    runner().submit(std::move(frame));
+    runner().wait();
+    const auto counts = counts_read.as<gpu::SegmentSampleCount>();
+    const auto kept = kept_read.as<uint32_t>();
+    for (uint32_t label = 1; label < 4; ++label) {
+        std::set<uint32_t> left;  // records are voxels here, one by one
+        for (uint32_t i = 0; i < counts[label].kept; ++i) left.insert(kept[label * gpu::kSegmentSamples + i]);
+        std::set<uint32_t> expected;
+        for (const uint32_t voxel : before.kept[label]) {
+            if (records[voxel].block_key != gpu::kEmptyKey) expected.insert(voxel);
+        }
+        EXPECT_EQ(left, expected);
+        EXPECT_EQ(counts[label].kept, expected.size());
+    }
+    EXPECT_EQ(counts[1].kept, 66u);
+    EXPECT_EQ(counts[2].kept, 0u);
+    EXPECT_EQ(counts[3].kept, 190u);
 }
 
 TEST_F(SampleRecords, NeitherTheOrderOfRecordsNorTheRunMatters) {
