@@ -113,7 +113,7 @@ graph::Readback BlockStream::add_leaving(graph::FrameGraph& graph, const StreamR
     leaving.center_m = region.center_m;
     leaving.axis = region.axis;
     const graph::Readback counts = leaving.counts;
-    declared_.emplace_back(std::move(leaving));
+    declared_.emplace_back(std::in_place_type<Leaving>, std::move(leaving));
     return counts;
 }
 
@@ -121,14 +121,16 @@ graph::Readback BlockStream::add_leaving(graph::FrameGraph& graph, const StreamR
 void BlockStream::add_returning(graph::FrameGraph& graph, std::span<const uint32_t> keys) {
     const graph::BufferId blocks = bring_back(graph, keys);
     // What the device has, the host forgets when it knows that.
-    auto& returning = std::get<Returning>(declared_.emplace_back(Returning{}));
+    auto& returning = std::get<Returning>(declared_.emplace_back(std::in_place_type<Returning>));
     returning.kept.reserve(keys.size());
     returning.blocks = graph.read_back(blocks);
     for (const uint32_t key : keys) returning.kept.emplace_back(key, store_.take(key));
 }
 
 void BlockStream::await_relabelling(graph::FrameGraph& graph, uint32_t part, graph::BufferId parents) {
-    if (store_.blocks() > 0) declared_.push_back(Relabelled{part, graph.read_back(parents)});
+    if (store_.blocks() == 0) return;
+    const Relabelled relabelled{part, graph.read_back(parents)};
+    declared_.emplace_back(std::in_place_type<Relabelled>, relabelled);
 }
 
 void BlockStream::note_submitted() {
