@@ -49,6 +49,7 @@ void Pipeline::wait() {
 
 void Pipeline::visit(graph::StateVisitor& visitor) {
     wait();
+    streaming_.prepare_visit();
     stages_.visit(visitor);
     streaming_.visit(visitor);
     fusion_.visit(visitor);

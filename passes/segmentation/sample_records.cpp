@@ -51,13 +51,26 @@ graph::BufferId add_draw_records(graph::FrameGraph& frame, const ObservationMapI
     return drawn;
 }
 
-void add_drop_samples(graph::FrameGraph& frame, const ObservationMapIds& records, const SegmentSamples& samples,
-                      SegmentSampleIds& ids) {
-    auto drop = frame.compute("segmentation.drop_samples", spirv::drop_samples);
-    drop.read("Records", records.records).push(gpu::SegmentSampleParams{0, samples.labels(), 0, 0});
-    ids.counts = drop.modify("Counts", ids.counts);
-    ids.kept = drop.modify("Kept", ids.kept);
-    drop.dispatch_covering(samples.labels());
+graph::BufferId add_place_samples(graph::FrameGraph& frame, const ObservationMapIds& records,
+                                  const SegmentSamples& samples, const SegmentSampleIds& ids) {
+    auto place = frame.compute("segmentation.place_samples", spirv::place_samples);
+    place.read("Records", records.records).read("Counts", ids.counts).read("Kept", ids.kept);
+    place.push(gpu::SegmentSampleParams{0, samples.labels(), 0, 0});
+    const graph::BufferId places =
+        place.create("Places", uint64_t{samples.labels()} * gpu::kSegmentSamples * sizeof(glm::uvec2));
+    place.dispatch_covering(samples.labels());
+    return places;
+}
+
+void add_find_samples(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
+                      const SegmentSamples& samples, SegmentSampleIds& ids, graph::BufferId places) {
+    auto find = frame.compute("segmentation.find_samples", spirv::find_samples);
+    find.read("Places", places).read("Keys", records.keys).read("Blocks", records.blocks);
+    find.read("RecordTable", records.record_table);
+    find.push(gpu::FoundSamplesParams{map.grid(), map.edge_shift(), samples.labels(), 0, 0});
+    ids.counts = find.modify("Counts", ids.counts);
+    ids.kept = find.modify("Kept", ids.kept);
+    find.dispatch_covering(samples.labels());
 }
 
 }  // namespace patina

@@ -18,9 +18,14 @@ struct SampleChoice {
 void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
                         const SegmentSamples& samples, SegmentSampleIds& ids, const SampleChoice& choice);
 
-/// Between frames, when records have left the device: segments keep them no longer.
-void add_drop_samples(graph::FrameGraph& frame, const ObservationMapIds& records, const SegmentSamples& samples,
-                      SegmentSampleIds& ids);
+/// Where the records lie that segments keep, for when these may leave the device and come back as others: uvec2 of a
+/// block's key, gpu::kEmptyKey for none, and the voxel within it, gpu::kSegmentSamples per label.
+graph::BufferId add_place_samples(graph::FrameGraph& frame, const ObservationMapIds& records,
+                                  const SegmentSamples& samples, const SegmentSampleIds& ids);
+
+/// Segments keep the records at these places again, as far as they are on the device.
+void add_find_samples(graph::FrameGraph& frame, const ObservationMap& map, const ObservationMapIds& records,
+                      const SegmentSamples& samples, SegmentSampleIds& ids, graph::BufferId places);
 
 /// Draws `draws` different records of each segment at random, from those it keeps (paper, Section 3.6: 25). Returns u32
 /// record ids, `draws` per label; gpu::kNoRecord for segments that keep fewer. The same seed draws the same voxels.

@@ -156,9 +156,14 @@ bool SegmentationStage::may_lose_records(uint32_t frame_index) const {
     return settings_.sample_every == 0 || samples_are_due(frame_index, settings_.sample_every);
 }
 
-void SegmentationStage::drop_samples(graph::FrameGraph& graph, const ObservationMap& map) const {
+graph::BufferId SegmentationStage::add_place_samples(graph::FrameGraph& graph, const ObservationMap& map) const {
+    return patina::add_place_samples(graph, map.import(graph), samples_, samples_.import(graph));
+}
+
+void SegmentationStage::add_find_samples(graph::FrameGraph& graph, const ObservationMap& map,
+                                         graph::BufferId places) const {
     SegmentSampleIds ids = samples_.import(graph);
-    add_drop_samples(graph, map.import(graph), samples_, ids);
+    patina::add_find_samples(graph, map, map.import(graph), samples_, ids, places);
     SegmentSamples::keep(graph, ids);
 }
 

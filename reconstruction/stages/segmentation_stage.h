@@ -116,8 +116,10 @@ class SegmentationStage {
     void add_records(graph::FrameGraph& graph, const ObservationMap& map, std::optional<graph::BufferId> away,
                      const FrameContext& frame) const;
 
-    /// Between frames, when records have left the device: segments keep them no longer.
-    void drop_samples(graph::FrameGraph& graph, const ObservationMap& map) const;
+    /// Where records lie that segments keep from frame to frame, and keeping those at such places again
+    /// (segmentation/sample_records.h).
+    graph::BufferId add_place_samples(graph::FrameGraph& graph, const ObservationMap& map) const;
+    void add_find_samples(graph::FrameGraph& graph, const ObservationMap& map, graph::BufferId places) const;
 
     /// The labels of the surface that a camera sees: W x H r32ui, 0 where none is known.
     graph::ImageId add_view(graph::FrameGraph& graph, const SurfaceView& surface) const;

@@ -27,7 +27,7 @@ void BlockStream::reset() {
     coming_.clear();
     keeps_.reset();
     left_outside_ = 0;
-    short_ = false;
+    disturbed_ = short_ = false;
     left_ = returned_ = awaited_ = 0;
 }
 
@@ -51,6 +51,13 @@ bool BlockStream::would_miss(const StreamRegion& near) const {
 
 void BlockStream::plan(const StreamRegion& near, StreamTurn turn) {
     collect();
+    if (disturbed_) {
+        // What came back for others than frames may have the places that this one counts on.
+        while (leave_now(near.grown(kLeave_m)) > 0) {
+        }
+        prepare_for_frame();
+        disturbed_ = false;
+    }
     store_.make_room(map_.grid(), near.center_m);
     // What the device may refuse again has to be known, too.
     if (would_miss(near) || (turn.relabels && pends<Leaving>()) || (short_ && pends<Returning>())) collect_all();
@@ -89,13 +96,13 @@ void BlockStream::move_surplus() {
         for (uint32_t i = 0; i < rounds; ++i) {
             graph::FrameGraph graph = runner_.begin();
             add_leaving(graph, *keeps_);
-            submit(std::move(graph), false);
+            submit(std::move(graph));
         }
     }
     for (size_t first = at_once(coming_); first < coming_.size(); first = at_once(coming_)) {
         graph::FrameGraph graph = runner_.begin();
         add_returning(graph, std::span(coming_).first(first));
-        submit(std::move(graph), false);
+        submit(std::move(graph));
         coming_.erase(coming_.begin(), coming_.begin() + static_cast<std::ptrdiff_t>(first));
     }
 }
@@ -107,14 +114,11 @@ void BlockStream::add(graph::FrameGraph& graph) {
     coming_.clear();
 }
 
-/// Returns what the places outside are counted in.
-graph::Readback BlockStream::add_leaving(graph::FrameGraph& graph, const StreamRegion& region) {
+void BlockStream::add_leaving(graph::FrameGraph& graph, const StreamRegion& region) {
     Leaving leaving = leave(graph, region.gpu(), limits_.leaving);
     leaving.center_m = region.center_m;
     leaving.axis = region.axis;
-    const graph::Readback counts = leaving.counts;
     declared_.emplace_back(std::in_place_type<Leaving>, std::move(leaving));
-    return counts;
 }
 
 /// The blocks of these keys leave the store; what the device has no room for is put back into it.
@@ -139,8 +143,8 @@ void BlockStream::note_submitted() {
 }
 
 /// A graph of its own.
-void BlockStream::submit(graph::FrameGraph graph, bool left) {
-    keep(graph, left);
+void BlockStream::submit(graph::FrameGraph graph) {
+    keep(graph);
     runner_.submit(std::move(graph));
     note_submitted();
 }
@@ -203,12 +207,13 @@ bool BlockStream::require(const StreamRegion& wanted) {
     store_.make_room(map_.grid(), region.middle_m(map_.grid()));
     const std::vector<uint32_t> needed = store_.keys(map_.grid(), region);
     if (needed.empty()) return true;
+    disturbed_ = true;
     make_room(region, needed);
     for (std::span<const uint32_t> rest(needed); !rest.empty();) {
         const size_t count = at_once(rest);
         graph::FrameGraph graph = runner_.begin();
         add_returning(graph, rest.first(count));
-        submit(std::move(graph), false);
+        submit(std::move(graph));
         rest = rest.subspan(count);
     }
     collect_all();
@@ -217,14 +222,20 @@ bool BlockStream::require(const StreamRegion& wanted) {
 
 /// Blocks outside the region leave until so many fit, or none is left.
 void BlockStream::make_room(const StreamRegion& region, std::span<const uint32_t> keys) {
-    for (uint32_t outside = 1; outside > 0 && !has_room(keys);) {
-        graph::FrameGraph graph = runner_.begin();
-        const graph::Readback counts = add_leaving(graph, region);
-        submit(std::move(graph), true);
-        const uint64_t before = left_;
-        collect_all();
-        outside = left_ > before ? counts.as<uint32_t>()[gpu::kLeavingOutside] : 0;
+    while (!has_room(keys) && leave_now(region) > 0) {
     }
+}
+
+/// As many blocks outside a region leave as one graph takes along. Waits. Returns how many places are left outside; 0
+/// if no block left.
+uint32_t BlockStream::leave_now(const StreamRegion& region) {
+    prepare_to_leave();
+    graph::FrameGraph graph = runner_.begin();
+    add_leaving(graph, region);
+    submit(std::move(graph));
+    const uint64_t before = left_;
+    collect_all();
+    return left_ > before ? left_outside_ : 0;
 }
 
 std::vector<uint32_t> BlockStream::keys() {
@@ -244,6 +255,7 @@ void BlockStream::visit(graph::StateVisitor& visitor, const std::string& name) {
     collect();  // all are there
     store_.visit(visitor, map_.grid());
     visitor.value(name + ".left_outside", left_outside_);
+    visitor.value(name + ".disturbed", disturbed_);
     visitor.value(name + ".short", short_);
     visitor.value(name + ".left", left_);
     visitor.value(name + ".returned", returned_);

@@ -58,7 +58,7 @@ class BlockStream {
     void note_submitted();
 
     /// Between frames: brings the blocks of a region back, and takes others away where their places are needed. Waits.
-    /// Returns whether all are there.
+    /// Returns whether all are there. The next frame finds the places as if this had not been (plan()).
     bool require(const StreamRegion& region);
 
     /// The keys of all blocks, wherever they are. Waits.
@@ -85,6 +85,12 @@ class BlockStream {
         std::vector<graph::Readback> words{};  ///< of blocks, as the kind has them
     };
 
+    /// What a read-back holds, for as long as it is there.
+    template <class T>
+    static std::span<const T> elements(const graph::Readback& read) {
+        return {reinterpret_cast<const T*>(read.bytes().data()), read.bytes().size() / sizeof(T)};
+    }
+
     /// Declares that blocks outside a region leave, at most so many places.
     virtual Leaving leave(graph::FrameGraph& graph, const gpu::StreamRegion& region, uint32_t most) = 0;
     /// Puts what has left into the store. Returns how many places that were.
@@ -93,8 +99,12 @@ class BlockStream {
     virtual graph::BufferId bring_back(graph::FrameGraph& graph, std::span<const uint32_t> keys) = 0;
     /// Of a block that is away.
     virtual uint32_t places(uint32_t key) const = 0;
-    /// Marks all that the kind writes as needed after a graph of its own. `left`: blocks leave in it, between frames.
-    virtual void keep(graph::FrameGraph& graph, bool left) = 0;
+    /// Marks all that the kind writes as needed after a graph of its own.
+    virtual void keep(graph::FrameGraph& graph) = 0;
+    /// Between frames, before blocks leave that frames count on to be there.
+    virtual void prepare_to_leave() {}
+    /// A frame follows after that.
+    virtual void prepare_for_frame() {}
     /// What is in use, u32 per block: its key, or gpu::kEmptyKey.
     virtual graph::BufferId keys_on_device(graph::FrameGraph& graph) = 0;
     /// Whether the places that are free suffice for blocks that are away.
@@ -123,12 +133,13 @@ class BlockStream {
     void note(const Leaving& leaving);
     void note(Returning& returning);
     void note(const Relabelled& relabelled);
-    graph::Readback add_leaving(graph::FrameGraph& graph, const StreamRegion& region);
+    void add_leaving(graph::FrameGraph& graph, const StreamRegion& region);
     void add_returning(graph::FrameGraph& graph, std::span<const uint32_t> keys);
     /// How many of these, the first ones, one graph takes.
     size_t at_once(std::span<const uint32_t> keys) const;
-    void submit(graph::FrameGraph graph, bool left);
+    void submit(graph::FrameGraph graph);
     void make_room(const StreamRegion& region, std::span<const uint32_t> keys);
+    uint32_t leave_now(const StreamRegion& region);
 
     Limits limits_;
     std::vector<Event> declared_;        ///< of a graph that is not submitted yet
@@ -136,6 +147,7 @@ class BlockStream {
     std::vector<uint32_t> coming_;       ///< keys that come back with the next frame, those that it needs first
     std::optional<StreamRegion> keeps_;  ///< outside of which blocks leave with the next frame
     uint32_t left_outside_ = 0;          ///< places outside that had to stay when some left last: they were too many
+    bool disturbed_ = false;             ///< blocks came back between frames, after the last one
     bool short_ = false;                 ///< the device had no room for some that were to come back last
     uint64_t left_ = 0, returned_ = 0, awaited_ = 0;
 };

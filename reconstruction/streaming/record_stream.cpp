@@ -9,11 +9,6 @@ namespace {
 
 constexpr BlockStream::Limits kLimits{32768, 16384};  // 10 MiB of records, and half of it
 
-template <class T>
-std::span<const T> elements(const graph::Readback& read) {
-    return {reinterpret_cast<const T*>(read.bytes().data()), read.bytes().size() / sizeof(T)};
-}
-
 }  // namespace
 
 RecordStream::RecordStream(graph::Runner& runner, Stages& stages, BlockStore& store)
@@ -64,10 +59,42 @@ graph::BufferId RecordStream::bring_back(graph::FrameGraph& graph, std::span<con
 
 uint32_t RecordStream::places(uint32_t key) const { return count_records(store_.at(key)); }
 
-/// Segments keep samples from frame to frame, which may be among those that left between frames.
-void RecordStream::keep(graph::FrameGraph& graph, bool left) {
-    if (left && stages_.segmentation) stages_.segmentation->drop_samples(graph, reflectance().observations());
-    reflectance().keep(graph);
+void RecordStream::keep(graph::FrameGraph& graph) { reflectance().keep(graph); }
+
+void RecordStream::note_choice(const StreamRegion& near) {
+    chosen_in_ = near;
+    places_.clear();
+}
+
+void RecordStream::prepare_to_leave() {
+    if (!stages_.segmentation || !places_.empty()) return;
+    graph::FrameGraph graph = runner_.begin();
+    const graph::Readback places =
+        graph.read_back(stages_.segmentation->add_place_samples(graph, reflectance().observations()));
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    places_ = places.as<glm::uvec2>();
+}
+
+void RecordStream::bring_samples_back() {
+    if (places_.empty()) return;
+    require(chosen_in_);
+    graph::FrameGraph graph = runner_.begin();
+    stages_.segmentation->add_find_samples(graph, reflectance().observations(),
+                                           graph.upload<glm::uvec2>("streaming.sample_places", places_));
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    places_.clear();
+}
+
+void RecordStream::reset() {
+    BlockStream::reset();
+    note_choice({});
+}
+
+void RecordStream::visit(graph::StateVisitor& visitor, const std::string& name) {
+    BlockStream::visit(visitor, name);
+    visitor.value(name + ".chosen_in", chosen_in_);
 }
 
 graph::BufferId RecordStream::keys_on_device(graph::FrameGraph& graph) {

@@ -41,6 +41,7 @@ ComingPlaces Streaming::plan(const StreamRegion& near, uint32_t index, Many many
     voxels_.plan(near, turn(many.blocks && turn_of(index) == kLeaveTurn, SegmentationStage::sweeps));
     if (!records_) return {voxels_.coming_blocks(), 0, 0};
     const bool may_leave = !stages_.segmentation || stages_.segmentation->may_lose_records(index);
+    if (may_leave) records_->note_choice(near);
     records_->plan(near,
                    turn(many.records && may_leave && turn_of(index) == kRecordsLeaveTurn, SegmentationStage::relabels));
     return {voxels_.coming_blocks(), records_->coming_blocks(), records_->coming_places()};
@@ -115,6 +116,10 @@ std::string Streaming::problem() const {
     return text("what is away from the device stays in memory, ",
                 (block_store_.bytes_in_memory() + record_store_.bytes_in_memory()) >> 20, " MiB where map.host_mib is ",
                 stages_.settings.host_mib, ": ", reason);
+}
+
+void Streaming::prepare_visit() {
+    if (records_) records_->bring_samples_back();
 }
 
 void Streaming::visit(graph::StateVisitor& visitor) {

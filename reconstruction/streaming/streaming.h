@@ -79,6 +79,8 @@ class Streaming {
     /// A sentence where memory holds more than it should; else empty.
     std::string problem() const;
 
+    /// Between frames: all that frames count on is where they expect it, whatever was required before. Waits.
+    void prepare_visit();
     /// The device must have finished.
     void visit(graph::StateVisitor& visitor);
 

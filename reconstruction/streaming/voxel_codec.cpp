@@ -1,6 +1,7 @@
 #include "reconstruction/streaming/voxel_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -16,12 +17,11 @@ constexpr size_t kWords = gpu::kBlockVoxels;
 BlockStore::Kept pack_voxels(Packer& packer, uint32_t label_stamp, const VoxelWords<const uint32_t>& words) {
     BlockStore::Kept kept;
     kept.label_stamp = label_stamp;
-    std::vector<uint32_t> all;
-    all.reserve(3 * kWords);
-    all.insert(all.end(), words.tsdf.begin(), words.tsdf.end());
-    all.insert(all.end(), words.color.begin(), words.color.end());
-    for (const uint32_t word : words.labels) all.push_back(kept.with_place(word));
-    kept.packed = packer.pack(all);
+    std::array<uint32_t, 3 * kWords> all;
+    auto end = std::copy(words.tsdf.begin(), words.tsdf.end(), all.begin());
+    end = std::copy(words.color.begin(), words.color.end(), end);
+    for (const uint32_t word : words.labels) *end++ = kept.with_place(word);
+    kept.packed = packer.pack({all.begin(), end});
     return kept;
 }
 

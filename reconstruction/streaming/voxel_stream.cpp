@@ -10,12 +10,6 @@ namespace {
 
 constexpr BlockStream::Limits kLimits{2048, 1024};  // 12 MiB of blocks, and half of it
 
-/// The words of the block that stands at a place in a read-back.
-std::span<const uint32_t> words_at(const graph::Readback& read, size_t place) {
-    const auto* words = reinterpret_cast<const uint32_t*>(read.bytes().data());
-    return {words + place * gpu::kBlockVoxels, gpu::kBlockVoxels};
-}
-
 }  // namespace
 
 VoxelStream::VoxelStream(graph::Runner& runner, Stages& stages, BlockStore& store)
@@ -36,12 +30,14 @@ BlockStream::Leaving VoxelStream::leave(graph::FrameGraph& graph, const gpu::Str
 }
 
 uint32_t VoxelStream::keep_left(const Leaving& leaving) {
-    const uint32_t count = leaving.count.as<uint32_t>().front();
-    const auto blocks = leaving.blocks.as<gpu::StreamedBlock>();
+    const auto count = elements<uint32_t>(leaving.count).front();
+    const auto blocks = elements<gpu::StreamedBlock>(leaving.blocks);
+    const auto words = [&](size_t array, size_t block) {
+        if (array >= leaving.words.size()) return std::span<const uint32_t>();
+        return elements<uint32_t>(leaving.words[array]).subspan(block * gpu::kBlockVoxels, gpu::kBlockVoxels);
+    };
     for (uint32_t i = 0; i < count; ++i) {
-        const auto labels = leaving.words.size() > 2 ? words_at(leaving.words[2], i) : std::span<const uint32_t>();
-        store_.put(blocks[i].key, pack_voxels(packer_, blocks[i].label_stamp,
-                                              {words_at(leaving.words[0], i), words_at(leaving.words[1], i), labels}));
+        store_.put(blocks[i].key, pack_voxels(packer_, blocks[i].label_stamp, {words(0, i), words(1, i), words(2, i)}));
     }
     return count;
 }
@@ -71,7 +67,7 @@ graph::BufferId VoxelStream::bring_back(graph::FrameGraph& graph, std::span<cons
     return add_return_blocks(graph, map_, voxels, labels ? &*labels : nullptr, list);
 }
 
-void VoxelStream::keep(graph::FrameGraph& graph, bool) {
+void VoxelStream::keep(graph::FrameGraph& graph) {
     VoxelMap::keep(graph, map_.import(graph));
     if (stages_.segmentation) LabelMap::keep(graph, stages_.segmentation->labels().import(graph));
 }

@@ -15,7 +15,7 @@ class VoxelStream : public BlockStream {
     uint32_t keep_left(const Leaving& leaving) override;
     graph::BufferId bring_back(graph::FrameGraph& graph, std::span<const uint32_t> keys) override;
     uint32_t places(uint32_t) const override { return 1; }
-    void keep(graph::FrameGraph& graph, bool left) override;
+    void keep(graph::FrameGraph& graph) override;
     graph::BufferId keys_on_device(graph::FrameGraph& graph) override { return map_.import(graph).block_keys; }
     bool has_room(std::span<const uint32_t> keys) override;
 

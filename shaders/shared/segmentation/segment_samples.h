@@ -43,5 +43,14 @@ struct SampledPart {
     SegmentSampleParams samples;
 };
 
+// How places are found again.
+struct FoundSamplesParams {
+    VoxelGrid records;  // the observation map's grid
+    uint edge_shift;
+    uint labels;
+    uint pad0;
+    uint pad1;
+};
+
 INTEROP_END
 #endif

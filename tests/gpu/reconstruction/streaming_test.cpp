@@ -92,6 +92,8 @@ void expect_same_scene(const Result& a, const Result& b) {
 
 class StreamingTest : public GpuTest {
   protected:
+    static constexpr uint32_t kTightRecords = 11000;  // frames need about as many
+
     /// Of a camera that sees 1.6 m far. `resident`: voxel blocks, and observed voxels, that are to stay; 0: all.
     static ReconstructionSettings settings(uint32_t resident) {
         ReconstructionSettings settings;
@@ -107,8 +109,8 @@ class StreamingTest : public GpuTest {
         settings.reflectance.emplace();
         settings.reflectance->voxel_m = 0.04f;
         settings.reflectance->resident_records = resident;
-        settings.reflectance->capacity_blocks = 256;
-        settings.reflectance->capacity_records = 2048;
+        settings.reflectance->capacity_blocks = 64;
+        settings.reflectance->capacity_records = 512;
         settings.specular.emplace();
         return settings;
     }
@@ -290,6 +292,24 @@ TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
         EXPECT_GT(seen, 1500u);
         EXPECT_EQ(far > 100, pose == along);
     }
+}
+
+/// Of another place, and of a pool that cannot hold both that and what frames look at.
+TEST_F(StreamingTest, ViewsBetweenFramesMakeNoDifference) {
+    const Result all = reconstruct(settings(0));
+    ReconstructionSettings tight = settings(1);
+    tight.reflectance->limit_records = kTightRecords;
+    Pipeline pipeline(device(), tight);
+    pipeline.set_lights(tour_.lights);
+    for (size_t i = 0; i < tour_.frames.size(); ++i) {
+        add(pipeline, i, i + 1);
+        // Between two choices of samples.
+        if (i % 8 == 2 || i % 8 == 5) pipeline.view(tour_.info.depth, *tour_.frames[(i + 60) % 120].world_from_camera);
+    }
+    const Result few = result_of(pipeline), alone = reconstruct(tight);
+    EXPECT_EQ(few.counters.observations.records.refused_blocks, 0u);
+    EXPECT_GT(few.records.left, alone.records.left + 20000) << "views take places";
+    expect_same_scene(few, all);
 }
 
 TEST_F(StreamingTest, WhatTheColorCameraSeesIsOnTheDeviceToo) {

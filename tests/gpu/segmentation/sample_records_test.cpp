@@ -7,6 +7,7 @@
 #include "passes/state/block_keys.h"
 #include "reconstruction/streaming/stream_region.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/gpu/observation/entered_records.h"
 
 namespace patina {
 namespace {
@@ -150,38 +151,69 @@ TEST_F(SampleRecords, RecordsOutsideTheRegionAreNotKept) {
     EXPECT_EQ(sampled.counts[1].eligible, within.size());
 }
 
-TEST_F(SampleRecords, RecordsThatWereGivenBackAreDropped) {
-    std::vector<gpu::VoxelRecord> records;
-    for (uint32_t i = 0; i < 300; ++i) records.push_back(record(i, i < 100 ? 1 : i < 110 ? 2 : 3));
-    const Sampled before = sample(records, 1, 2);
-    for (uint32_t i = 0; i < 110; ++i) {
-        if (i % 3 == 0 || i >= 100) records[i].block_key = gpu::kEmptyKey;
+TEST_F(SampleRecords, AreFoundAgainWhereTheyLieWhenTheyAreOtherRecords) {
+    std::vector<FilledRecord> filled;
+    for (uint32_t i = 0; i < 700; ++i) {
+        const glm::ivec3 voxel(i % 10, i / 10 % 10, i / 100);
+        filled.push_back({(glm::vec3(voxel) + 0.5f) * 0.02f, {0, -1, 0}, i < 100 ? 1u : i < 110 ? 2u : 3u, {}});
+        filled.back().observations.resize(5);
     }
+    const auto fill = [&](const std::vector<FilledRecord>& records) {
+        graph::FrameGraph frame = runner().begin();
+        map_.reset(frame, glm::dvec3(0));
+        run(std::move(frame));
+        frame = runner().begin();
+        ObservationMapIds ids = map_.import(frame);
+        add_fill_records(frame, map_, ids, records);
+        ObservationMap::keep(frame, ids);
+        run(std::move(frame));
+        enter_records(runner(), map_, records);
+    };
+    fill(filled);
     graph::FrameGraph frame = runner().begin();
     ObservationMapIds ids = map_.import(frame);
-    ids.records = frame.upload_bytes(ids.records, 0, std::as_bytes(std::span(records)), false);
+    gpu::MapCounters counters{};
+    counters.high_water = static_cast<uint32_t>(filled.size());
+    ids.record_counters = frame.upload_bytes(ids.record_counters, 0, std::as_bytes(std::span(&counters, 1)), true);
     SegmentSampleIds sampled = samples_.import(frame);
-    add_drop_samples(frame, ids, samples_, sampled);
-    ObservationMap::keep(frame, ids);
+    add_sample_records(frame, map_, ids, samples_, sampled, {voxels_, StreamRegion{}.gpu(), 4, 1});
     SegmentSamples::keep(frame, sampled);
+    const graph::Readback places_read = frame.read_back(add_place_samples(frame, ids, samples_, sampled));
     const graph::Readback counts_read = frame.read_back(sampled.counts), kept_read = frame.read_back(sampled.kept);
-    runner().submit(std::move(frame));
-    runner().wait();
+    run(std::move(frame));
     const auto counts = counts_read.as<gpu::SegmentSampleCount>();
     const auto kept = kept_read.as<uint32_t>();
-    for (uint32_t label = 1; label < 4; ++label) {
-        std::set<uint32_t> left;  // records are voxels here, one by one
-        for (uint32_t i = 0; i < counts[label].kept; ++i) left.insert(kept[label * gpu::kSegmentSamples + i]);
-        std::set<uint32_t> expected;
-        for (const uint32_t voxel : before.kept[label]) {
-            if (records[voxel].block_key != gpu::kEmptyKey) expected.insert(voxel);
-        }
-        EXPECT_EQ(left, expected);
-        EXPECT_EQ(counts[label].kept, expected.size());
+    const auto places = places_read.as<glm::uvec2>();
+    ASSERT_EQ(counts[1].kept, 100u);
+    ASSERT_EQ(counts[2].kept, 10u);
+    ASSERT_LT(counts[3].kept, 300u);
+
+    // In another order; every seventh is gone.
+    std::vector<FilledRecord> others;
+    std::vector<uint32_t> now(filled.size(), gpu::kNoRecord);
+    for (uint32_t i = static_cast<uint32_t>(filled.size()); i-- > 0;) {
+        if (i % 7 == 0) continue;
+        now[i] = static_cast<uint32_t>(others.size());
+        others.push_back(filled[i]);
     }
-    EXPECT_EQ(counts[1].kept, 66u);
-    EXPECT_EQ(counts[2].kept, 0u);
-    EXPECT_EQ(counts[3].kept, 190u);
+    fill(others);
+    frame = runner().begin();
+    sampled = samples_.import(frame);
+    add_find_samples(frame, map_, map_.import(frame), samples_, sampled, frame.upload<glm::uvec2>("places", places));
+    const graph::Readback counts_found = frame.read_back(sampled.counts), kept_found = frame.read_back(sampled.kept);
+    run(std::move(frame));
+    for (uint32_t label = 1; label < 4; ++label) {
+        std::set<uint32_t> expected, found;
+        for (uint32_t i = 0; i < counts[label].kept; ++i) {
+            const uint32_t record = now[kept[label * gpu::kSegmentSamples + i]];
+            if (record != gpu::kNoRecord) expected.insert(record);
+        }
+        const uint32_t left = counts_found.as<gpu::SegmentSampleCount>()[label].kept;
+        for (uint32_t i = 0; i < left; ++i) found.insert(kept_found.as<uint32_t>()[label * gpu::kSegmentSamples + i]);
+        EXPECT_EQ(found, expected) << label;
+        EXPECT_EQ(left, expected.size()) << label;
+        EXPECT_LT(left, counts[label].kept) << label;
+    }
 }
 
 TEST_F(SampleRecords, NeitherTheOrderOfRecordsNorTheRunMatters) {
