@@ -102,6 +102,8 @@ std::vector<ExrChannel> channels_of(const FrameDump& frame) {
     if (!frame.alpha.empty()) append({scalar_channel("alpha", frame.alpha)});
     if (!frame.kd_segment.empty()) append(rgb_channels("kd_segment", frame.kd_segment));
     if (!frame.rgb_segment.empty()) append(rgb_channels("rgb_segment", frame.rgb_segment));
+    if (!frame.kd_shown.empty()) append(rgb_channels("kd_shown", frame.kd_shown));
+    if (!frame.rgb_shown.empty()) append(rgb_channels("rgb_shown", frame.rgb_shown));
     if (!frame.label.empty()) append({scalar_channel("label", frame.label)});
     if (!frame.visibility.empty()) append({scalar_channel("visibility", frame.visibility)});
     return channels;

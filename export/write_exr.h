@@ -39,7 +39,7 @@ void write_exr(const std::filesystem::path& path, std::span<const ExrChannel> ch
 /// What one colour camera sees, of a run's model or of the truth; all pictures have one extent. Groups that are empty
 /// are left out of the file.
 struct FrameDump {
-    Image<glm::vec3> rgb;     ///< linear
+    Image<glm::vec3> rgb;     ///< linear; of a model with reflectance: as kd, ks and alpha give it
     Image<float> depth_m;     ///< along the camera's z axis; 0 where nothing was hit
     Image<glm::vec3> normal;  ///< world, unit length; zero where nothing was hit
     Image<float> valid;       ///< 1 where something was hit, else 0
@@ -49,12 +49,18 @@ struct FrameDump {
     Image<float> alpha{};            ///< roughness
     Image<glm::vec3> kd_segment{};   ///< diffuse albedo of the whole segment: before refinement
     Image<glm::vec3> rgb_segment{};  ///< rgb as kd_segment gives it
+    Image<glm::vec3> kd_shown{};     ///< what a user is shown as kd: with detail restored from the fused colour
+    Image<glm::vec3> rgb_shown{};    ///< and as rgb: likewise, and the fused colour where nothing else is known
     Image<float> label{};            ///< segment or object, a whole number; 0 = none
     Image<float> visibility{};  ///< of the lamps' light, the part that shadows leave; 0 where none shines, -1 unknown
+
+    /// What a user is shown, where that is not rgb and kd themselves.
+    const Image<glm::vec3>& shown_rgb() const { return rgb_shown.empty() ? rgb : rgb_shown; }
+    const Image<glm::vec3>& shown_kd() const { return kd_shown.empty() ? kd : kd_shown; }
 };
 
 /// The channels of a frame: rgb.R rgb.G rgb.B depth normal.X normal.Y normal.Z valid, and those of kd, ks, alpha,
-/// kd_segment, rgb_segment, label and visibility that are not empty.
+/// kd_segment, rgb_segment, kd_shown, rgb_shown, label and visibility that are not empty.
 std::vector<ExrChannel> channels_of(const FrameDump& frame);
 
 }  // namespace patina

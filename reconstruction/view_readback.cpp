@@ -4,6 +4,7 @@
 
 #include "passes/fusion/shade_color.h"
 #include "passes/shading/restore_detail.h"
+#include "passes/specular/fit_ward.h"
 
 namespace patina {
 
@@ -17,17 +18,28 @@ Image<glm::vec4> widened(const graph::Readback& read) {
     return wide;
 }
 
+template <class Segment>
+std::vector<std::optional<glm::vec3>> kds_of(const graph::Readback& read) {
+    std::vector<std::optional<glm::vec3>> kds;
+    for (const Segment& segment : read.as<Segment>()) kds.push_back(kd_of(segment));
+    return kds;
+}
+
 }  // namespace
 
 ModelView ViewReadback::get() const {
     ModelView view{position_m_.image<glm::vec4>(), widened(normal_), widened(color_)};
     if (label_) view.label = label_->image<uint32_t>();
     if (reflectance_) {
-        view.reflectance = {
-            widened(reflectance_->kd),  widened(reflectance_->ks_alpha), reflectance_->label.image<uint32_t>(),
-            widened(reflectance_->rgb), widened(reflectance_->light),    {}};
-        for (const auto& segment : reflectance_->segments.as<gpu::SegmentAlbedo>())
-            view.reflectance->segment_kd.push_back(kd_of(segment));
+        view.reflectance = {widened(reflectance_->kd),
+                            widened(reflectance_->ks_alpha),
+                            reflectance_->label.image<uint32_t>(),
+                            widened(reflectance_->rgb),
+                            widened(reflectance_->light),
+                            widened(reflectance_->model_kd),
+                            widened(reflectance_->model_rgb),
+                            reflectance_->fits ? kds_of<gpu::WardFit>(*reflectance_->fits)
+                                               : kds_of<gpu::SegmentAlbedo>(*reflectance_->segments)};
     }
     return view;
 }
@@ -53,8 +65,19 @@ ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCame
         // Under other lights than those of the frames, their colours would bring back the shadows of these.
         const bool detailed = stages.settings.fusion.color && settings.refine.albedo;
         const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
-        view.reflectance_ = {graph.read_back(seen.kd),  graph.read_back(seen.ks_alpha), graph.read_back(seen.label),
-                             graph.read_back(seen.rgb), graph.read_back(seen.light),    graph.read_back(segments)};
+        ViewReadback::Reflectance& read = view.reflectance_.emplace();
+        read.kd = graph.read_back(seen.kd);
+        read.ks_alpha = graph.read_back(seen.ks_alpha);
+        read.label = graph.read_back(seen.label);
+        read.rgb = graph.read_back(seen.rgb);
+        read.light = graph.read_back(seen.light);
+        read.model_kd = graph.read_back(predicted.kd);
+        read.model_rgb = graph.read_back(predicted.rgb);
+        if (stages.specular) {
+            read.fits = graph.read_back(stages.specular->fits(graph));
+        } else {
+            read.segments = graph.read_back(segments);
+        }
     }
     return view;
 }

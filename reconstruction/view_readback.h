@@ -19,7 +19,9 @@ class ViewReadback {
   private:
     friend ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera);
     struct Reflectance {
-        graph::Readback kd, ks_alpha, label, rgb, light, segments;
+        graph::Readback kd, ks_alpha, label, rgb, light, model_kd, model_rgb;
+        std::optional<graph::Readback> segments;  ///< gpu::SegmentAlbedo per label, where materials are given
+        std::optional<graph::Readback> fits;      ///< gpu::WardFit per label, where they are estimated
     };
     graph::Readback position_m_, normal_, color_;
     std::optional<graph::Readback> label_;

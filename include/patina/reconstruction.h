@@ -38,12 +38,16 @@ struct ModelView {
 
     /// What the model reflects, where it has reflectance (shading/predict_radiance.h).
     struct Reflectance {
-        Image<glm::vec4> kd;                               ///< diffuse albedo; a = 1 where it is known
-        Image<glm::vec4> ks_alpha;                         ///< of the segment
-        Image<uint32_t> label;                             ///< 0: none
-        Image<glm::vec4> rgb;                              ///< linear re-rendering; a = 1 where kd is known
-        Image<glm::vec4> light;                            ///< what kd multiplies in rgb; a: the part shadows leave
-        std::vector<std::optional<glm::vec3>> segment_kd;  ///< by label: the mean albedo of the whole segment
+        Image<glm::vec4> kd;         ///< diffuse albedo; a = 1 where it is known
+        Image<glm::vec4> ks_alpha;   ///< of the segment
+        Image<uint32_t> label;       ///< 0: none
+        Image<glm::vec4> rgb;        ///< linear re-rendering; a = 1 where kd is known
+        Image<glm::vec4> light;      ///< what kd multiplies in rgb; a: the part shadows leave
+        Image<glm::vec4> model_kd;   ///< as kd, without detail that is restored from the fused colour
+        Image<glm::vec4> model_rgb;  ///< as rgb, of model_kd; nowhere the fused colour
+        /// By label: the albedo of the whole segment before refinement, as the fit or the network has it; of materials
+        /// that are given, the mean of the segment's.
+        std::vector<std::optional<glm::vec3>> segment_kd;
     };
     std::optional<Reflectance> reflectance{};
 };

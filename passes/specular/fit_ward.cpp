@@ -1,5 +1,6 @@
 #include "passes/specular/fit_ward.h"
 
+#include <algorithm>
 #include <array>
 
 #include "spirv/shaders.h"
@@ -61,6 +62,20 @@ void add_fit_ward(graph::FrameGraph& frame, const FitWardInputs& inputs, const S
     fits.fits = solve.modify("Fits", fits.fits);
     segment_materials = solve.modify("Materials", segment_materials);
     solve.dispatch_indirect(arguments);
+
+    auto diffuse = frame.compute("specular.fit_diffuse", spirv::fit_diffuse);
+    diffuse.read("Lights", inputs.lights).read("Batch", batch.list).read("Voxels", voxels).push(params);
+    diffuse.read("Records", records.records).read("Visibility", records.visibility).read("Weights", weights);
+    diffuse.read("Directions", records.directions).read("Colors", records.colors);
+    diffuse.specialise("kVoxelChunks", inputs.map.chunks());
+    fits.fits = diffuse.modify("Fits", fits.fits);
+    diffuse.dispatch_indirect(arguments);
+}
+
+std::optional<glm::vec3> kd_of(const gpu::WardFit& fit) {
+    const glm::vec3 light2(fit.light2);
+    if (!(std::min({light2.r, light2.g, light2.b}) > 0)) return std::nullopt;
+    return glm::clamp(glm::vec3(fit.diffuse) / light2, 0.0f, 1.0f);
 }
 
 }  // namespace patina

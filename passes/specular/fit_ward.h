@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+
+#include <glm/glm.hpp>
+
 #include "engine/graph/frame_graph.h"
 #include "passes/state/observation_map.h"
 #include "passes/state/segment_batch.h"
@@ -31,9 +35,13 @@ struct FitWardInputs {
 /// before count less. A clipped channel counts, for each alpha, where what the fit before found for it is darker. Where
 /// the normals of records beside a voxel's show that the surface bends, its highlights are taken for blurred: alpha^2 +
 /// blur^2 in place of alpha^2 (Toksvig 2005). Sums are kept by label, `memory` of them from one fit to the next. Where
-/// observations do not tell, priors hold: ks 0.04, and the network's alpha, else 0.2. `fits` is brought up to date, and
-/// `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the material does.
+/// observations do not tell, priors hold: ks 0.04, and the network's alpha, else 0.2. With the result follows the kd of
+/// the whole segment, by least squares over its voxels' colours without their highlights. `fits` is brought up to date,
+/// and `segment_materials` (gpu::SegmentMaterial by label), whose version changes when the material does.
 void add_fit_ward(graph::FrameGraph& frame, const FitWardInputs& inputs, const SegmentBatch& batch,
                   const WardFits& table, WardFitIds& fits, graph::BufferId& segment_materials);
+
+/// The kd of a whole segment as the fit or the network has it, before refinement; empty where neither knows it.
+std::optional<glm::vec3> kd_of(const gpu::WardFit& fit);
 
 }  // namespace patina

@@ -89,13 +89,13 @@ glm::dvec3 center_of(const std::vector<SceneObject>& objects) {
     return sum / std::max<double>(1, static_cast<double>(objects.size()));
 }
 
-void vary_lights(SyntheticScene& scene, const Clearance& clearance, uint64_t seed) {
+void vary_lights(SyntheticScene& scene, const Clearance& clearance, uint64_t seed, double reach) {
     const double total = total_luminance(scene.lights);
     const glm::dvec3 center_m = center_of(scene.objects);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         Light& light = scene.lights[i];
         Draws draws(seed, "light", i);
-        const double reach_m = 0.2 * glm::distance(light.position_m, center_m);
+        const double reach_m = reach * glm::distance(light.position_m, center_m);
         light.position_m = moved(light, reach_m * draws.in_ball(), clearance);
         light.intensity *= tint_between_warm_and_cool(draws.between(0, 1)) * draws.factor(1.4);
     }
@@ -115,11 +115,16 @@ void turn(Environment& environment, Draws draws) {
 
 }  // namespace
 
+SyntheticScene with_varied_light(SyntheticScene scene, uint64_t seed, double reach) {
+    vary_lights(scene, Clearance(scene.objects), seed, reach);
+    if (scene.environment) turn(*scene.environment, Draws(seed, "environment"));
+    return scene;
+}
+
 SyntheticScene varied(SyntheticScene scene, uint64_t seed) {
     vary_materials(scene.objects, seed);
+    scene = with_varied_light(std::move(scene), seed);
     Clearance clearance(scene.objects);
-    vary_lights(scene, clearance, seed);
-    if (scene.environment) turn(*scene.environment, Draws(seed, "environment"));
     for (const Light& light : scene.lights) clearance.add(light);
     scene.path = varied(scene.path, Draws(seed, "path"), clearance);
     if (scene.lighting) scene.lighting->path = varied(scene.lighting->path, Draws(seed, "lighting path"), clearance);

@@ -15,4 +15,11 @@ namespace patina::scenes {
 /// is turned. Objects, ids, names and the recording stay.
 SyntheticScene varied(SyntheticScene scene, uint64_t seed);
 
+/// How far a lamp moves at most, of its distance to the middle of the objects.
+inline constexpr double kVariedLamps = 0.2;
+
+/// The scene with lamps that moved, by up to `reach` of that distance, of other colours and shares of the same total
+/// light, and with a turned environment; likewise.
+SyntheticScene with_varied_light(SyntheticScene scene, uint64_t seed, double reach = kVariedLamps);
+
 }  // namespace patina::scenes

@@ -20,5 +20,7 @@ void main() {
     if (weight <= 0.0) return;
     fits[label].ks_alpha = estimates[label].ks_alpha;
     fits[label].confidence = weight / kMostEstimateWeight;
+    fits[label].diffuse = vec4(estimates[label].kd_weight.rgb, 0.0);
+    fits[label].light2 = vec4(1.0);
     if (label < params.materials) materials[label] = changed_material(materials[label], estimates[label].ks_alpha);
 }

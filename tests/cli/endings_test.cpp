@@ -177,7 +177,7 @@ TEST_F(Endings, AReportThatCannotBeWrittenCostsTheReportAlone) {
 /// The number behind a key of eval.json, of the object means.
 double mean_error(const fs::path& run, const char* quantity) {
     const auto json = nlohmann::json::parse(read_text(run / "eval/eval.json"));
-    return json["object_means"][quantity]["filled"]["mad"];
+    return json["object_means"][quantity]["mean"]["filled"]["mad"];
 }
 
 TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {

@@ -56,7 +56,7 @@ TEST_F(Eval, PrintsTheScoresAndWritesTheReport) {
     EXPECT_THAT(names_in(run() / "eval"), ElementsAre("eval.json", "report.html"));
     const auto json = nlohmann::json::parse(read_text(run() / "eval/eval.json"));
     EXPECT_EQ(json["frames"], (nlohmann::json{0, 10, 20, 30}));
-    EXPECT_EQ(json["object_means"]["kd"]["filled"]["mad"], 0);
+    EXPECT_EQ(json["object_means"]["kd"]["mean"]["filled"]["mad"], 0);
     EXPECT_THAT(read_text(run() / "eval/report.html"), HasSubstr("Error pictures"));
 }
 
@@ -143,7 +143,7 @@ TEST_F(FromSceneToScores, GeometryIsReconstructed) {
     EXPECT_LT(json["depth_mm"]["median"], 10);
     EXPECT_GT(json["depth_mm"]["coverage"], 0.8);
     EXPECT_LT(json["trajectory"]["ate_rmse_m"], 1e-6);
-    EXPECT_LT(json["object_means"]["rgb"]["filled"]["mad"], 0.1);
+    EXPECT_LT(json["object_means"]["rgb"]["mean"]["filled"]["mad"], 0.1);
 }
 
 TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
@@ -162,9 +162,45 @@ TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
     const Outcome outcome = patina({"eval", recording, out(), "--seen", "1", "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
-    EXPECT_LT(json["object_means"]["kd"]["filled"]["mad"], 0.1);
+    EXPECT_LT(json["object_means"]["kd"]["mean"]["filled"]["mad"], 0.1);
     EXPECT_TRUE(json["lights"]["missed"].empty());
     EXPECT_TRUE(json["lights"]["invented"].empty());
+}
+
+TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunThatDidNotReadThem) {
+    const fs::path recording = beside("cubes"), bare = beside("bare");
+    const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "3", "--novel", "2", "--extent",
+                                  "192x160", "--quiet", "--out", recording});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    for (const char* views : {"novel", "relit"})
+        EXPECT_TRUE(fs::exists(recording / "truth" / views / "truth/frames/000001.exr")) << views;
+    const std::vector<std::string> options{"--dump-every",     "3",     "--set",
+                                           "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"};
+    run_quietly(recording, options);
+    EXPECT_THAT(patina({"eval", recording, out()}).out,
+                HasSubstr("Note: Views that were never recorded were not compared: the run kept no map"));
+    EXPECT_TRUE(nlohmann::json::parse(read_text(out() / "eval/eval.json"))["novel"].is_null());
+
+    std::vector<std::string> with_map = options;
+    with_map.insert(with_map.end(), {"--checkpoint-every", "100"});
+    run_quietly(recording, with_map);
+    const Outcome outcome = patina({"eval", recording, out()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("\nNever recorded: the same under other lamps, 2 views:\n"));
+    const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
+    for (const char* views : {"novel", "relit"}) {
+        EXPECT_EQ(json[views]["frames"], (nlohmann::json{0, 1})) << views;
+        EXPECT_LT(json[views]["object_means"]["rgb"]["mean"]["filled"]["mad"], 0.1) << views;
+        EXPECT_TRUE(fs::exists(out() / "eval" / views / "000001.exr")) << views;
+    }
+    EXPECT_NE(json["relit"]["object_means"]["rgb"], json["novel"]["object_means"]["rgb"]);
+    EXPECT_EQ(patina({"eval", recording, out(), "--quiet"}).exit_code, 0) << "in place of the one before";
+
+    const auto scene = read_text(out() / "scene.glb");
+    fs::copy(recording, bare, fs::copy_options::recursive);
+    for (const fs::path& truth : {bare / "truth", bare / "lighting/truth"}) fs::remove_all(truth);
+    run_quietly(bare, options);
+    EXPECT_EQ(read_text(out() / "scene.glb"), scene) << "a run knows nothing of the truth";
 }
 
 }  // namespace

@@ -155,8 +155,8 @@ json view_of(const fs::path& file) {
         cell.far += depth_m[i] > kFarM;
         cell.depth_m += depth_m[i];
         cell.normal += vector_at(i, "normal.X", "normal.Y", "normal.Z");
-        cell.rgb += vector_at(i, "rgb.R", "rgb.G", "rgb.B");
-        cell.kd += vector_at(i, "kd.R", "kd.G", "kd.B");
+        cell.rgb += vector_at(i, "rgb_shown.R", "rgb_shown.G", "rgb_shown.B");
+        cell.kd += vector_at(i, "kd_shown.R", "kd_shown.G", "kd_shown.B");
     }
     json numbers{{"farthest_m", rounded(*std::ranges::max_element(depth_m))}, {"cells", json::array()}};
     for (const CellMeans& cell : cells) numbers["cells"].push_back(cell.numbers());

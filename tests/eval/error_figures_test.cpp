@@ -48,7 +48,8 @@ TEST(ErrorFigures, ShowFirstMiddleAndLastFrame) {
     EXPECT_EQ(figures[0].frame, 0u);
     EXPECT_EQ(figures[1].frame, 20u);
     EXPECT_EQ(figures[2].frame, 30u);
-    EXPECT_THAT(titles_of(figures[0]), ElementsAre("kd", "kd refined", "ks", "alpha", "RGB", "RGB refined", "depth"));
+    EXPECT_THAT(titles_of(figures[0]),
+                ElementsAre("kd", "kd refined", "ks", "alpha", "RGB", "RGB refined", "kd shown", "RGB shown", "depth"));
     EXPECT_EQ(decode(figures[0].rows[0].truth).size(), cv::Size(48, 40));
 }
 
@@ -103,7 +104,8 @@ TEST(ErrorFigures, UnfilledPixelsAreHatched) {
 
 TEST(ErrorFigures, ShowOnlyWhatTheRunHas) {
     const EvalRig rig;
-    rig.change_frames([](EvalFrame&) {}, {"kd", "kd_segment", "ks", "alpha", "rgb_segment", "label"});
+    rig.change_frames([](EvalFrame&) {},
+                      {"kd", "kd_segment", "kd_shown", "ks", "alpha", "rgb_segment", "rgb_shown", "label"});
     EXPECT_THAT(titles_of(error_figures(rig.evaluate()).at(0)), ElementsAre("RGB refined", "depth"));
 }
 

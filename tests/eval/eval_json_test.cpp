@@ -33,8 +33,14 @@ void expect_equal(const json& got, const Scores& scores) {
 
 void expect_equal(const json& got, const Comparison& comparison) {
     EXPECT_EQ(got["coverage"], comparison.coverage);
+    expect_equal(got["all"], comparison.all);
     expect_equal(got["filled"], *comparison.filled);
-    expect_equal(got["unfilled_as_zero"], comparison.unfilled_as_zero);
+    expect_equal(got["seen"], *comparison.seen);
+}
+
+void expect_equal(const json& got, const Averages& averages) {
+    expect_equal(got["mean"], averages.mean);
+    expect_equal(got["final"], averages.at_end);
 }
 
 json list_of(glm::dvec3 v) { return {v.x, v.y, v.z}; }
@@ -47,8 +53,8 @@ void expect_equal(const json& columns, size_t row, const FramePoint& point) {
     const auto& filled = point.comparison.filled;
     EXPECT_EQ(columns["filled"]["mad"][row], filled ? json(filled->mad) : json());
     EXPECT_EQ(columns["filled"]["ssim"][row], filled ? json(filled->ssim) : json());
-    EXPECT_EQ(columns["unfilled_as_zero"]["rmse"][row], point.comparison.unfilled_as_zero.rmse);
-    EXPECT_EQ(columns["unfilled_as_zero"]["psnr_db"][row], point.comparison.unfilled_as_zero.psnr_db);
+    EXPECT_EQ(columns["all"]["rmse"][row], point.comparison.all.rmse);
+    EXPECT_EQ(columns["all"]["psnr_db"][row], point.comparison.all.psnr_db);
 }
 
 TEST(EvalJson, ReadsBackAsMeasured) {
@@ -63,10 +69,11 @@ TEST(EvalJson, ReadsBackAsMeasured) {
         const ObjectResult& object = evaluation.objects[i];
         EXPECT_EQ(got["objects"][i]["name"], object.name);
         EXPECT_EQ(got["objects"][i]["pixels"], object.pixels);
+        EXPECT_EQ(got["objects"][i]["seen_pixels"], object.seen_pixels);
         EXPECT_EQ(got["objects"][i]["segmentation"]["foreign_share"], object.segmentation->foreign_share);
         for (const Quantity quantity : kQuantities) {
             const json& measured = got["objects"][i]["quantities"][name_of(quantity)];
-            expect_equal(measured["mean"], object.quantities[quantity]->mean);
+            expect_equal(measured, static_cast<const Averages&>(*object.quantities[quantity]));
             const auto& frames = object.quantities[quantity]->frames;
             ASSERT_EQ(measured["frames"]["frame"].size(), frames.size());
             for (size_t row = 0; row < frames.size(); ++row) expect_equal(measured["frames"], row, frames[row]);
@@ -93,9 +100,9 @@ TEST(EvalJson, KeysKeepTheirOrder) {
     EXPECT_THAT(keys_of(got),
                 ElementsAre("format", "version", "sequence", "run", "width", "height", "frames", "truth_frames",
                             "run_frames", "seen_frames", "seen_share", "objects", "object_means", "depth_mm",
-                            "normal_deg", "segmentation", "trajectory", "states", "lights"));
+                            "normal_deg", "segmentation", "trajectory", "states", "lights", "novel", "relit"));
     EXPECT_THAT(keys_of(got["objects"][0]["quantities"]),
-                ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb"));
+                ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb", "kd_shown", "rgb_shown"));
 }
 
 TEST(EvalJson, WhatWasNotMeasuredIsNull) {
@@ -106,10 +113,18 @@ TEST(EvalJson, WhatWasNotMeasuredIsNull) {
     EXPECT_FALSE(got["objects"][0]["quantities"].at("rgb").is_null());
 }
 
+TEST(EvalJson, OnlyColoursHaveThePsnrOfSrgb) {
+    Evaluation evaluation = full_evaluation();
+    evaluation.object_means[Quantity::kRgb]->mean.all.psnr_srgb_db = 25.5;
+    const json got = parsed(evaluation)["object_means"];
+    EXPECT_EQ(got["rgb"]["mean"]["all"]["psnr_srgb_db"], 25.5);
+    EXPECT_FALSE(got["kd"]["mean"]["all"].contains("psnr_srgb_db"));
+}
+
 TEST(EvalJson, InfinitePsnrIsNull) {
     Evaluation evaluation = full_evaluation();
-    evaluation.object_means[Quantity::kKd]->filled->psnr_db = std::numeric_limits<double>::infinity();
-    const json got = parsed(evaluation)["object_means"]["kd"]["filled"];
+    evaluation.object_means[Quantity::kKd]->mean.filled->psnr_db = std::numeric_limits<double>::infinity();
+    const json got = parsed(evaluation)["object_means"]["kd"]["mean"]["filled"];
     EXPECT_TRUE(got.at("psnr_db").is_null());
     EXPECT_FALSE(got.at("mad").is_null());
 }

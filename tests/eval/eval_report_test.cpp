@@ -52,7 +52,7 @@ std::vector<std::string> unbalanced(const std::string& html) {
 TEST(EvalReport, HasScoresPlotsAndPictures) {
     const std::string html = report();
     EXPECT_THAT(html, HasSubstr("<th>kd refined</th><td class='number'>0.0300</td>"));
-    EXPECT_THAT(html, HasSubstr("<p>Scores over pixels whose surface was seen in at least 5 frames, 95.3% of"));
+    EXPECT_THAT(html, HasSubstr("<p>Scores over filled pixels whose surface was seen in at least 5 frames, 95.3% of"));
     EXPECT_THAT(html, HasSubstr("Depth error</td><td>1.50 mm median"));
     EXPECT_THAT(html, HasSubstr("true light 2</td>"));
     EXPECT_THAT(html, HasSubstr("93.8%"));
@@ -98,7 +98,7 @@ TEST(EvalReport, EscapesNames) {
 TEST(EvalReport, ManyObjectsHaveALineEach) {
     const std::string html = report(full_evaluation(30, 3));
     EXPECT_THAT(html, HasSubstr("<th>S30 chair 29</th><td class='number'>0.3000</td>"));
-    EXPECT_THAT(html, HasSubstr("<div class='scores turned' style='--columns: 6'>"));
+    EXPECT_THAT(html, HasSubstr("<div class='scores turned' style='--columns: 8'>"));
 }
 
 TEST(EvalReport, SaysWhatTheRunDidNotWrite) {
@@ -109,19 +109,19 @@ TEST(EvalReport, SaysWhatTheRunDidNotWrite) {
     EXPECT_EQ(count_of(html, "<svg class='plot"), 4u * 2u);
 }
 
-TEST(EvalReport, UnfilledPixelsCostInTablesOfTheirOwn) {
-    EXPECT_THAT(report(), HasSubstr("<h2>Scores with unfilled pixels as zero</h2>"));
-    Evaluation filled = full_evaluation();
-    for (ObjectResult& object : filled.objects) {
-        for (const Quantity quantity : kQuantities) object.quantities[quantity]->mean.coverage = 1;
-    }
-    EXPECT_THAT(report(filled), Not(HasSubstr("<h2>Scores with unfilled")));
-    EXPECT_THAT(report(filled), HasSubstr("Every pixel is filled"));
+TEST(EvalReport, KindsOfPixelsHaveTablesOfTheirOwn) {
+    for (const char* heading :
+         {"<h2>Averages, of all frames and of the last tenth</h2>", "<h2>Scores per object</h2>",
+          "<h2>Scores per object, filled pixels</h2>", "<h2>Scores per object, where it was seen often</h2>"})
+        EXPECT_THAT(report(), HasSubstr(heading));
+    Evaluation all = full_evaluation();
+    all.seen_frames = 1;
+    EXPECT_THAT(report(all), Not(HasSubstr("where it was seen often")));
 }
 
 TEST(EvalReport, ShowsNothingThatIsNoNumber) {
     Evaluation evaluation = full_evaluation();
-    evaluation.object_means[Quantity::kKd]->filled->psnr_db = std::numeric_limits<double>::infinity();
+    evaluation.object_means[Quantity::kKd]->mean.all.psnr_db = std::numeric_limits<double>::infinity();
     const std::string html = report(evaluation);
     EXPECT_THAT(html, HasSubstr(">inf</td>"));
     EXPECT_THAT(html, Not(HasSubstr(">nan")));

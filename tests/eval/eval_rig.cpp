@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> kOnlyInRuns = {"kd_segment", "rgb_segment"};
+const std::set<std::string> kOnlyInRuns = {"kd_segment", "rgb_segment", "kd_shown", "rgb_shown"};
 
 uint32_t object_at(uint32_t index, uint32_t x, uint32_t y) {
     if (x < 7 && y < 9) return 3;
@@ -42,7 +42,9 @@ void write_frame(const fs::path& file, const EvalFrame& frame, const std::set<st
                                                                       {"kd_segment", &frame.kd_segment},
                                                                       {"ks", &frame.ks},
                                                                       {"rgb", &frame.rgb},
-                                                                      {"rgb_segment", &frame.rgb_segment}};
+                                                                      {"rgb_segment", &frame.rgb_segment},
+                                                                      {"kd_shown", &frame.kd_shown},
+                                                                      {"rgb_shown", &frame.rgb_shown}};
     const std::pair<const char*, const Image<float>*> scalars[] = {
         {"alpha", &frame.alpha}, {"depth", &frame.depth}, {"label", &frame.label}, {"valid", &frame.valid}};
     for (const auto& [name, image] : colors) add(name, rgb_channels(name, *image));
@@ -65,8 +67,8 @@ EvalFrame EvalRig::frame(uint32_t index) {
     // Beyond 1 in the upper rows, where a recorded picture is clipped.
     frame.rgb = picture_of<glm::vec3>(
         kExtent, [&](auto x, auto y) { return true_kd(object(x, y), x, y) * (2.5f - 0.05f * static_cast<float>(y)); });
-    frame.kd_segment = frame.kd;
-    frame.rgb_segment = frame.rgb;
+    frame.kd_segment = frame.kd_shown = frame.kd;
+    frame.rgb_segment = frame.rgb_shown = frame.rgb;
     return frame;
 }
 

@@ -19,7 +19,7 @@ namespace patina::test {
 
 /// All channels of a frame in truth/frames or a run's frames.
 struct EvalFrame {
-    Image<glm::vec3> kd, kd_segment, ks, rgb, rgb_segment, normal;
+    Image<glm::vec3> kd, kd_segment, kd_shown, ks, rgb, rgb_segment, rgb_shown, normal;
     Image<float> alpha, depth, label, valid;
 };
 

@@ -18,7 +18,7 @@ constexpr Extent2D kExtent{40, 25};
 
 /// Three channels of truth, all of them region and filled, the run being equal.
 ObjectPictures perfect() {
-    ObjectPictures pictures{Image<uint8_t>(kExtent, 1), Image<uint8_t>(kExtent, 1), {}, {}};
+    ObjectPictures pictures{Image<uint8_t>(kExtent, 1), Image<uint8_t>(kExtent, 1), {}, {}, {}};
     for (uint32_t seed = 0; seed < 3; ++seed) pictures.truth.push_back(random_picture(kExtent, seed, 0.2f, 0.8f));
     pictures.run = pictures.truth;
     return pictures;
@@ -26,7 +26,7 @@ ObjectPictures perfect() {
 
 TEST(Compare, PerfectPicturesHaveNoError) {
     const Comparison comparison = compare(perfect());
-    for (const Scores& scores : {comparison.filled.value(), comparison.unfilled_as_zero}) {
+    for (const Scores& scores : {comparison.filled.value(), comparison.all}) {
         EXPECT_EQ(scores.mad, 0);
         EXPECT_EQ(scores.rmse, 0);
         EXPECT_EQ(scores.psnr_db, kInfinity);
@@ -56,7 +56,7 @@ TEST(Compare, OneWrongChannelCountsAThird) {
 }
 
 TEST(Compare, UnfilledPixelsCountAsZero) {
-    ObjectPictures pictures{Image<uint8_t>(kExtent, 1), Image<uint8_t>(kExtent, 1), {}, {}};
+    ObjectPictures pictures{Image<uint8_t>(kExtent, 1), Image<uint8_t>(kExtent, 1), {}, {}, {}};
     pictures.truth.emplace_back(kExtent, 0.5f);
     pictures.run = pictures.truth;
     for (size_t i = 0; i < 100; ++i) {
@@ -66,9 +66,9 @@ TEST(Compare, UnfilledPixelsCountAsZero) {
     const Comparison comparison = compare(pictures);
     EXPECT_DOUBLE_EQ(comparison.coverage, 0.9);
     EXPECT_EQ(comparison.filled->rmse, 0);
-    EXPECT_DOUBLE_EQ(comparison.unfilled_as_zero.mad, 0.1 * 0.5);
-    EXPECT_DOUBLE_EQ(comparison.unfilled_as_zero.rmse, std::sqrt(0.1 * 0.25));
-    EXPECT_LT(comparison.unfilled_as_zero.ssim, 0.5);
+    EXPECT_DOUBLE_EQ(comparison.all.mad, 0.1 * 0.5);
+    EXPECT_DOUBLE_EQ(comparison.all.rmse, std::sqrt(0.1 * 0.25));
+    EXPECT_LT(comparison.all.ssim, 0.5);
 }
 
 TEST(Compare, LeavingPixelsOutNeverPaysWhereTheRunIsOffByLessThanTheTruth) {
@@ -76,10 +76,10 @@ TEST(Compare, LeavingPixelsOutNeverPaysWhereTheRunIsOffByLessThanTheTruth) {
     for (Image<float>& channel : pictures.run) {
         for (float& value : channel.pixels()) value *= 1.5f;
     }
-    Scores before = compare(pictures).unfilled_as_zero;
+    Scores before = compare(pictures).all;
     for (const size_t pixel : {0u, 17u, 140u, 512u, 999u}) {
         pictures.filled.pixels()[pixel] = 0;
-        const Scores after = compare(pictures).unfilled_as_zero;
+        const Scores after = compare(pictures).all;
         EXPECT_GT(after.mad, before.mad);
         EXPECT_GT(after.rmse, before.rmse);
         EXPECT_LT(after.psnr_db, before.psnr_db);
@@ -106,8 +106,49 @@ TEST(Compare, WithoutFilledPixelsOnlyTheZeroVariantHasValues) {
     const Comparison comparison = compare(pictures);
     EXPECT_EQ(comparison.coverage, 0);
     EXPECT_FALSE(comparison.filled);
-    EXPECT_NEAR(comparison.unfilled_as_zero.mad, mean_over(pictures.region, pictures.truth)->x, 0.02);
+    EXPECT_NEAR(comparison.all.mad, mean_over(pictures.region, pictures.truth)->x, 0.02);
     EXPECT_FALSE(mean_over(pictures.filled, pictures.run));
+}
+
+TEST(Compare, WhatWasSeenIsScoredApart) {
+    ObjectPictures pictures = perfect();
+    pictures.seen = Image<uint8_t>(kExtent);
+    for (size_t i = 0; i < pictures.seen.pixels().size(); ++i) {
+        pictures.seen.pixels()[i] = i % kExtent.width < 20;
+        if (!pictures.seen.pixels()[i]) pictures.run[0].pixels()[i] += 0.3f;
+    }
+    const Comparison comparison = compare(pictures);
+    EXPECT_NEAR(comparison.all.mad, 0.05, 1e-6);
+    EXPECT_NEAR(comparison.filled->mad, 0.05, 1e-6);
+    EXPECT_EQ(comparison.seen->mad, 0);
+    EXPECT_DOUBLE_EQ(comparison.seen->ssim, 1);
+    pictures.seen = Image<uint8_t>(kExtent);
+    for (size_t i = 0; i < kSmallestRegion - 1; ++i) pictures.seen.pixels()[i] = 1;
+    EXPECT_FALSE(compare(pictures).seen);
+}
+
+TEST(Compare, SrgbHasAPsnrOfItsOwn) {
+    ObjectPictures pictures = perfect();
+    pictures.is_rgb = true;
+    EXPECT_EQ(compare(pictures).all.psnr_srgb_db, kInfinity);
+    for (size_t c = 0; c < 3; ++c) {
+        pictures.truth[c] = Image<float>(kExtent, 0.2140f);  // 0.5 in sRGB
+        pictures.run[c] = Image<float>(kExtent, 0.3185f);    // 0.6
+    }
+    EXPECT_NEAR(*compare(pictures).all.psnr_srgb_db, 20, 0.01);
+    EXPECT_NEAR(compare(pictures).all.psnr_db, -20 * std::log10(0.1045), 0.01);
+}
+
+TEST(AveragesOf, HasTheLastTenthOfTheFramesBesideAll) {
+    std::vector<FramePoint> frames(11);
+    for (uint32_t i = 0; i < 11; ++i) {
+        frames[i].frame = 10 * i;
+        frames[i].comparison.all.mad = i;
+    }
+    const Averages averages = averages_of(frames);
+    EXPECT_DOUBLE_EQ(averages.mean.all.mad, 5);
+    EXPECT_DOUBLE_EQ(averages.at_end.all.mad, 9.5) << "a tenth of 11, rounded up";
+    EXPECT_FALSE(averages.mean.filled);
 }
 
 TEST(MeanOver, ScalarsFillAllChannels) {
@@ -116,7 +157,7 @@ TEST(MeanOver, ScalarsFillAllChannels) {
 }
 
 TEST(MeanOf, CapsInfinitePsnrUnlessAllAre) {
-    const Scores perfect_scores{0, 0, kInfinity, 1}, other{0.1, 0.1, 20, 0.5}, tiny{1e-8, 1e-8, 160, 1};
+    const Scores perfect_scores{0, 0, kInfinity, 1, {}}, other{0.1, 0.1, 20, 0.5, {}}, tiny{1e-8, 1e-8, 160, 1, {}};
     EXPECT_EQ(mean_of(std::vector{perfect_scores, other}).psnr_db, (kPsnrCap_db + 20) / 2);
     EXPECT_EQ(mean_of(std::vector{tiny, other}).psnr_db, (kPsnrCap_db + 20) / 2);
     EXPECT_EQ(mean_of(std::vector{perfect_scores, perfect_scores}).psnr_db, kInfinity);
@@ -124,11 +165,12 @@ TEST(MeanOf, CapsInfinitePsnrUnlessAllAre) {
 }
 
 TEST(MeanOf, LeavesOutWhatIsNotThere) {
-    const Comparison seen{1, Scores{0.2, 0.2, 14, 0.5}, {0.2, 0.2, 14, 0.5}}, unseen{0, {}, {0.6, 0.6, 4, 0.1}};
+    const Scores scores{0.2, 0.2, 14, 0.5, {}};
+    const Comparison seen{1, scores, scores, scores}, unseen{0, {0.6, 0.6, 4, 0.1, {}}, {}, {}};
     const Comparison mean = mean_of(std::vector{seen, unseen});
     EXPECT_DOUBLE_EQ(mean.coverage, 0.5);
     EXPECT_DOUBLE_EQ(mean.filled->mad, 0.2);
-    EXPECT_DOUBLE_EQ(mean.unfilled_as_zero.mad, 0.4);
+    EXPECT_DOUBLE_EQ(mean.all.mad, 0.4);
     EXPECT_FALSE(mean_of(std::vector{unseen}).filled);
 }
 

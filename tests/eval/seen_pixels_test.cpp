@@ -77,7 +77,9 @@ TEST(SeenPixels, TrueFramesAreAsLargeAsColour) {
     test::EvalFrame small;
     for (auto* picture : {&small.depth, &small.valid}) *picture = Image<float>({4, 3}, 1);
     const auto file = SlidingRig::frame_file(rig.sequence() / "truth", 0);
-    test::write_frame(file, small, {"kd", "kd_segment", "ks", "alpha", "rgb", "rgb_segment", "normal", "label"});
+    test::write_frame(
+        file, small,
+        {"kd", "kd_segment", "kd_shown", "ks", "alpha", "rgb", "rgb_segment", "rgb_shown", "normal", "label"});
     EXPECT_THAT([&] { mask_of(rig, 4, 2); },
                 throws_error_with("000000.exr is 4 x 3 pixels, but the sequence's colour is 48 x 40"));
 }
@@ -92,7 +94,7 @@ void spoil_unseen(test::EvalFrame& frame) {
     }
 }
 
-TEST(SeenPixels, AreWhatMaterialsAndColoursAreScoredOver) {
+TEST(SeenPixels, AreScoredApart) {
     const SlidingRig rig;
     test::EvalFrame spoilt = SlidingRig::frame();
     spoil_unseen(spoilt);
@@ -101,20 +103,21 @@ TEST(SeenPixels, AreWhatMaterialsAndColoursAreScoredOver) {
     const Evaluation all = evaluate(rig.sequence(), rig.run(), {.seen_frames = 1});
 
     const ObjectQuantity& kd = seen.objects.at(0).quantities[Quantity::kKd].value();
-    ASSERT_EQ(kd.frames.size(), 2u) << "nothing of frame 0 was seen five times";
-    EXPECT_EQ(kd.frames[0].frame, 4u);
-    EXPECT_EQ(kd.mean.coverage, 1);
-    EXPECT_EQ(kd.mean.filled->mad, 0);
-    EXPECT_DOUBLE_EQ(kd.mean.filled->ssim, 1);
-    EXPECT_EQ(kd.mean.unfilled_as_zero.rmse, 0);
-    EXPECT_EQ(seen.objects[0].pixels, 2u * 40 * first_unseen(5));
+    ASSERT_EQ(kd.frames.size(), 3u);
+    EXPECT_FALSE(kd.frames[0].comparison.seen) << "nothing of frame 0 was seen five times";
+    EXPECT_EQ(kd.mean.seen->mad, 0);
+    EXPECT_DOUBLE_EQ(kd.mean.seen->ssim, 1);
+    EXPECT_GT(kd.mean.filled->mad, 0.005);
+    EXPECT_GT(kd.mean.all.mad, kd.mean.filled->mad);
+    EXPECT_EQ(seen.objects[0].pixels, 3u * 40 * kWidth);
+    EXPECT_EQ(seen.objects[0].seen_pixels, 2u * 40 * first_unseen(5));
     EXPECT_EQ(seen.seen_frames, 5u);
     EXPECT_DOUBLE_EQ(seen.seen_share, 2.0 * first_unseen(5) / (3 * kWidth));
 
     const ObjectQuantity& kd_all = all.objects.at(0).quantities[Quantity::kKd].value();
-    EXPECT_EQ(kd_all.frames.size(), 3u);
     EXPECT_DOUBLE_EQ(kd_all.frames[1].comparison.coverage, 1 - 0.25 * (kWidth - first_unseen(5)) / kWidth);
-    EXPECT_GT(kd_all.mean.filled->mad, 0.005);
+    EXPECT_EQ(kd_all.mean.seen->mad, kd_all.mean.filled->mad) << "every pixel counts as seen";
+    EXPECT_EQ(kd_all.mean.all.mad, kd.mean.all.mad) << "how often is enough makes no difference elsewhere";
     EXPECT_EQ(all.seen_share, 1);
 
     EXPECT_EQ(seen.depth_mm->pixels, all.depth_mm->pixels);
@@ -123,15 +126,16 @@ TEST(SeenPixels, AreWhatMaterialsAndColoursAreScoredOver) {
     EXPECT_EQ(seen.segmentation->iou, all.segmentation->iou);
 }
 
-TEST(SeenPixels, UnfilledOnesLowerCoverage) {
+TEST(SeenPixels, AreScoredWhereTheyAreFilled) {
     const SlidingRig rig;
     test::EvalFrame empty = SlidingRig::frame();
     for (uint32_t x = 0; x < kWidth; ++x) empty.valid.at(x, 7) = 0;
     for (const uint32_t index : {4, 8}) test::write_frame(SlidingRig::frame_file(rig.run(), index), empty);
     const Evaluation result = evaluate(rig.sequence(), rig.run());
     const Comparison& kd = result.objects.at(0).quantities[Quantity::kKd]->mean;
-    EXPECT_DOUBLE_EQ(kd.coverage, 39.0 / 40);
-    EXPECT_NEAR(kd.unfilled_as_zero.mad, 0.5 / 40, 1e-9);
+    EXPECT_DOUBLE_EQ(kd.coverage, (1 + 2 * 39.0 / 40) / 3);
+    EXPECT_NEAR(kd.all.mad, 2 * 0.5 / 40 / 3, 1e-9);
+    EXPECT_EQ(kd.seen->mad, 0);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ fs::path SlidingRig::frame_file(const fs::path& folder, uint32_t index) {
 
 EvalFrame SlidingRig::frame() {
     EvalFrame frame;
-    for (auto* picture : {&frame.kd, &frame.kd_segment, &frame.ks, &frame.rgb, &frame.rgb_segment}) {
+    for (auto* picture :
+         {&frame.kd, &frame.kd_segment, &frame.kd_shown, &frame.ks, &frame.rgb, &frame.rgb_segment, &frame.rgb_shown}) {
         *picture = Image<glm::vec3>(SlidingView::kExtent, glm::vec3(0.5f));
     }
     frame.normal = Image<glm::vec3>(SlidingView::kExtent, glm::vec3(0, 0, -1));

@@ -80,7 +80,7 @@ TEST(Ssim, CountsUnfilledPixelsAsZero) {
     }
     const SsimScores scores = ssim(truth, run, region, filled);
     EXPECT_NEAR(scores.filled.value(), over_filled, kTolerance);
-    EXPECT_NEAR(scores.unfilled_as_zero, over_region, kTolerance);
+    EXPECT_NEAR(scores.all, over_region, kTolerance);
 }
 
 TEST(Ssim, WithoutFilledPixelsHasNoValueOverThem) {
@@ -88,7 +88,7 @@ TEST(Ssim, WithoutFilledPixelsHasNoValueOverThem) {
     const Image<float> truth(extent, 1.0f), run(extent, 1.0f);
     const SsimScores scores = ssim({&truth, 1}, {&run, 1}, full(extent), Image<uint8_t>(extent));
     EXPECT_FALSE(scores.filled);
-    EXPECT_NEAR(scores.unfilled_as_zero, 1e-4 / (1 + 1e-4), kTolerance);
+    EXPECT_NEAR(scores.all, 1e-4 / (1 + 1e-4), kTolerance);
 }
 
 TEST(Ssim, DoesNotLookOutsideTheMasks) {
@@ -102,7 +102,7 @@ TEST(Ssim, DoesNotLookOutsideTheMasks) {
     }
     const SsimScores scores = ssim({&truth, 1}, {&run, 1}, region, filled);
     EXPECT_EQ(scores.filled, expected.filled);
-    EXPECT_EQ(scores.unfilled_as_zero, expected.unfilled_as_zero);
+    EXPECT_EQ(scores.all, expected.all);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(TimePlots, ErrorsAreTheMeanAbsoluteDeviationFromZeroOn) {
     const Plot& plot = rows[3].plots[2];
     ASSERT_THAT(roles_of(plot), ElementsAre(LineRole::kEstimate, LineRole::kRefined));
     const auto& frames = evaluation.objects[2].quantities[Quantity::kRgb]->frames;
-    EXPECT_EQ(plot.lines[1].y[5], frames[5].comparison.filled->mad);
+    EXPECT_EQ(plot.lines[1].y[5], frames[5].comparison.all.mad);
     for (const Plot& other : rows[3].plots) {
         EXPECT_EQ(other.y_range->low, 0);
         EXPECT_EQ(other.y_range, plot.y_range);

@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "engine/core/expect_path.h"
+#include "engine/core/input_file.h"
 #include "engine/core/printable.h"
 #include "sensor/output/apart.h"
-#include "tools/commands/commands.h"
+#include "tools/commands/run_arguments.h"
 #include "tools/eval/eval_json.h"
 #include "tools/eval/eval_report.h"
 #include "tools/eval/eval_text.h"
 #include "tools/eval/evaluate.h"
 #include "tools/program/progress.h"
+#include "tools/render/never_recorded.h"
 #include "tools/report/output_folder.h"
 
 namespace patina::tools {
@@ -22,6 +24,7 @@ namespace {
 struct EvalArguments {
     std::filesystem::path sequence, run, out;
     eval::Settings settings;
+    DeviceArguments device;
     bool quiet = false;
 };
 
@@ -44,6 +47,30 @@ std::vector<std::filesystem::path> inputs_of(const EvalArguments& arguments, con
     return {arguments.sequence, run / "frames", run / "previews", run / "held_out"};
 }
 
+/// Where a run looks the same from where it never was, and under other lamps.
+void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, eval::Evaluation& evaluation) {
+    const std::filesystem::path sequence = std::filesystem::absolute(arguments.sequence),
+                                run = std::filesystem::absolute(arguments.run), truth = sequence / "truth";
+    if (!path_exists(truth / "novel")) return;
+    if (!path_exists(map_in(run))) {
+        evaluation.no_views =
+            "Views that were never recorded were not compared: the run kept no map "
+            "(--checkpoint-every).";
+        return;
+    }
+    const RigidTransform truth_from_run = eval::world_of_run(sequence, run);
+    const auto kept = kept_arguments(run);
+    kept->sequence.finish(kept->run);
+    kept->run.map = map_in(run);
+    kept->run.resume = true;
+    kept->run.checkpoint_every = 0;
+    kept->run.device = arguments.device.choice();
+    render_never_recorded(kept->run, truth, truth_from_run, out);
+    const glm::dmat3 rotation(truth_from_run);
+    evaluation.novel = eval::evaluate_views(truth / "novel", out.published("novel/000000.exr").parent_path(), rotation);
+    evaluation.relit = eval::evaluate_views(truth / "relit", out.published("relit/000000.exr").parent_path(), rotation);
+}
+
 void write_files(const eval::Evaluation& evaluation, OutputFolder& out) {
     out.write("report.html", eval_report_html(evaluation, eval::error_figures(evaluation)));
     out.write("eval.json", eval::eval_json(evaluation));
@@ -53,8 +80,10 @@ void write_files(const eval::Evaluation& evaluation, OutputFolder& out) {
 void run_eval(const EvalArguments& arguments) {
     const std::filesystem::path folder = arguments.out.empty() ? arguments.run / "eval" : arguments.out;
     expect_folder(arguments.run);
-    OutputFolder out(folder, inputs_of(arguments, folder), ResultKind::kEvaluation);
-    const eval::Evaluation evaluation = evaluate_with_progress(arguments);
+    // Absolute, as what a run was given is looked for in the folder that it was started in.
+    OutputFolder out(std::filesystem::absolute(folder), inputs_of(arguments, folder), ResultKind::kEvaluation);
+    eval::Evaluation evaluation = evaluate_with_progress(arguments);
+    evaluate_never_recorded(arguments, out, evaluation);
     write_files(evaluation, out);
     if (arguments.quiet) return;
     std::fputs(eval::eval_text(evaluation).c_str(), stdout);
@@ -76,11 +105,12 @@ void add_eval(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--seen", arguments->settings.seen_frames,
-                     "Score materials and colours where the surface was seen in at least so many frames of the "
-                     "sequence; 1 takes every pixel that has truth")
+                     "Score materials and colours, besides everywhere, where the surface was seen in at least so many "
+                     "frames of the sequence")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
+    arguments->device.add_to(*command);
     command->callback([arguments] { run_eval(*arguments); });
 }
 

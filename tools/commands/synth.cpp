@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "scenes/description/never_recorded.h"
 #include "scenes/description/noise.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/parse.h"
@@ -71,6 +72,10 @@ void add_synth(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--truth-every", options.truth_every,
                         "Write truth/frames/NNNNNN.exr of every so many frames: materials, normals, depth, radiance");
+    command
+        ->add_option("--novel", options.novel,
+                     "Write so many views off the path to truth/novel, and the same under other lamps to truth/relit")
+        ->check(CLI::Range(scenes::kFewestNovelViews, 100000u));
     add_optional(*command, "--seed", options.changes.seed, "Seed of noise and random samples");
     add_optional(*command, "--vary", options.changes.vary, "Seed of other materials, lights and path of the same kind");
     command->add_option("--mesh", options.changes.mesh, "Mesh in place of those whose height the scene sets");

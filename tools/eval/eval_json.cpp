@@ -15,7 +15,9 @@ struct Convert {
 
     /// An infinite PSNR becomes null: JSON has no infinity.
     static Json to_json(const Scores& scores) {
-        return {{"mad", scores.mad}, {"rmse", scores.rmse}, {"psnr_db", scores.psnr_db}, {"ssim", scores.ssim}};
+        Json json = {{"mad", scores.mad}, {"rmse", scores.rmse}, {"psnr_db", scores.psnr_db}, {"ssim", scores.ssim}};
+        if (scores.psnr_srgb_db) json["psnr_srgb_db"] = *scores.psnr_srgb_db;
+        return json;
     }
 
     template <class Value>
@@ -25,8 +27,13 @@ struct Convert {
 
     static Json to_json(const Comparison& comparison) {
         return {{"coverage", comparison.coverage},
+                {"all", to_json(comparison.all)},
                 {"filled", or_null(comparison.filled)},
-                {"unfilled_as_zero", to_json(comparison.unfilled_as_zero)}};
+                {"seen", or_null(comparison.seen)}};
+    }
+
+    static Json to_json(const Averages& averages) {
+        return {{"mean", to_json(averages.mean)}, {"final", to_json(averages.at_end)}};
     }
 
     /// What `value` gives for each frame, as one list.
@@ -38,35 +45,38 @@ struct Convert {
     }
 
     /// One list per score instead of one object per frame: short, and what a plot needs.
-    template <class ScoresOf>
-    static Json score_columns(const std::vector<FramePoint>& frames, ScoresOf&& scores_of) {
-        const auto list = [&](double Scores::*member) {
+    static Json score_columns(const std::vector<FramePoint>& frames, Pixels pixels) {
+        const auto list = [&](const auto& value_of) {
             return column(frames, [&](const FramePoint& point) {
-                const Scores* scores = scores_of(point);
-                return scores ? Json(scores->*member) : Json();
+                const Scores* scores = point.comparison.over(pixels);
+                return scores ? Json(value_of(*scores)) : Json();
             });
         };
-        return {{"mad", list(&Scores::mad)},
-                {"rmse", list(&Scores::rmse)},
-                {"psnr_db", list(&Scores::psnr_db)},
-                {"ssim", list(&Scores::ssim)}};
+        Json json = {{"mad", list([](const Scores& scores) { return scores.mad; })},
+                     {"rmse", list([](const Scores& scores) { return scores.rmse; })},
+                     {"psnr_db", list([](const Scores& scores) { return scores.psnr_db; })},
+                     {"ssim", list([](const Scores& scores) { return scores.ssim; })}};
+        if (!frames.empty() && frames.front().comparison.all.psnr_srgb_db) {
+            json["psnr_srgb_db"] =
+                list([](const Scores& scores) { return scores.psnr_srgb_db ? Json(*scores.psnr_srgb_db) : Json(); });
+        }
+        return json;
     }
 
     static Json to_json(const std::vector<FramePoint>& frames) {
-        return {{"frame", column(frames, [](const FramePoint& point) { return Json(point.frame); })},
-                {"truth_mean", column(frames, [](const FramePoint& point) { return to_json(point.truth_mean); })},
-                {"run_mean", column(frames, [](const FramePoint& point) { return or_null(point.run_mean); })},
-                {"coverage", column(frames, [](const FramePoint& point) { return Json(point.comparison.coverage); })},
-                {"filled", score_columns(frames,
-                                         [](const FramePoint& point) {
-                                             return point.comparison.filled ? &*point.comparison.filled : nullptr;
-                                         })},
-                {"unfilled_as_zero",
-                 score_columns(frames, [](const FramePoint& point) { return &point.comparison.unfilled_as_zero; })}};
+        Json json = {
+            {"frame", column(frames, [](const FramePoint& point) { return Json(point.frame); })},
+            {"truth_mean", column(frames, [](const FramePoint& point) { return to_json(point.truth_mean); })},
+            {"run_mean", column(frames, [](const FramePoint& point) { return or_null(point.run_mean); })},
+            {"coverage", column(frames, [](const FramePoint& point) { return Json(point.comparison.coverage); })}};
+        for (const Pixels pixels : kPixels) json[name_of(pixels)] = score_columns(frames, pixels);
+        return json;
     }
 
     static Json to_json(const ObjectQuantity& quantity) {
-        return {{"mean", to_json(quantity.mean)}, {"frames", to_json(quantity.frames)}};
+        Json json = to_json(static_cast<const Averages&>(quantity));
+        json["frames"] = to_json(quantity.frames);
+        return json;
     }
 
     template <class Value>
@@ -88,6 +98,7 @@ struct Convert {
         return {{"id", object.id},
                 {"name", object.name},
                 {"pixels", object.pixels},
+                {"seen_pixels", object.seen_pixels},
                 {"quantities", to_json(object.quantities)},
                 {"segmentation", or_null(object.segmentation)}};
     }
@@ -147,6 +158,14 @@ struct Convert {
         return column(values, [](const Value& value) { return to_json(value); });
     }
 
+    static Json to_json(const Views& views) {
+        return {{"frames", views.frames},
+                {"objects", list_of(views.objects)},
+                {"object_means", to_json(views.object_means)},
+                {"depth_mm", or_null(views.depth_mm)},
+                {"normal_deg", or_null(views.normal_deg)}};
+    }
+
     static Json to_json(const LightErrors& lights) {
         return {{"radius_m", lights.radius_m},          {"truth", list_of(lights.truth)}, {"run", list_of(lights.run)},
                 {"matches", list_of(lights.matches)},   {"missed", lights.missed},        {"invented", lights.invented},
@@ -188,7 +207,7 @@ void append(std::string& text, const Json& json, const std::string& indent) {
 
 std::string eval_json(const Evaluation& evaluation) {
     const Json json = {{"format", "patina-eval"},
-                       {"version", 1},
+                       {"version", 2},
                        {"sequence", evaluation.sequence},
                        {"run", evaluation.run},
                        {"width", evaluation.extent.width},
@@ -205,7 +224,9 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"segmentation", Convert::or_null(evaluation.segmentation)},
                        {"trajectory", Convert::or_null(evaluation.trajectory)},
                        {"states", Convert::or_null(evaluation.states)},
-                       {"lights", Convert::or_null(evaluation.lights)}};
+                       {"lights", Convert::or_null(evaluation.lights)},
+                       {"novel", Convert::or_null(evaluation.novel)},
+                       {"relit", Convert::or_null(evaluation.relit)}};
     std::string text;
     append(text, json, "");
     return text + '\n';

@@ -67,30 +67,27 @@ std::string metric_table(const ScoreTable& table, const MetricCells& metric) {
                        report_table("<th></th>" + cells("th", table.columns), rows));
 }
 
-std::string metric_tables(const Evaluation& evaluation, Pixels pixels) {
-    const ScoreTable table = score_table(evaluation, pixels);
+std::string metric_tables(const ScoreTable& table) {
     std::string html;
     for (const MetricCells& metric : table.metrics) html += metric_table(table, metric);
     return fmt::format("<div class='scores{}' style='--columns: {}'>\n{}</div>\n", table.is_turned ? " turned" : "",
                        table.columns.size(), html);
 }
 
-std::string scores(const Evaluation& evaluation) {
+std::string averages(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
-    const std::string key = column_key(evaluation);
-    return paragraph(scored_pixels(evaluation)) + (key.empty() ? key : paragraph(key)) +
-           metric_tables(evaluation, Pixels::kFilled) +
-           (has_unfilled(evaluation)
-                ? std::string()
-                : paragraph("Every pixel is filled: counting unfilled ones as zero changes nothing."));
+    return paragraph(
+               "Over the objects. RGB before and after refinement, and kd, are the model's own: without detail "
+               "restored "
+               "from the fused colour. What a user is shown has it.") +
+           metric_tables(summary_table(evaluation));
 }
 
-std::string scores_with_zeros(const Evaluation& evaluation) {
-    if (!has_unfilled(evaluation)) return {};
-    return paragraph(
-               "As above, but pixels that the run leaves empty count as 0, so that leaving hard ones out does not "
-               "pay.") +
-           metric_tables(evaluation, Pixels::kUnfilledAsZero);
+std::string scores(const Evaluation& evaluation, Pixels pixels) {
+    if (evaluation.objects.empty()) return {};
+    const std::string key = column_key(evaluation);
+    return paragraph(scored_pixels(evaluation, pixels)) + (key.empty() ? key : paragraph(key)) +
+           metric_tables(score_table(evaluation, pixels));
 }
 
 std::string finding_table(const Evaluation& evaluation) {
@@ -184,8 +181,13 @@ std::string eval_report_html(const Evaluation& evaluation, std::span<const Error
                                    html_escaped(title), html_escaped(evaluation.sequence));
     html += facts(evaluation);
     html += report_section("Not measured", report_warnings(absences(evaluation)));
-    html += report_section("Scores per object", scores(evaluation));
-    html += report_section("Scores with unfilled pixels as zero", scores_with_zeros(evaluation));
+    html += report_section("Averages, of all frames and of the last tenth", averages(evaluation));
+    for (const ViewsSection& section : views_sections(evaluation))
+        html += report_section(section.title, metric_tables(summary_table(section.views)));
+    html += report_section("Scores per object", scores(evaluation, Pixels::kAll));
+    html += report_section("Scores per object, filled pixels", scores(evaluation, Pixels::kFilled));
+    if (evaluation.seen_frames > 1)
+        html += report_section("Scores per object, where it was seen often", scores(evaluation, Pixels::kSeen));
     html += report_section("Geometry, trajectory, segmentation, lights", finding_table(evaluation));
     html += report_section("Lights", light_table(evaluation.lights));
     html += report_section("Segmentation per object", segmentation_table(evaluation));
@@ -193,7 +195,7 @@ std::string eval_report_html(const Evaluation& evaluation, std::span<const Error
         "Reconstructed parameters over time",
         plot_rows(value_plots(evaluation), "Means over each object's region. Gaps: the object is not seen."));
     html += report_section("Errors over time", plot_rows(error_plots(evaluation),
-                                                         "Mean absolute deviation over each object's filled pixels."));
+                                                         "Mean absolute deviation over all of each object's pixels."));
     html += report_section("Error pictures", error_pictures(figures));
     return report_page(title, html, std::string(plot_style()) + std::string(kStyle));
 }

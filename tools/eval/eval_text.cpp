@@ -12,7 +12,7 @@ namespace patina::eval {
 namespace {
 
 constexpr size_t kTerminalColumns = 120;
-constexpr size_t kLongestName = 22;  // with it, two metrics of six quantities fit beside each other
+constexpr size_t kLongestName = 22;
 constexpr size_t kShortestCell = 7;
 
 bool continues_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
@@ -114,12 +114,13 @@ class MetricPrinter {
 std::string score_text(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {};
     const std::string key = printable(column_key(evaluation));
-    std::string text = scored_pixels(evaluation) + '\n' + key + (key.empty() ? "\n" : "\n\n");
-    text += MetricPrinter(score_table(evaluation, Pixels::kFilled)).text();
-    if (has_unfilled(evaluation)) {
-        text += "With unfilled pixels counted as zero:\n\n" +
-                MetricPrinter(score_table(evaluation, Pixels::kUnfilledAsZero)).text();
-    }
+    std::string text =
+        scored_pixels(evaluation, Pixels::kAll) + '\n' + key + (key.empty() ? "\n" : "\n\n") +
+        MetricPrinter(score_table(evaluation, Pixels::kAll)).text() +
+        "Averages over the objects, of all frames and of the last tenth of those that show an object:\n\n" +
+        MetricPrinter(summary_table(evaluation)).text();
+    for (const auto& [title, views] : views_sections(evaluation))
+        text += title + ":\n\n" + MetricPrinter(summary_table(views)).text();
     return text;
 }
 

@@ -39,8 +39,8 @@ std::string range_of(const std::map<uint32_t, fs::path>& frames) {
     return text(frames.size(), " from ", frames.begin()->first, " to ", frames.rbegin()->first);
 }
 
-std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& run, Evaluation& result) {
-    const fs::path truth_folder = sequence / "truth" / "frames", run_folder = run / "frames";
+/// Files of two folders that have the same numbers; at least one.
+std::vector<FramePair> common_frames(const fs::path& truth_folder, const fs::path& run_folder) {
     const auto truth_frames = exr_frames(truth_folder), run_frames = exr_frames(run_folder);
     if (truth_frames.empty()) {
         throw Error(truth_folder.string(), " holds no frames: record the sequence with --truth-every N");
@@ -56,10 +56,13 @@ std::vector<FramePair> common_frames(const fs::path& sequence, const fs::path& r
         throw Error(truth_folder.string(), " (", range_of(truth_frames), ") and ", run_folder.string(), " (",
                     range_of(run_frames), ") have no frame in common");
     }
-    result.truth_frames = truth_frames.size();
-    result.run_frames = run_frames.size();
-    for (const FramePair& pair : pairs) result.frames.push_back(pair.index);
     return pairs;
+}
+
+std::vector<uint32_t> indices_of(std::span<const FramePair> pairs) {
+    std::vector<uint32_t> indices;
+    for (const FramePair& pair : pairs) indices.push_back(pair.index);
+    return indices;
 }
 
 std::map<uint32_t, fs::path> truth_files(std::span<const FramePair> pairs) {
@@ -108,7 +111,7 @@ struct Reference {
     std::set<std::string> groups;
     std::string file;                               ///< the run's first frame, which the above come from
     std::map<uint32_t, glm::dmat3> truth_from_run;  ///< rotations of the frames that have poses
-    std::optional<SeenPixels> seen;                 ///< empty where every pixel is scored
+    std::optional<SeenPixels> seen;                 ///< empty where every pixel counts as seen
 };
 
 Reference reference_of(const FramePair& first, std::span<const PosePair> poses, std::string run_id) {
@@ -151,6 +154,7 @@ class Totals {
         for (auto& [id, object] : frame.objects) {
             ObjectResult& total = objects_[id];
             total.pixels += object.pixels;
+            total.seen_pixels += object.seen_pixels;
             for (const Quantity quantity : kQuantities) {
                 if (!object.points[quantity]) continue;
                 if (!total.quantities[quantity]) total.quantities[quantity].emplace();
@@ -159,7 +163,6 @@ class Totals {
         }
         overlap_.add(frame.overlap);
         truth_pixels_ += frame.truth_pixels;
-        object_pixels_ += frame.object_pixels;
         for (const float error : frame.depth_errors_mm) depth_mm_.add(error);
         for (const float error : frame.normal_errors_deg) normal_deg_.add(error);
     }
@@ -169,19 +172,23 @@ class Totals {
         result.depth_mm = depth_mm_.spread(truth_pixels_);
         result.normal_deg = normal_deg_.spread(truth_pixels_);
         std::vector<ObjectSegmentation> segmentations;
-        PerQuantity<std::vector<Comparison>> means;
-        uint64_t scored = 0;
+        PerQuantity<std::vector<Averages>> means;
+        uint64_t pixels = 0, seen = 0;
         for (auto& [id, object] : objects_) {
-            scored += object.pixels;
+            pixels += object.pixels;
+            seen += object.seen_pixels;
             object.id = id;
             object.name = text("object ", id);
             if (has_labels) segmentations.push_back(*(object.segmentation = overlap_.segmentation_of(id)));
             for (const Quantity quantity : kQuantities) {
-                if (auto& series = object.quantities[quantity]) means[quantity].push_back(average(*series));
+                auto& series = object.quantities[quantity];
+                if (!series) continue;
+                static_cast<Averages&>(*series) = averages_of(series->frames);
+                means[quantity].push_back(*series);
             }
             result.objects.push_back(std::move(object));
         }
-        if (object_pixels_ > 0) result.seen_share = static_cast<double>(scored) / static_cast<double>(object_pixels_);
+        if (pixels > 0) result.seen_share = static_cast<double>(seen) / static_cast<double>(pixels);
         if (!segmentations.empty()) result.segmentation = mean_of(segmentations);
         for (const Quantity quantity : kQuantities) {
             if (!means[quantity].empty()) result.object_means[quantity] = mean_of(means[quantity]);
@@ -189,17 +196,9 @@ class Totals {
     }
 
   private:
-    /// Fills in the mean over frames, and returns it.
-    static const Comparison& average(ObjectQuantity& series) {
-        std::vector<Comparison> frames;
-        for (const FramePoint& point : series.frames) frames.push_back(point.comparison);
-        return series.mean = mean_of(frames);
-    }
-
     std::map<uint32_t, ObjectResult> objects_;
     LabelOverlap overlap_;
     uint64_t truth_pixels_ = 0;
-    uint64_t object_pixels_ = 0;
     PixelErrorSum depth_mm_;
     PixelErrorSum normal_deg_;
 };
@@ -230,13 +229,36 @@ void name_objects(const fs::path& materials_file, std::vector<ObjectResult>& obj
 
 }  // namespace
 
+Views evaluate_views(const fs::path& sequence, const fs::path& pictures, const glm::dmat3& truth_from_run) {
+    const std::vector<FramePair> pairs = common_frames(sequence / "truth" / "frames", pictures);
+    const ExrPlanes first = ExrPlanes::read(pairs.front().run);
+    Reference reference = reference_of(pairs.front(), {}, first.run_id());
+    for (const FramePair& pair : pairs) reference.truth_from_run[pair.index] = truth_from_run;
+    Totals totals;
+    measure_frames(pairs, reference, {}, totals);
+    Evaluation result;
+    totals.finish(reference.groups.contains("label"), result);
+    name_objects(sequence / "truth" / "materials.json", result.objects);
+    return {indices_of(pairs), std::move(result.objects), result.object_means, result.depth_mm, result.normal_deg};
+}
+
+RigidTransform world_of_run(const fs::path& sequence, const fs::path& run) {
+    Evaluation unused;
+    const std::vector<PosePair> poses = read_poses(sequence, run, unused);
+    return poses.empty() ? RigidTransform(1.0) : align_worlds(poses);
+}
+
 Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Settings& settings) {
     expect_folder(sequence);
     expect_folder(run);
     Evaluation result;
     result.sequence = sequence.string();
     result.run = run.string();
-    const std::vector<FramePair> pairs = common_frames(sequence, run, result);
+    const fs::path truth_folder = sequence / "truth" / "frames", run_folder = run / "frames";
+    const std::vector<FramePair> pairs = common_frames(truth_folder, run_folder);
+    result.frames = indices_of(pairs);
+    result.truth_frames = exr_frames(truth_folder).size();
+    result.run_frames = exr_frames(run_folder).size();
     const std::string run_id = id_of_finished_run(run);
     const std::vector<PosePair> poses = read_poses(sequence, run, result);
     result.states = read_frame_states(run);

@@ -12,10 +12,10 @@ struct Group {
     const char* components;  ///< one letter each; empty for a scalar
 };
 
-constexpr std::array kGroups = {Group{"kd", "RGB"},         Group{"ks", "RGB"},     Group{"alpha", ""},
-                                Group{"kd_segment", "RGB"}, Group{"rgb", "RGB"},    Group{"rgb_segment", "RGB"},
-                                Group{"depth", ""},         Group{"normal", "XYZ"}, Group{"label", ""},
-                                Group{"valid", ""}};
+constexpr std::array kGroups = {Group{"kd", "RGB"},         Group{"ks", "RGB"},        Group{"alpha", ""},
+                                Group{"kd_segment", "RGB"}, Group{"rgb", "RGB"},       Group{"rgb_segment", "RGB"},
+                                Group{"kd_shown", "RGB"},   Group{"rgb_shown", "RGB"}, Group{"depth", ""},
+                                Group{"normal", "XYZ"},     Group{"label", ""},        Group{"valid", ""}};
 
 }  // namespace
 
@@ -27,6 +27,8 @@ QuantityChannels channels_for(Quantity quantity) {
         case Quantity::kAlpha: return {"alpha", "alpha", false};
         case Quantity::kRgbBefore: return {"rgb", "rgb_segment", true};
         case Quantity::kRgb: return {"rgb", "rgb", true};
+        case Quantity::kKdShown: return {"kd", "kd_shown", false};
+        case Quantity::kRgbShown: return {"rgb", "rgb_shown", true};
     }
     PATINA_ASSERT(false, "quantity ", static_cast<int>(quantity));
 }

@@ -69,11 +69,6 @@ std::map<uint32_t, Region> regions_in(const Image<uint32_t>& objects) {
     return regions;
 }
 
-Image<uint32_t> masked(Image<uint32_t> objects, const Image<uint8_t>& mask) {
-    for (size_t i = 0; i < mask.pixels().size(); ++i) objects.pixels()[i] *= mask.pixels()[i];
-    return objects;
-}
-
 template <class Pixel>
 Image<Pixel> cropped(const std::vector<Pixel>& plane, Extent2D extent, const Box& box) {
     Image<Pixel> part(box.extent());
@@ -92,7 +87,7 @@ struct Frames {
     Image<uint8_t> truth_valid;
     Image<uint8_t> run_valid;
     Image<uint32_t> objects;
-    Image<uint32_t> regions;  ///< the objects where they are scored; else 0
+    const Image<uint8_t>& seen;  ///< empty: everywhere
 };
 
 std::vector<Image<float>> cropped_channels(const ExrPlanes& frame, const std::string& group, const Box& box,
@@ -111,17 +106,22 @@ std::vector<Image<float>> cropped_channels(const ExrPlanes& frame, const std::st
 
 ObjectPictures pictures_of(const Frames& frames, uint32_t object, const Box& box, const QuantityChannels& channels) {
     ObjectPictures pictures;
-    const Image<uint32_t> objects = cropped(frames.regions.pixels(), frames.regions.extent(), box);
+    const Image<uint32_t> objects = cropped(frames.objects.pixels(), frames.objects.extent(), box);
     pictures.region = Image<uint8_t>(box.extent());
     std::transform(objects.pixels().begin(), objects.pixels().end(), pictures.region.pixels().begin(),
                    [&](uint32_t id) { return id == object ? 1 : 0; });
     pictures.truth = cropped_channels(frames.truth, channels.truth, box, channels.displayed);
     pictures.run = cropped_channels(frames.run, channels.run, box, channels.displayed);
+    pictures.is_rgb = channels.displayed;
     pictures.filled = cropped(frames.run_valid.pixels(), frames.run_valid.extent(), box);
     for (size_t i = 0; i < box.extent().area(); ++i) {
         uint8_t& filled = pictures.filled.pixels()[i];
         filled &= pictures.region.pixels()[i];
         for (const Image<float>& channel : pictures.run) filled &= std::isfinite(channel.pixels()[i]) ? 1 : 0;
+    }
+    if (!frames.seen.empty()) {
+        pictures.seen = cropped(frames.seen.pixels(), frames.seen.extent(), box);
+        for (size_t i = 0; i < box.extent().area(); ++i) pictures.seen.pixels()[i] &= pictures.filled.pixels()[i];
     }
     return pictures;
 }
@@ -131,15 +131,21 @@ FramePoint measure_object(uint32_t index, const ObjectPictures& pictures) {
             compare(pictures)};
 }
 
+/// By object.
+std::map<uint32_t, uint64_t> seen_pixels_of(const Frames& frames) {
+    std::map<uint32_t, uint64_t> seen;
+    for (size_t i = 0; i < frames.objects.pixels().size(); ++i)
+        seen[frames.objects.pixels()[i]] += frames.seen.empty() ? 1 : frames.seen.pixels()[i];
+    return seen;
+}
+
 void measure_objects(uint32_t index, const Frames& frames, FrameMeasurement& result) {
     const std::set<std::string> groups = groups_of(frames.run);
-    for (const auto& [id, whole] : regions_in(frames.objects)) {
-        result.objects[id];
-        result.object_pixels += whole.pixels;
-    }
-    for (const auto& [id, region] : regions_in(frames.regions)) {
+    std::map<uint32_t, uint64_t> seen = seen_pixels_of(frames);
+    for (const auto& [id, region] : regions_in(frames.objects)) {
         ObjectMeasurement& object = result.objects[id];
         object.pixels = region.pixels;
+        object.seen_pixels = seen[id];
         if (region.pixels < kSmallestRegion) continue;
         for (const Quantity quantity : kQuantities) {
             const QuantityChannels channels = channels_for(quantity);
@@ -197,12 +203,11 @@ std::vector<float> normal_errors_deg(const Frames& frames, const glm::dmat3& tru
 
 }  // namespace
 
-FrameMeasurement measure_frame(uint32_t index, const ExrPlanes& truth, const ExrPlanes& run,
-                               const Image<uint8_t>& scored, const glm::dmat3& truth_from_run) {
-    Frames frames{truth, run, validity(truth), validity(run), {}, {}};
+FrameMeasurement measure_frame(uint32_t index, const ExrPlanes& truth, const ExrPlanes& run, const Image<uint8_t>& seen,
+                               const glm::dmat3& truth_from_run) {
+    Frames frames{truth, run, validity(truth), validity(run), {}, seen};
     expect_finite(truth, frames.truth_valid);
     frames.objects = labels_in(truth, frames.truth_valid);
-    frames.regions = scored.empty() ? frames.objects : masked(frames.objects, scored);
     FrameMeasurement result;
     const std::vector<uint8_t>& valid = frames.truth_valid.pixels();
     result.truth_pixels = static_cast<uint64_t>(std::count(valid.begin(), valid.end(), 1));

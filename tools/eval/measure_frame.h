@@ -14,8 +14,9 @@ namespace patina::eval {
 
 /// One object in one frame.
 struct ObjectMeasurement {
-    uint64_t pixels = 0;                            ///< of its region; 0 where none is scored
-    PerQuantity<std::optional<FramePoint>> points;  ///< empty where the run lacks the quantity or the region is small
+    uint64_t pixels = 0;
+    uint64_t seen_pixels = 0;                       ///< of these, those that were seen often enough
+    PerQuantity<std::optional<FramePoint>> points;  ///< empty where the run lacks the quantity or the pixels are few
 };
 
 /// What one frame contributes.
@@ -23,15 +24,14 @@ struct FrameMeasurement {
     std::map<uint32_t, ObjectMeasurement> objects;  ///< by id
     LabelOverlap overlap;                           ///< empty where the run has no labels
     uint64_t truth_pixels = 0;                      ///< valid in truth
-    uint64_t object_pixels = 0;                     ///< of these, those on objects
     std::vector<float> depth_errors_mm;             ///< of the pixels valid in both
     std::vector<float> normal_errors_deg;           ///< likewise
 };
 
-/// Compares one frame of a run with the true one, of the same extent. `scored` is 1 where materials and colours are
-/// compared; empty means everywhere. `truth_from_run` turns the run's normals into truth's world. Throws Error when
-/// truth lacks a channel, or holds values that are not finite at a valid pixel.
-FrameMeasurement measure_frame(uint32_t index, const ExrPlanes& truth, const ExrPlanes& run,
-                               const Image<uint8_t>& scored, const glm::dmat3& truth_from_run);
+/// Compares one frame of a run with the true one, of the same extent. `seen` is 1 where the surface had been seen often
+/// enough for Pixels::kSeen; empty means everywhere. `truth_from_run` turns the run's normals into truth's world.
+/// Throws Error when truth lacks a channel, or holds values that are not finite at a valid pixel.
+FrameMeasurement measure_frame(uint32_t index, const ExrPlanes& truth, const ExrPlanes& run, const Image<uint8_t>& seen,
+                               const glm::dmat3& truth_from_run);
 
 }  // namespace patina::eval

@@ -18,11 +18,13 @@
 
 namespace patina::eval {
 
-/// What Table 1 of the paper compares, in its order; "before" is before the albedo refinement.
-enum class Quantity : uint8_t { kKdBefore, kKd, kKs, kAlpha, kRgbBefore, kRgb };
+/// What Table 1 of the paper compares, in its order, where "before" is before the albedo refinement; then the albedo
+/// and the picture that a user is shown, with restored detail and fused colour.
+enum class Quantity : uint8_t { kKdBefore, kKd, kKs, kAlpha, kRgbBefore, kRgb, kKdShown, kRgbShown };
 
 inline constexpr std::array kQuantities = {Quantity::kKdBefore, Quantity::kKd,        Quantity::kKs,
-                                           Quantity::kAlpha,    Quantity::kRgbBefore, Quantity::kRgb};
+                                           Quantity::kAlpha,    Quantity::kRgbBefore, Quantity::kRgb,
+                                           Quantity::kKdShown,  Quantity::kRgbShown};
 
 /// One value per quantity.
 template <class Value>
@@ -35,7 +37,8 @@ class PerQuantity {
     std::array<Value, kQuantities.size()> values_{};
 };
 
-/// The name of a quantity in text and JSON: "kd_before", "kd", "ks", "alpha", "rgb_before", "rgb".
+/// The name of a quantity in text and JSON: "kd_before", "kd", "ks", "alpha", "rgb_before", "rgb", "kd_shown",
+/// "rgb_shown".
 const char* name_of(Quantity quantity);
 
 /// 1 for alpha, 3 for the others.
@@ -43,30 +46,60 @@ int channels_of(Quantity quantity);
 
 /// The metrics of one comparison, over pixels and channels.
 struct Scores {
-    double mad = 0;      ///< mean absolute deviation; the paper's L1
-    double rmse = 0;     ///< root mean square error; the paper's L2
-    double psnr_db = 0;  ///< for a range of 1; infinite where nothing differs
-    double ssim = 0;     ///< structural similarity, for a range of 1
+    double mad = 0;                        ///< mean absolute deviation; the paper's L1
+    double rmse = 0;                       ///< root mean square error; the paper's L2
+    double psnr_db = 0;                    ///< for a range of 1; infinite where nothing differs
+    double ssim = 0;                       ///< structural similarity, for a range of 1
+    std::optional<double> psnr_srgb_db{};  ///< as psnr_db, of sRGB-encoded values; for RGB alone
 };
+
+/// Which of an object's pixels scores are over.
+enum class Pixels : uint8_t {
+    kAll,     ///< all that truth shows; where the run has no value, it counts as 0
+    kFilled,  ///< of these, those where the run has a value
+    kSeen     ///< of these, those whose surface the sequence's depth camera had seen in enough frames by then
+};
+
+inline constexpr std::array kPixels = {Pixels::kAll, Pixels::kFilled, Pixels::kSeen};
+
+/// "all", "filled", "seen".
+const char* name_of(Pixels pixels);
 
 /// An object's scores for one quantity: in one frame, averaged over frames, or averaged over objects.
 struct Comparison {
-    double coverage = 0;           ///< filled pixels / region, which is what is scored of the object
-    std::optional<Scores> filled;  ///< over the filled pixels; empty where there is none
-    Scores unfilled_as_zero;       ///< over the region, unfilled pixels being 0
+    double coverage = 0;           ///< filled pixels / all of the object
+    Scores all;                    ///< Pixels::kAll
+    std::optional<Scores> filled;  ///< Pixels::kFilled; empty where there is none
+    std::optional<Scores> seen;    ///< Pixels::kSeen; likewise
+
+    /// Null where there is no such pixel.
+    const Scores* over(Pixels pixels) const;
+};
+
+/// What an average is over.
+enum class Period : uint8_t {
+    kAllFrames,  ///< that show the object
+    kLastFrames  ///< the last tenth of them: what the estimate came to
 };
 
 /// One point of the plots over time (paper, Figures 4 and 5). Scalars fill all three channels of the means.
 struct FramePoint {
     uint32_t frame = 0;
-    glm::dvec3 truth_mean{0};            ///< over the region
-    std::optional<glm::dvec3> run_mean;  ///< over the filled pixels; empty where there is none
-    Comparison comparison;               ///< Figure 5's L1 error is comparison.filled->mad
+    glm::dvec3 truth_mean{0};            ///< over the object's pixels
+    std::optional<glm::dvec3> run_mean;  ///< over the filled ones; empty where there is none
+    Comparison comparison;               ///< Figure 5's L1 error is comparison.all.mad
+};
+
+/// Averages over both periods.
+struct Averages {
+    Comparison mean;    ///< Period::kAllFrames
+    Comparison at_end;  ///< Period::kLastFrames
+
+    const Comparison& over(Period period) const { return period == Period::kAllFrames ? mean : at_end; }
 };
 
 /// One object, one quantity.
-struct ObjectQuantity {
-    Comparison mean;                 ///< averaged over `frames`; filled over those frames that have it
+struct ObjectQuantity : Averages {
     std::vector<FramePoint> frames;  ///< in time; frames that see less than kSmallestRegion of the object are gaps
 };
 
@@ -83,7 +116,8 @@ struct ObjectSegmentation {
 struct ObjectResult {
     uint32_t id = 0;
     std::string name;                                       ///< from materials.json, else "object ID"
-    uint64_t pixels = 0;                                    ///< of its region, over all evaluated frames
+    uint64_t pixels = 0;                                    ///< over all evaluated frames
+    uint64_t seen_pixels = 0;                               ///< of these, those that had been seen often enough
     PerQuantity<std::optional<ObjectQuantity>> quantities;  ///< empty where the run lacks the quantity, or no frame
                                                             ///< sees enough of the object
     std::optional<ObjectSegmentation> segmentation;         ///< empty where the run has no labels
@@ -149,6 +183,15 @@ struct LightErrors {
     double common_factor = 1;         ///< run / truth: geometric mean over the matches and channels; 1 without any
 };
 
+/// What was measured of pictures that no part of the sequence has. Pixels::kSeen are as Pixels::kFilled.
+struct Views {
+    std::vector<uint32_t> frames;  ///< the views that truth and pictures have in common
+    std::vector<ObjectResult> objects;
+    PerQuantity<std::optional<Averages>> object_means;
+    std::optional<PixelErrors> depth_mm;
+    std::optional<PixelErrors> normal_deg;
+};
+
 /// Everything measured. What the run or the sequence does not have is empty.
 struct Evaluation {
     std::string sequence;  ///< folder, as given
@@ -157,10 +200,10 @@ struct Evaluation {
     std::vector<uint32_t> frames;  ///< evaluated: those that truth/frames and the run's frames have in common
     size_t truth_frames = 0;
     size_t run_frames = 0;
-    uint32_t seen_frames = 1;  ///< regions hold the pixels whose surface had been seen in so many frames by then
+    uint32_t seen_frames = 1;  ///< Pixels::kSeen are those whose surface had been seen in so many frames by then
     double seen_share = 1;     ///< of the objects' pixels, those
-    std::vector<ObjectResult> objects;                    ///< by id; those that truth shows in some frame
-    PerQuantity<std::optional<Comparison>> object_means;  ///< over the objects that have the quantity
+    std::vector<ObjectResult> objects;                  ///< by id; those that truth shows in some frame
+    PerQuantity<std::optional<Averages>> object_means;  ///< over the objects that have the quantity
     std::optional<PixelErrors> depth_mm;
     std::optional<PixelErrors> normal_deg;
     std::optional<SegmentationResult> segmentation;
@@ -168,10 +211,17 @@ struct Evaluation {
     std::string no_trajectory;          ///< why there is none, in a sentence; empty where there is one
     std::optional<FrameStates> states;  ///< of the run's tracking; empty where its poses were given
     std::optional<LightErrors> lights;
+    std::optional<Views> novel;  ///< re-renderings of views that were never recorded: truth/novel
+    std::optional<Views> relit;  ///< the same under lamps that never shone: truth/relit
+    std::string no_views;        ///< why there are none, in a sentence; empty where the sequence has none
 };
 
-/// An object is left out of frames in which its region has fewer pixels.
+/// An object is left out of frames that show fewer pixels of it; and of the scores of those that were seen, where those
+/// are fewer.
 inline constexpr size_t kSmallestRegion = 64;
+
+/// Period::kLastFrames: of the frames that show an object, one in so many, rounded up.
+inline constexpr size_t kLastShare = 10;
 
 /// With fewer common poses no rotation follows from positions, and the trajectories are not compared.
 inline constexpr size_t kFewestPoses = 3;

@@ -171,9 +171,9 @@ SsimScores ssim(std::span<const Image<float>> truth, std::span<const Image<float
     }
     const auto channels = static_cast<double>(truth.size());
     SsimScores scores;
-    scores.unfilled_as_zero = region_sum / (region_px * channels);
+    scores.all = region_sum / (region_px * channels);
     if (filled_px == region_px)
-        scores.filled = scores.unfilled_as_zero;
+        scores.filled = scores.all;
     else if (filled_px > 0)
         scores.filled = filled_sum / (filled_px * channels);
     return scores;

@@ -8,10 +8,10 @@
 
 namespace patina::eval {
 
-/// The structural similarity of one object's pictures, counted in the two ways of eval::Comparison.
+/// The structural similarity of one object's pictures, over the filled pixels and over all.
 struct SsimScores {
     std::optional<double> filled;  ///< over the filled pixels; empty where there is none
-    double unfilled_as_zero = 0;   ///< over the region, unfilled pixels of `run` being 0
+    double all = 0;                ///< over the region, unfilled pixels of `run` being 0
 };
 
 /// Structural similarity (Wang et al., Image Quality Assessment: From Error Visibility to Structural Similarity, IEEE

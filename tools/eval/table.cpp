@@ -21,43 +21,67 @@ std::string percent(double share) { return fmt::format("{:.1f}%", 100 * share); 
 
 struct Metric {
     const char* title;
+    const char* short_title;  ///< of a column
     std::function<std::string(const Scores&)> text;
 };
 
 const std::vector<Metric>& metrics() {
     static const std::vector<Metric> kMetrics = {
-        {"MAD", [](const Scores& scores) { return number(scores.mad, 4); }},
-        {"RMSE", [](const Scores& scores) { return number(scores.rmse, 4); }},
-        {"PSNR, dB", [](const Scores& scores) { return number(scores.psnr_db, 2); }},
-        {"SSIM", [](const Scores& scores) { return number(scores.ssim, 4); }}};
+        {"MAD", "MAD", [](const Scores& scores) { return number(scores.mad, 4); }},
+        {"RMSE", "RMSE", [](const Scores& scores) { return number(scores.rmse, 4); }},
+        {"PSNR, dB", "PSNR", [](const Scores& scores) { return number(scores.psnr_db, 2); }},
+        {"SSIM", "SSIM", [](const Scores& scores) { return number(scores.ssim, 4); }},
+        {"PSNR of sRGB, dB", "sRGB",
+         [](const Scores& scores) { return scores.psnr_srgb_db ? number(*scores.psnr_srgb_db, 2) : kNothing; }}};
     return kMetrics;
+}
+
+std::string score_text(const Metric& metric, const Comparison& comparison, Pixels pixels) {
+    const Scores* scores = comparison.over(pixels);
+    return scores ? metric.text(*scores) : kNothing;
+}
+
+using Means = PerQuantity<std::optional<Averages>>;
+
+/// Those of Table 1, and of what is shown those that some object has.
+std::vector<Quantity> quantities_in(const Means& means) {
+    std::vector<Quantity> quantities;
+    for (const Quantity quantity : kQuantities) {
+        const bool is_shown = quantity == Quantity::kKdShown || quantity == Quantity::kRgbShown;
+        if (!is_shown || means[quantity]) quantities.push_back(quantity);
+    }
+    return quantities;
 }
 
 using CellText = std::function<std::string(const Comparison&)>;
 
-CellText score_text(const Metric& metric, Pixels pixels) {
-    if (pixels == Pixels::kUnfilledAsZero) {
-        return [&metric](const Comparison& comparison) { return metric.text(comparison.unfilled_as_zero); };
-    }
-    return [&metric](const Comparison& comparison) {
-        return comparison.filled ? metric.text(*comparison.filled) : kNothing;
-    };
-}
-
 /// One row per object and one for their average, one column per quantity.
 std::vector<std::vector<std::string>> cells_by_object(const Evaluation& evaluation, const CellText& text) {
+    const std::vector<Quantity> quantities = quantities_in(evaluation.object_means);
     std::vector<std::vector<std::string>> rows;
     for (const ObjectResult& object : evaluation.objects) {
         auto& row = rows.emplace_back();
-        for (const Quantity quantity : kQuantities) {
+        for (const Quantity quantity : quantities) {
             const auto& measured = object.quantities[quantity];
             row.push_back(measured ? text(measured->mean) : kNothing);
         }
     }
     auto& average = rows.emplace_back();
-    for (const Quantity quantity : kQuantities) {
+    for (const Quantity quantity : quantities) {
         const auto& measured = evaluation.object_means[quantity];
-        average.push_back(measured ? text(*measured) : kNothing);
+        average.push_back(measured ? text(measured->mean) : kNothing);
+    }
+    return rows;
+}
+
+/// One row per quantity, one column per score.
+std::vector<std::vector<std::string>> summary_cells(const Means& means, Pixels pixels, Period period) {
+    std::vector<std::vector<std::string>> rows;
+    for (const Quantity quantity : quantities_in(means)) {
+        const auto& measured = means[quantity];
+        auto& row = rows.emplace_back();
+        for (const Metric& metric : metrics())
+            row.push_back(measured ? score_text(metric, measured->over(period), pixels) : kNothing);
     }
     return rows;
 }
@@ -114,10 +138,17 @@ std::string column_key(const Evaluation& evaluation) {
     return text;
 }
 
-std::string scored_pixels(const Evaluation& evaluation) {
-    if (evaluation.seen_frames <= 1) return "Scores over every pixel that has truth.";
-    return fmt::format("Scores over pixels whose surface was seen in at least {} frames, {} of those that have truth.",
-                       evaluation.seen_frames, percent(evaluation.seen_share));
+std::string scored_pixels(const Evaluation& evaluation, Pixels pixels) {
+    switch (pixels) {
+        case Pixels::kAll: return "Scores over all pixels that have truth; where the run has no value it counts as 0.";
+        case Pixels::kFilled: return "Scores over the pixels that the run filled.";
+        case Pixels::kSeen: break;
+    }
+    if (evaluation.seen_frames <= 1) return "Every pixel counts as seen: scores as over those that the run filled.";
+    return fmt::format(
+        "Scores over filled pixels whose surface was seen in at least {} frames, {} of those that have "
+        "truth.",
+        evaluation.seen_frames, percent(evaluation.seen_share));
 }
 
 const char* title_of(Quantity quantity) {
@@ -128,6 +159,8 @@ const char* title_of(Quantity quantity) {
         case Quantity::kAlpha: return "alpha";
         case Quantity::kRgbBefore: return "RGB";
         case Quantity::kRgb: return "RGB refined";
+        case Quantity::kKdShown: return "kd shown";
+        case Quantity::kRgbShown: return "RGB shown";
     }
     PATINA_ASSERT(false, "quantity ", static_cast<int>(quantity));
 }
@@ -139,26 +172,67 @@ ScoreTable score_table(const Evaluation& evaluation, Pixels pixels) {
         table.columns.push_back(table.is_turned ? short_name(i) + " " + evaluation.objects[i].name : short_name(i));
     }
     table.columns.push_back("avg");
-    for (const Quantity quantity : kQuantities) table.rows.push_back(title_of(quantity));
+    for (const Quantity quantity : quantities_in(evaluation.object_means)) table.rows.push_back(title_of(quantity));
     if (table.is_turned) table.rows.swap(table.columns);
     const auto add = [&](const char* metric, const CellText& text) {
         const auto cells = cells_by_object(evaluation, text);
         table.metrics.push_back({metric, table.is_turned ? cells : turned(cells)});
     };
-    for (const Metric& metric : metrics()) add(metric.title, score_text(metric, pixels));
-    if (pixels == Pixels::kFilled)
+    for (const Metric& metric : metrics()) {
+        add(metric.title, [&](const Comparison& comparison) { return score_text(metric, comparison, pixels); });
+    }
+    if (pixels == Pixels::kAll)
         add("coverage", [](const Comparison& comparison) { return percent(comparison.coverage); });
     return table;
 }
 
-bool has_unfilled(const Evaluation& evaluation) {
-    for (const ObjectResult& object : evaluation.objects) {
-        for (const Quantity quantity : kQuantities) {
-            const auto& measured = object.quantities[quantity];
-            if (measured && measured->mean.coverage < 1) return true;
+namespace {
+
+ScoreTable empty_summary(const Means& means) {
+    ScoreTable table;
+    for (const Quantity quantity : quantities_in(means)) table.rows.push_back(title_of(quantity));
+    for (const Metric& metric : metrics()) table.columns.push_back(metric.short_title);
+    return table;
+}
+
+std::string title_of(Pixels pixels, uint32_t seen_frames) {
+    switch (pixels) {
+        case Pixels::kAll: return "all pixels";
+        case Pixels::kFilled: return "filled pixels";
+        case Pixels::kSeen: return fmt::format("seen in {} frames", seen_frames);
+    }
+    PATINA_ASSERT(false, "pixels ", static_cast<int>(pixels));
+}
+
+}  // namespace
+
+ScoreTable summary_table(const Evaluation& evaluation) {
+    ScoreTable table = empty_summary(evaluation.object_means);
+    for (const Period period : {Period::kAllFrames, Period::kLastFrames}) {
+        for (const Pixels pixels : kPixels) {
+            table.metrics.push_back(
+                {title_of(pixels, evaluation.seen_frames) + (period == Period::kLastFrames ? ", last tenth" : ""),
+                 summary_cells(evaluation.object_means, pixels, period)});
         }
     }
-    return false;
+    return table;
+}
+
+ScoreTable summary_table(const Views& views) {
+    ScoreTable table = empty_summary(views.object_means);
+    for (const Pixels pixels : {Pixels::kAll, Pixels::kFilled})
+        table.metrics.push_back({title_of(pixels, 0), summary_cells(views.object_means, pixels, Period::kAllFrames)});
+    return table;
+}
+
+std::vector<ViewsSection> views_sections(const Evaluation& evaluation) {
+    std::vector<ViewsSection> sections;
+    const auto add = [&](const std::optional<Views>& views, const char* title) {
+        if (views) sections.push_back({fmt::format("{}, {} views", title, views->frames.size()), *views});
+    };
+    add(evaluation.novel, "Never recorded: from off the path");
+    add(evaluation.relit, "Never recorded: the same under other lamps");
+    return sections;
 }
 
 /// Of the run's, where the trajectories were compared.
@@ -169,17 +243,13 @@ size_t poses_without_truth(const Evaluation& evaluation) {
 std::vector<std::string> absences(const Evaluation& evaluation) {
     if (evaluation.objects.empty()) return {"No object of the truth is seen in the evaluated frames."};
     std::vector<std::string> missing, list;
-    for (const Quantity quantity : kQuantities) {
+    for (const Quantity quantity : quantities_in(evaluation.object_means)) {
         if (!evaluation.object_means[quantity]) missing.push_back(title_of(quantity));
     }
-    if (evaluation.seen_share == 0) {
+    if (!missing.empty()) list.push_back("The run's frames hold no " + listed(missing) + ".");
+    if (evaluation.seen_share == 0)
         list.push_back(
-            fmt::format("No surface was seen in at least {} frames by the evaluated ones; --seen 1 scores "
-                        "every pixel that has truth.",
-                        evaluation.seen_frames));
-    } else if (!missing.empty()) {
-        list.push_back("The run's frames hold no " + listed(missing) + ".");
-    }
+            fmt::format("No surface was seen in at least {} frames by the evaluated ones.", evaluation.seen_frames));
     const auto note = [&](bool present, const char* sentence) {
         if (!present) list.push_back(sentence);
     };
@@ -191,6 +261,7 @@ std::vector<std::string> absences(const Evaluation& evaluation) {
         list.push_back(fmt::format("{} of the run's {} poses are at times for which truth has none.", unknown,
                                    evaluation.trajectory->run_poses));
     }
+    if (!evaluation.no_views.empty()) list.push_back(evaluation.no_views);
     note(evaluation.lights.has_value(), "Lights were not compared: truth and run do not both have a lights.json.");
     return list;
 }

@@ -7,10 +7,7 @@
 
 namespace patina::eval {
 
-/// Which pixels a score is over.
-enum class Pixels { kFilled, kUnfilledAsZero };
-
-/// One metric in Table 1: its cells as text, "-" where there is nothing.
+/// A group of columns beside each other: cells as text, "-" where there is nothing.
 struct MetricCells {
     std::string metric;                           ///< "MAD", "PSNR, dB"
     std::vector<std::vector<std::string>> cells;  ///< by row, then column
@@ -21,16 +18,28 @@ struct MetricCells {
 struct ScoreTable {
     bool is_turned = false;
     std::vector<std::string> rows, columns;
-    std::vector<MetricCells> metrics;  ///< over the filled pixels, the coverage is the last
+    std::vector<MetricCells> metrics;
 };
 
 inline constexpr size_t kMostObjectColumns = 6;
 
-/// Lays out the scores over these pixels.
+/// The scores over these pixels, averaged over all frames. Those of all pixels end with the coverage.
 ScoreTable score_table(const Evaluation& evaluation, Pixels pixels);
 
-/// True where a region of some object and frame is not filled wholly, so that the two kinds of scores differ.
-bool has_unfilled(const Evaluation& evaluation);
+/// The averages over the objects. Its rows are the quantities, its columns the scores; in place of metrics it has every
+/// kind of pixels and period.
+ScoreTable summary_table(const Evaluation& evaluation);
+/// The same over all pixels and the filled ones, and all views.
+ScoreTable summary_table(const Views& views);
+
+/// Views that were never recorded, under a title.
+struct ViewsSection {
+    std::string title;
+    const Views& views;
+};
+
+/// Those that were measured.
+std::vector<ViewsSection> views_sections(const Evaluation& evaluation);
 
 /// "S1" for the first object.
 std::string short_name(size_t object);
@@ -39,9 +48,9 @@ std::string short_name(size_t object);
 std::string column_key(const Evaluation& evaluation);
 
 /// Which of the objects' pixels the scores are over; a sentence.
-std::string scored_pixels(const Evaluation& evaluation);
+std::string scored_pixels(const Evaluation& evaluation, Pixels pixels);
 
-/// What a person calls a quantity: "kd", "kd refined", "RGB".
+/// What a person calls a quantity: "kd", "kd refined", "RGB", "RGB shown".
 const char* title_of(Quantity quantity);
 
 /// Notes about what could not be measured, because the run or the sequence does not have it; a sentence each.

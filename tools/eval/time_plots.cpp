@@ -29,10 +29,7 @@ std::optional<double> truth_red(const FramePoint& point) { return point.truth_me
 std::optional<double> run_red(const FramePoint& point) {
     return point.run_mean ? std::optional(point.run_mean->r) : std::nullopt;
 }
-std::optional<double> deviation(const FramePoint& point) {
-    const auto& filled = point.comparison.filled;
-    return filled ? std::optional(filled->mad) : std::nullopt;
-}
+std::optional<double> deviation(const FramePoint& point) { return point.comparison.all.mad; }
 
 /// A value per evaluated frame, gaps where there is none.
 std::vector<double> over_frames(const Evaluation& evaluation, const ObjectQuantity& quantity, const ValueOf& value_of) {

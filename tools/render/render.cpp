@@ -46,13 +46,13 @@ Intrinsics resized(const Intrinsics& camera, Extent2D extent) {
 Drawing draw_view(const ModelView& view, Show show, float exposure) {
     const FrameDump seen = to_dump(view);
     switch (show) {
-        case Show::kKd: return draw(seen.kd, &seen.valid, color_pixel);
+        case Show::kKd: return draw(seen.shown_kd(), &seen.valid, color_pixel);
         case Show::kNormals: return draw(seen.normal, &seen.valid, normal_pixel);
         case Show::kLabels:
             return draw(seen.label, &seen.valid, [](float label) { return label_pixel(static_cast<uint32_t>(label)); });
         case Show::kRgb: break;
     }
-    return draw(seen.rgb, &seen.valid, [exposure](glm::vec3 linear) { return color_pixel(exposure * linear); });
+    return draw(seen.shown_rgb(), &seen.valid, [exposure](glm::vec3 linear) { return color_pixel(exposure * linear); });
 }
 
 /// What can be told to be wrong before the work starts.

@@ -104,8 +104,8 @@ std::string preview_png(const ColorImage& input, const FrameDump& model, const P
     if (!model.label.empty()) check_extent("label", model.label.extent(), extent);
     std::vector<Panel> panels = {
         {options.title.empty() ? "input" : "input, " + options.title, draw_input(input)},
-        {model.kd.empty() ? "reconstruction" : "re-rendering", draw(model.rgb, &model.valid, color_pixel)}};
-    if (!model.kd.empty()) panels.push_back({"diffuse albedo", draw(model.kd, &model.valid, color_pixel)});
+        {model.kd.empty() ? "reconstruction" : "re-rendering", draw(model.shown_rgb(), &model.valid, color_pixel)}};
+    if (!model.kd.empty()) panels.push_back({"diffuse albedo", draw(model.shown_kd(), &model.valid, color_pixel)});
     add_segments_panel(model, panels);
     panels.push_back({"normals", draw(model.normal, &model.valid, normal_pixel)});
     if (options.depth) {

@@ -28,6 +28,7 @@ constexpr std::array<std::string_view, 2> kEvaluationFiles{"eval.json", "report.
 struct FrameFolder {
     std::string_view name, extension;
 };
+constexpr std::array kViewFolders{FrameFolder{"novel", ".exr"}, FrameFolder{"relit", ".exr"}};  // of evaluations
 constexpr std::array kFrameFolders{FrameFolder{"frames", ".exr"},   FrameFolder{"previews", ".png"},
                                    FrameFolder{"held_out", ".png"}, FrameFolder{"tiles/0", ".glb"},
                                    FrameFolder{"tiles/1", ".glb"},  FrameFolder{"tiles/2", ".glb"}};
@@ -39,11 +40,15 @@ bool is_frame_name(const fs::path& name, std::string_view extension) {
            std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-bool is_run_name(const fs::path& name) {
-    if (std::find(kRunFiles.begin(), kRunFiles.end(), name.string()) != kRunFiles.end()) return true;
-    return std::any_of(kFrameFolders.begin(), kFrameFolders.end(), [&](const FrameFolder& folder) {
-        return name == fs::path(folder.name) / name.filename() && is_frame_name(name.filename(), folder.extension);
-    });
+/// Where results of a kind have names.
+struct Names {
+    std::span<const std::string_view> files;
+    std::span<const FrameFolder> folders;
+};
+
+Names names_of(ResultKind kind) {
+    if (kind == ResultKind::kRun) return {kRunFiles, kFrameFolders};
+    return {kEvaluationFiles, kViewFolders};
 }
 
 std::set<std::string> names_in(const fs::path& folder) {
@@ -63,12 +68,9 @@ void add_fixed_names(const fs::path& folder, std::span<const std::string_view> f
 /// All entries that stand where results go.
 std::set<std::string> names_of_results(const fs::path& folder, ResultKind kind) {
     std::set<std::string> names;
-    if (kind == ResultKind::kEvaluation) {
-        add_fixed_names(folder, kEvaluationFiles, names);
-        return names;
-    }
-    add_fixed_names(folder, kRunFiles, names);
-    for (const auto& [name, extension] : kFrameFolders) {
+    const Names known = names_of(kind);
+    add_fixed_names(folder, known.files, names);
+    for (const auto& [name, extension] : known.folders) {
         const fs::path first = folder / *fs::path(name).begin();
         for (const fs::path& place : {first, folder / name}) {
             if (is_taken(place) && !is_real_folder(place)) names.insert(place.lexically_relative(folder).string());
@@ -118,8 +120,11 @@ void add_evaluations(const fs::path& run, std::set<std::string>& files) {
 std::string mark_of(ResultKind kind) { return kind == ResultKind::kRun ? "run.json" : "eval.json"; }
 
 bool is_result_name(ResultKind kind, const fs::path& name) {
-    if (kind == ResultKind::kRun) return is_run_name(name);
-    return std::find(kEvaluationFiles.begin(), kEvaluationFiles.end(), name.string()) != kEvaluationFiles.end();
+    const Names known = names_of(kind);
+    if (std::find(known.files.begin(), known.files.end(), name.string()) != known.files.end()) return true;
+    return std::any_of(known.folders.begin(), known.folders.end(), [&](const FrameFolder& folder) {
+        return name == fs::path(folder.name) / name.filename() && is_frame_name(name.filename(), folder.extension);
+    });
 }
 
 EarlierResults results_in(const fs::path& folder, ResultKind kind) {

@@ -9,7 +9,7 @@ namespace patina {
 /// What a folder of results is of.
 enum class ResultKind {
     kRun,        ///< `patina run`: run.json, scene.glb, frames/NNNNNN.exr and so on
-    kEvaluation  ///< `patina eval`: eval.json and report.html
+    kEvaluation  ///< `patina eval`: eval.json, report.html, novel/NNNNNN.exr and so on
 };
 
 /// The file that is there when the results are whole: "run.json", "eval.json".

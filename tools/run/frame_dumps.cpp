@@ -22,9 +22,11 @@ Image<glm::vec3> rgb_of(const Image<glm::vec4>& image) {
 
 /// What the model reflects; 0 where that is unknown, so that leaving hard pixels out does not pay.
 void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance) {
-    dump.kd = rgb_of(reflectance.kd);
+    dump.kd = rgb_of(reflectance.model_kd);
     dump.ks = rgb_of(reflectance.ks_alpha);
-    dump.rgb = rgb_of(reflectance.rgb);
+    dump.rgb = rgb_of(reflectance.model_rgb);
+    dump.kd_shown = rgb_of(reflectance.kd);
+    dump.rgb_shown = rgb_of(reflectance.rgb);
     dump.alpha = Image<float>(dump.kd.extent());
     dump.label = Image<float>(dump.kd.extent());
     dump.visibility = Image<float>(dump.kd.extent());

@@ -12,6 +12,7 @@
 
 #include "engine/core/printable.h"
 #include "scenes/description/lighting_sequence.h"
+#include "scenes/description/never_recorded.h"
 #include "scenes/description/noise.h"
 #include "scenes/render/environment.h"
 #include "scenes/render/synthetic_source.h"
@@ -148,6 +149,15 @@ void record(scenes::SyntheticSource& source, sensor::SequenceWriter& writer, boo
     truth.finish();
 }
 
+/// Views that the main sequence never has, with the truth of each.
+void record_never_recorded(vulkan::Device& device, const scenes::SyntheticScene& scene, uint32_t views,
+                           const fs::path& folder, Watch& watch) {
+    scenes::SyntheticSource source(device, scene, {.frames = views, .truth_every = 1});
+    sensor::SequenceWriter writer(folder, source.info(), linear_color_of(scene));
+    record(source, writer, true, watch, folder.filename().string());
+    writer.finish();
+}
+
 }  // namespace
 
 void synthesise(vulkan::Device& device, const SynthOptions& options) {
@@ -155,7 +165,7 @@ void synthesise(vulkan::Device& device, const SynthOptions& options) {
     const auto lighting = options.lighting ? scenes::lighting_sequence(scene) : std::nullopt;
     scenes::SyntheticSource source(device, scene, {.frames = options.frames, .truth_every = options.truth_every});
     // Before the first folder and until the last is gone, so that an interruption leaves none.
-    Watch watch(options, options.frames + (lighting ? lighting->frames : 0));
+    Watch watch(options, options.frames + (lighting ? lighting->frames : 0) + 2 * options.novel);
     sensor::SequenceWriter writer(options.out, source.info(), linear_color_of(scene));
     record(source, writer, options.truth_every > 0, watch, scene.name);
     if (lighting) {
@@ -164,6 +174,12 @@ void synthesise(vulkan::Device& device, const SynthOptions& options) {
         sensor::SequenceWriter dark_writer(writer.partial_folder() / "lighting", dark.info(), linear_color_of(scene));
         record(dark, dark_writer, false, watch, "lighting");
         dark_writer.finish();
+    }
+    if (options.novel > 0) {
+        const auto novel = scenes::with_novel_views(scene, options.novel, options.frames / scene.fps);
+        const fs::path truth = writer.partial_folder() / "truth";
+        record_never_recorded(device, novel, options.novel, truth / "novel", watch);
+        record_never_recorded(device, scenes::with_other_light(novel), options.novel, truth / "relit", watch);
     }
     writer.finish();
     if (!options.quiet)

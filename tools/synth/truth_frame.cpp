@@ -44,6 +44,8 @@ FrameDump truth_dump(const scenes::SyntheticScene& scene, const scenes::FrameTru
             .alpha = converted<float>(seen.ks_alpha, [](const glm::vec4& v) { return v.a; }),
             .kd_segment = converted<glm::vec3>(seen.object_id, [&](uint32_t id) { return mean_kd.at(id); }),
             .rgb_segment = {},
+            .kd_shown = {},
+            .rgb_shown = {},
             .label = converted<float>(seen.object_id, [](uint32_t id) { return static_cast<float>(id); })};
 }
 

@@ -8,7 +8,8 @@
 struct FitLight {
     vec3 to_light;
     float cosine;
-    vec3 gloss;  // rgb: intensity / r^2 ward_light_part(); 0 where it does not reach the voxel
+    vec3 gloss;     // intensity / r^2 ward_light_part(); 0 where it does not reach the voxel
+    vec3 received;  // irradiance / pi, likewise
 };
 
 FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
@@ -16,8 +17,8 @@ FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
     const float distance2 = max(dot(offset_m, offset_m), 1e-6);
     const vec3 to_light = offset_m * inversesqrt(distance2);
     const float cosine = max(dot(normal, to_light), 0.0);
-    const vec3 gloss = lights[i].intensity.rgb * (ward_light_part(cosine) / distance2);
-    return FitLight(to_light, cosine, bit_is_set(reached, i) ? gloss : vec3(0.0));
+    const vec3 facing = bit_is_set(reached, i) ? lights[i].intensity.rgb / distance2 : vec3(0.0);
+    return FitLight(to_light, cosine, facing * ward_light_part(cosine), facing * (cosine / kPi));
 }
 
 float tan2_of_half(FitLight light, vec3 to_viewer, float viewer_cosine) {

@@ -39,7 +39,7 @@ struct FitCurve {
     vec4 ks;  // rgb: what they give, with the prior; 0.04 where no peak was seen
 };
 
-// What is known of a segment's specular material.
+// What is known of a segment's material.
 struct WardFit {
     vec4 ks_alpha;       // rgb, roughness
     vec4 color2_weight;  // FitSums::color2 of the alpha that is most likely
@@ -47,6 +47,9 @@ struct WardFit {
     float deviation;     // of observations from the model, in units of what is expected of them
     uint estimates;      // 0: none yet
     uint pad0;
+    // The albedo of the whole segment, before refinement, is the one over the other.
+    vec4 diffuse;  // rgb: weighted sum of light times what highlights leave of the colour it makes
+    vec4 light2;   // rgb: of the light's square; 0: not known
 };
 
 // What of a segment changed since it was estimated last.

@@ -11,6 +11,7 @@ using reference::Ward;
 namespace {
 
 constexpr float kBlurM = 0.0076f;  // of a bent surface that an observation shows at once
+constexpr glm::dvec3 kAmbient(0.05, 0.04, 0.03);
 
 }  // namespace
 
@@ -25,7 +26,7 @@ FitWardTest::FitWardTest() {
     estimates_.reset(frame);
     table_.reset(frame);
     run(std::move(frame));
-    rig_.lights.set(kLights, glm::dvec3(0.05f, 0.04f, 0.03f));
+    rig_.lights.set(kLights, kAmbient);
     materials_.resize(kLabels);
 }
 
@@ -55,8 +56,7 @@ std::vector<FilledRecord> FitWardTest::sphere(uint32_t label, const Ward& gloss,
         const Ward material{{level(random_), level(random_), level(random_)}, gloss.ks, gloss.alpha};
         while (record.observations.size() < gpu::kMaxObservations) {
             const glm::dvec3 direction = direction_about(point.normal, 0.3);
-            const glm::dvec3 rgb =
-                reference::shade(material, point, received(), glm::dvec3(0.05, 0.04, 0.03), direction);
+            const glm::dvec3 rgb = reference::shade(material, point, received(), kAmbient, direction);
             record.observations.push_back({glm::vec3(direction), glm::vec3(rgb), {}});
         }
         records.push_back(record);
@@ -171,11 +171,11 @@ std::vector<FitWardTest::ReferenceFit> FitWardTest::reference_fits(const std::ve
         for (const FilledObservation& seen : record.observations)
             voxels.back().observations.push_back({glm::dvec3(seen.to_viewer), glm::dvec3(seen.rgb), seen.clipped});
     }
-    reference::WardFitSeries series(prior);
+    reference::WardFitSeries series(prior, kAmbient);
     std::vector<ReferenceFit> fits;
     for (uint32_t i = 0; i < times; ++i) {
         const Ward material = series.fit(voxels);
-        fits.push_back({material, series.confidence()});
+        fits.push_back({material, series.confidence(), series.kd()});
     }
     return fits;
 }
@@ -185,6 +185,7 @@ void FitWardTest::expect_agreement(const gpu::WardFit& got, const ReferenceFit& 
     EXPECT_LT(max_of(glm::abs(glm::dvec3(got.ks_alpha) - want.material.ks)), ks);
     EXPECT_NEAR(got.ks_alpha.w, want.material.alpha, alpha);
     EXPECT_NEAR(got.confidence, want.confidence, confidence);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(kd_of(got).value()) - want.kd)), ks);
 }
 
 }  // namespace patina

@@ -56,6 +56,7 @@ class FitWardTest : public GpuTest {
     struct ReferenceFit {
         reference::Ward material;
         double confidence = 0;
+        glm::dvec3 kd{0};  ///< of all voxels together
     };
     /// With each of so many fits.
     std::vector<ReferenceFit> reference_fits(const std::vector<FilledRecord>& records, uint32_t times = 1,

@@ -49,6 +49,26 @@ TEST_F(FitWardTest, AgreesWithTheReferenceOnNoise) {
     for (const ReferenceFit& each : want) expect_agreement(fit({3})[3], each, 2e-4, 2e-4, 0.02);
 }
 
+TEST_F(FitWardTest, TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights) {
+    std::vector<FilledRecord> records = sphere(1, {{}, glm::dvec3(0.2), 0.2});
+    fill(records);
+    const glm::vec3 mixed = kd_of(fit({1}, 3)[1]).value();
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(mixed) - reference_fits(records, 3).back().kd)), 1e-3);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(mixed) - 0.275)), 0.03) << "voxels have any albedo from 0.05 to 0.5";
+
+    const glm::dvec3 kd(0.3, 0.2, 0.1);
+    std::vector<FilledRecord> plain = sphere(2, {{}, glm::dvec3(0.2), 0.2}, kVoxels, 0.3f);
+    for (FilledRecord& record : plain) {
+        const reference::SurfacePoint point{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)};
+        for (FilledObservation& seen : record.observations)
+            seen.rgb = glm::vec3(reference::shade({kd, glm::dvec3(0.2), 0.2}, point, received(),
+                                                  glm::dvec3(0.05, 0.04, 0.03), glm::dvec3(seen.to_viewer)));
+    }
+    fill(plain);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(kd_of(fit({2}, 3)[2]).value()) - kd)), 2e-3);
+    EXPECT_FALSE(kd_of(fit({5})[5])) << "nothing is known of it";
+}
+
 TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
     // Voxels of a ball, many side by side, each seen with the mean over normals that spread as its blur says.
     const Ward truth{{}, glm::dvec3(0.05), 0.07};

@@ -56,8 +56,8 @@ struct WardFitSeries::Weighed {
     std::vector<double> weights;
 };
 
-WardFitSeries::WardFitSeries(const SpecularPrior& prior)
-    : prior_(prior), lines_(kSteps + 1), seen_(kSteps + 1), solutions_(kSteps + 1) {}
+WardFitSeries::WardFitSeries(const SpecularPrior& prior, glm::dvec3 ambient)
+    : prior_(prior), ambient_(ambient), lines_(kSteps + 1), seen_(kSteps + 1), solutions_(kSteps + 1) {}
 
 /// An inverse variance: what all of a voxel's observations have in common, and a part of the highlight that the
 /// estimate predicts; less, by Geman and McClure, of what is far off it.
@@ -210,8 +210,30 @@ Ward WardFitSeries::fit(const std::vector<FittedVoxel>& voxels) {
         solutions_[step] = solve(step);
     }
     set_estimate();
+    sum_diffuse(weighed);
     ++fits_;
     return estimate_;
 }
+
+void WardFitSeries::sum_diffuse(const std::vector<Weighed>& voxels) {
+    const double memory = fits_ == 0 ? 0 : 0.93;
+    diffuse_ *= memory;
+    light2_ *= memory;
+    for (const auto& [voxel, weights] : voxels) {
+        const Ward white{glm::dvec3(1), glm::dvec3(0), 1};
+        const glm::dvec3 light = shade(white, voxel.point, voxel.lights, ambient_, voxel.point.normal);
+        for (size_t k = 0; k < weights.size(); ++k) {
+            const SeenColor& seen = voxel.observations[k];
+            const glm::dvec3 rest = seen.rgb - estimate_.ks * lobe_of(voxel, estimate_.alpha, seen);
+            for (glm::length_t c = 0; c < 3; ++c) {
+                if (seen.clipped[static_cast<size_t>(c)]) continue;
+                diffuse_[c] += weights[k] * light[c] * rest[c];
+                light2_[c] += weights[k] * light[c] * light[c];
+            }
+        }
+    }
+}
+
+glm::dvec3 WardFitSeries::kd() const { return glm::clamp(diffuse_ / glm::max(light2_, glm::dvec3(1e-20)), 0.0, 1.0); }
 
 }  // namespace patina::reference

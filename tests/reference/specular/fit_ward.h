@@ -28,7 +28,7 @@ struct SpecularPrior {
 /// and log(alpha) over how likely they are, alpha from 0.02 to 0.6. Views below a cosine of 0.15 are left out.
 class WardFitSeries {
   public:
-    explicit WardFitSeries(const SpecularPrior& prior);
+    explicit WardFitSeries(const SpecularPrior& prior, glm::dvec3 ambient = glm::dvec3(0));
 
     /// One more fit; 93 % of what the one before summed up counts beside it. Clipped channels are left out of the
     /// first; later they count, for each alpha, where the ks that was found for it predicts less than was recorded.
@@ -36,6 +36,10 @@ class WardFitSeries {
 
     /// How sure the last one is: the share of ks that observations tell, less where alpha is spread.
     double confidence() const { return confidence_; }
+
+    /// The kd that, as one for all voxels, leaves the least squared error of what highlights leave of their unclipped
+    /// colours. 0 without any.
+    glm::dvec3 kd() const;
 
   private:
     /// One channel of all voxels, for one alpha: residuals are color - ks * lobe, each without its voxel's mean.
@@ -54,8 +58,10 @@ class WardFitSeries {
     std::array<Line, 3> sum(const std::vector<Weighed>& voxels, size_t step) const;
     Solution solve(size_t step) const;
     void set_estimate();
+    void sum_diffuse(const std::vector<Weighed>& voxels);
 
     SpecularPrior prior_;
+    glm::dvec3 ambient_;
     int fits_ = 0;
     // By alpha:
     std::vector<std::array<Line, 3>> lines_;
@@ -65,6 +71,7 @@ class WardFitSeries {
     Ward estimate_{};
     double deviation_ = 1;
     double confidence_ = 0;
+    glm::dvec3 diffuse_{0}, light2_{0};
     double unit_ = 1;  ///< of sums, what is as unlikely as one deviation of one independent observation
 };
 

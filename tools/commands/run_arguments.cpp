@@ -1,0 +1,70 @@
+#include "tools/commands/run_arguments.h"
+
+#include <system_error>
+
+#include "engine/core/error.h"
+#include "reconstruction/store/map_file.h"
+#include "tools/commands/parse.h"
+
+namespace patina::tools {
+
+namespace fs = std::filesystem;
+
+void declare(CLI::App& command, RunArguments& arguments) {
+    RunOptions& run = arguments.run;
+    arguments.sequence.add_to(command, run);
+    command.get_option("sequence")->required(false);  // a run that goes on has its own
+    command.add_option("--out", run.out, "Folder for the results");
+    command.add_option("--dump-every", run.dump_every, "Write frames/NNNNNN.exr of every so many frames");
+    command
+        .add_option("--gains", run.gains,
+                    "Bring each frame's colours to the exposure and white balance of the first: auto (where the "
+                    "recording does not tell the exposure), on, off")
+        ->transform(one_of<Gains>({{"auto", Gains::kAuto}, {"on", Gains::kOn}, {"off", Gains::kOff}}))
+        ->option_text("auto|on|off");
+    command
+        .add_option("--poses", run.poses,
+                    "The camera's poses: given by the sequence, tracked, or tracked from the given motion on (prior); "
+                    "by default given where there are any")
+        ->transform(one_of<Poses>({{"given", Poses::kGiven}, {"track", Poses::kTrack}, {"prior", Poses::kPrior}}))
+        ->option_text("given|track|prior");
+    command.add_flag("--tiles", run.tiles,
+                     "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
+    command.add_option("--hold-out", run.hold_out,
+                       "Keep the colours of every so many-th frame out of the model, and compare them in the end");
+    command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
+    command
+        .add_option("--checkpoint-every", run.checkpoint_every,
+                    "Keep the state of the run in OUT/map.sqlite every so many frames, to go on from after whatever "
+                    "stopped it")
+        ->check(at_least_one());
+    command
+        .add_option("--extend", arguments.extends,
+                    "Begin from the map that another run left in this folder: its model, its world, its lights")
+        ->excludes("--lights")
+        ->excludes("--lighting");
+    command.add_option("--resume", arguments.resume,
+                       "Go on from the map in this folder; alone: with the arguments that the run was started with");
+}
+
+fs::path map_in(const fs::path& run_folder) { return run_folder / "map.sqlite"; }
+
+std::shared_ptr<RunArguments> kept_arguments(const fs::path& folder) {
+    const auto map = MapFile::with_state(map_in(folder));
+    std::vector<std::string> words;
+    for (const auto& word : map->expect_json("arguments")) words.push_back(word.get<std::string>());
+    const fs::path started_in = map->expect_text("started_in");
+    std::error_code failure;
+    fs::current_path(started_in, failure);
+    if (failure)
+        throw Error("the run in '", folder.string(), "' was started in '", started_in.string(),
+                    "', which cannot be entered: ", failure.message(), "; give its sequence and options again");
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App command;
+    declare(command, *arguments);
+    command.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last comes first
+    arguments->run.arguments = words;
+    return arguments;
+}
+
+}  // namespace patina::tools

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "tools/commands/commands.h"
+#include "tools/run/run.h"
+
+namespace patina::tools {
+
+/// What `patina run` takes.
+struct RunArguments {
+    RunOptions run;
+    SequenceArguments sequence;
+    std::optional<std::filesystem::path> extends;  ///< the folder whose map the run begins from
+    std::optional<std::filesystem::path> resume;   ///< the folder whose map the run goes on from; none: it begins
+};
+
+/// Adds the options. Both must live until the command line is parsed.
+void declare(CLI::App& command, RunArguments& arguments);
+
+/// Where a run keeps its state.
+std::filesystem::path map_in(const std::filesystem::path& run_folder);
+
+/// The arguments of the run that the map in a folder is of, as if they were given now: enters the folder that it was
+/// started in. Throws Error where there is no map, or that folder is gone.
+std::shared_ptr<RunArguments> kept_arguments(const std::filesystem::path& folder);
+
+}  // namespace patina::tools

@@ -1,0 +1,71 @@
+#include "tools/render/never_recorded.h"
+
+#include <deque>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "export/write_exr.h"
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/session_core.h"
+#include "reconstruction/session/session_lights.h"
+#include "sensor/truth.h"
+#include "tools/run/frame_dumps.h"
+
+namespace patina::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the colour camera, in the session's world.
+std::vector<RigidTransform> poses_of(const fs::path& sequence, const RigidTransform& session_from_truth,
+                                     const SequenceInfo& info) {
+    std::vector<RigidTransform> poses;
+    for (const sensor::StampedPose& pose : sensor::read_trajectory(sequence / "truth" / "trajectory.txt"))
+        poses.push_back(session_from_truth * pose.world_from_camera * rigid_inverse(info.color_from_depth));
+    return poses;
+}
+
+void write_views(SessionCore& session, const std::vector<RigidTransform>& poses, const std::string& folder,
+                 OutputFolder& out) {
+    std::deque<ViewReadback> owed;
+    uint32_t done = 0;
+    const auto write_first = [&] {
+        const std::string name = fmt::format("{}/{:06}.exr", folder, done++);
+        write_exr(out.stage(name), channels_of(to_dump(owed.front().get())));
+        out.publish(name);
+        owed.pop_front();
+    };
+    for (const RigidTransform& pose : poses) {
+        session.stop_if_interrupted();
+        owed.push_back(session.pipeline().view(session.info().color, pose));
+        while (!owed.empty() && owed.front().ready()) write_first();
+    }
+    session.pipeline().wait();
+    while (!owed.empty()) write_first();
+}
+
+}  // namespace
+
+void render_never_recorded(const SequenceOptions& run, const fs::path& truth, const RigidTransform& truth_from_run,
+                           OutputFolder& out) {
+    Device device(run.device);
+    SessionCore session(Access::vulkan(device), run);
+    if (session.step())
+        throw Error("'", run.map.string(), "' holds a run that has not come to its end, after ",
+                    session.ledger().read() - 1, " frames");
+    session.end();
+    RigidTransform session_from_truth = rigid_inverse(truth_from_run);
+    session_from_truth[3] -= glm::dvec4(session.world_offset_m(), 0);
+    session.pipeline().refine_all();
+    write_views(session, poses_of(truth / "novel", session_from_truth, session.info()), "novel", out);
+
+    std::vector<Light> lights = sensor::read_lights(truth / "relit" / "truth" / "lights.json");
+    for (Light& light : lights) light.position_m = glm::dvec3(session_from_truth * glm::dvec4(light.position_m, 1));
+    session.pipeline().relight(lights, glm::dvec3(0));
+    write_views(session, poses_of(truth / "relit", session_from_truth, session.info()), "relit", out);
+}
+
+}  // namespace patina::tools
