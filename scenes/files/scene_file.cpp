@@ -19,6 +19,7 @@
 #include "scenes/files/readers/materials.h"
 #include "scenes/files/readers/objects.h"
 #include "scenes/files/readers/recording.h"
+#include "scenes/files/readers/values.h"
 #include "sensor/files/json_file.h"
 
 namespace patina::scenes {
@@ -63,14 +64,39 @@ fs::path file_of(const std::string& name_or_file) {
     return file;
 }
 
+/// The scene that a scene changes, in the same folder, so that the files it names are found.
+sensor::JsonValue read_base(const sensor::JsonValue& name) {
+    if (fs::path(name.string()).has_parent_path()) name.fail("must be a file beside it");
+    sensor::JsonValue base = located(name, [&] { return sensor::JsonValue::read(beside_file(name)); });
+    if (base.find("base")) name.fail("which has a base itself");
+    return base;
+}
+
+std::optional<Bumps> read_bumps(const sensor::JsonValue& value) {
+    value.expect_keys({"depth", "size", "seed"});
+    Bumps bumps;
+    bumps.depth_m = read_positive(value.at("depth"));
+    bumps.size_m = read_positive(value.at("size"));
+    if (const auto seed = value.find("seed")) bumps.seed = seed->whole_number(UINT64_MAX);
+    return bumps;
+}
+
 /// `included`: within another scene, which takes its objects and lamps.
 SyntheticScene read_scene(const fs::path& file, const fs::path& mesh, bool included = false) {
-    const sensor::JsonValue root = sensor::JsonValue::read(file);
-    root.expect_keys({"name", "fps", "camera", "color_camera", "depth", "textures", "materials", "objects", "include",
-                      "lights", "environment", "path", "lighting", "recording"});
+    const sensor::JsonValue own = sensor::JsonValue::read(file);
+    const auto base_name = own.find("base");
+    const std::optional<sensor::JsonValue> base = base_name ? std::optional(read_base(*base_name)) : std::nullopt;
+    const sensor::JsonValue root = base ? base->patched(own) : own;
+    root.expect_keys({"name", "base", "without", "fps", "camera", "color_camera", "depth", "textures", "materials",
+                      "objects", "bumps", "include", "lights", "environment", "path", "lighting", "recording"});
     SyntheticScene scene;
-    scene.name = root.find("name") ? root.at("name").string() : file.stem().string();
-    scene.objects = read_objects(root.at("objects"), MaterialReader(root), mesh);
+    scene.name = own.find("name") ? own.at("name").string() : file.stem().string();
+    std::vector<sensor::JsonValue> objects;
+    if (base) objects.push_back(base->at("objects"));
+    if (!base || own.find("objects")) objects.push_back(own.at("objects"));
+    const auto bumps = root.find("bumps");
+    scene.objects = read_objects(objects, MaterialReader(root), {mesh, bumps ? read_bumps(*bumps) : std::nullopt});
+    if (const auto without = root.find("without")) remove_objects(*without, scene);
     if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights);
     if (const auto include = root.find("include")) {
         if (included) include->fail("but this scene is included itself");

@@ -121,6 +121,14 @@ std::optional<JsonValue> JsonValue::find(const std::string& key) const {
     return part(key_of(key), *member);
 }
 
+JsonValue JsonValue::patched(const JsonValue& changes) const {
+    for (const JsonValue* value : {this, &changes})
+        if (!value->is_object()) value->fail("must be an object");
+    auto document = std::make_shared<json>(*value_);
+    document->merge_patch(*changes.value_);
+    return {changes.file_, "", std::move(document)};
+}
+
 JsonValue JsonValue::at(const std::string& key) const {
     std::optional<JsonValue> member = find(key);
     if (!member) throw Error(part(key_of(key), *value_).where(), " is missing");

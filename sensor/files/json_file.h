@@ -25,6 +25,10 @@ class JsonValue {
     /// read().
     static JsonValue parse(const std::string& file, std::span<const uint8_t> bytes);
 
+    /// This object with the members of `changes` in place of its own, and so on in members that are objects in both
+    /// (RFC 7396, JSON Merge Patch). Messages name the file of `changes`. Throws Error when one of them is no object.
+    JsonValue patched(const JsonValue& changes) const;
+
     /// The member `key`. Throws Error when it is missing or this is no object.
     JsonValue at(const std::string& key) const;
 

@@ -73,7 +73,36 @@ class BuiltinScenes : public ::testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes, ::testing::ValuesIn(kNames),
                          [](const auto& p) { return std::string(p.param); });
 
-TEST(BuiltinSceneNames, AreThoseTestedHere) { EXPECT_EQ(scene_names(), "balls, bunnies, cubes, halls, office"); }
+TEST(BuiltinSceneNames, AreThoseTestedHereAndStepsFromThem) {
+    EXPECT_EQ(scene_names(),
+              "balls, bunnies, bunnies-all, bunnies-area, bunnies-bounces, bunnies-bumps-15, bunnies-bumps-2, "
+              "bunnies-bumps-8, bunnies-glossy, bunnies-noise, bunnies-rough, bunnies-sky, cubes, halls, office, "
+              "office-all, office-area, office-bounces, office-noise, office-window");
+}
+
+TEST(HarderScenes, AreOneStepFromTheSceneThatTheyAreNamedAfter) {
+    const SyntheticScene &bunnies = loaded("bunnies"), &office = loaded("office");
+    EXPECT_TRUE(loaded("bunnies-area").recording.render.area_lights);
+    EXPECT_TRUE(loaded("office-area").recording.render.area_lights);
+    EXPECT_EQ(loaded("bunnies-bounces").recording.render.bounces, 2u);
+    EXPECT_GT(loaded("office-noise").recording.noise.depth_constant_m, 0);
+    EXPECT_TRUE(loaded("bunnies-sky").environment && !bunnies.environment);
+    EXPECT_EQ(named(loaded("bunnies-glossy"), "teal").material.alpha, 0.08);
+    EXPECT_EQ(named(loaded("bunnies-glossy"), "teal").material.ks, named(bunnies, "teal").material.ks);
+    const SyntheticScene& window = loaded("office-window");
+    EXPECT_EQ(window.objects.size(), office.objects.size());
+    EXPECT_EQ(named(window, "window wall").material.id, window.objects.size());
+    for (const char* step : {"bunnies-bumps-2", "bunnies-bumps-8", "bunnies-bumps-15", "bunnies-all"}) {
+        const auto mesh_of = [](const SyntheticScene& scene) {
+            return std::get<MeshShape>(named(scene, "teal").parts[0].shape).mesh;
+        };
+        EXPECT_GE(mesh_of(loaded(step))->triangles.size(), mesh_of(bunnies)->triangles.size()) << step;
+        EXPECT_NE(mesh_of(loaded(step))->positions_m, mesh_of(bunnies)->positions_m) << step;
+        EXPECT_EQ(named(loaded(step), "teal").material.alpha, named(bunnies, "teal").material.alpha) << step;
+        EXPECT_EQ(world_from_camera(loaded(step).path, 3), world_from_camera(bunnies.path, 3)) << step;
+        EXPECT_EQ(loaded(step).name, step);
+    }
+}
 
 TEST_P(BuiltinScenes, MaterialsAreLikeMeasuredOnes) {
     std::set<std::string> names;

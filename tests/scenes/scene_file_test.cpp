@@ -216,7 +216,8 @@ TEST_P(SceneFaults, AreNamedWithFilePathAndValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     SyntheticScene, SceneFaults,
-    ::testing::Values(SceneFault{"/ligths", 1, "ligths is 1, an unknown key; known are: name, fps, camera, "},
+    ::testing::Values(SceneFault{"/ligths", 1,
+                                 "ligths is 1, an unknown key; known are: name, base, without, fps, camera, "},
                       SceneFault{"/objects", {}, "objects is missing"},
                       SceneFault{"/objects", json::array(), "objects is [], must hold at least one object"},
                       SceneFault{"/fps", 0, "fps is 0, must be positive"}, SceneFault{"/path", {}, "path is missing"},
@@ -411,6 +412,53 @@ TEST_F(IncludedScenes, WhatTheyDoNotHaveIsNamed) {
     EXPECT_THAT(error_with("scale", 2), HasSubstr("include[0].scale is 2, an unknown key"));
     write_text(folder_ / "nested.json", including().dump());
     EXPECT_THAT(error_with("scene", "nested.json"), HasSubstr("but this scene is included itself"));
+}
+
+class ChangedScenes : public ::testing::Test {
+  protected:
+    ChangedScenes() { write_text(folder_ / "base.json", small_scene().dump()); }
+
+    std::string error_of(const json& scene) const { return load_error(folder_ / "a.json", scene.dump()); }
+
+    const TemporaryFolder folder_;
+};
+
+TEST_F(ChangedScenes, HaveWhatTheirBaseHasButForWhatTheyChange) {
+    const SyntheticScene base = load(folder_ / "b.json", small_scene());
+    const SyntheticScene changed = load(folder_ / "a.json", {{"base", "base.json"}, {"recording", {{"bounces", 3}}}});
+    EXPECT_EQ(changed.name, "a") << "a name is not inherited";
+    EXPECT_EQ(changed.recording.render.bounces, 3u);
+    EXPECT_EQ(changed.recording.render.shadows, base.recording.render.shadows);
+    ASSERT_EQ(changed.objects.size(), base.objects.size());
+    EXPECT_EQ(changed.objects[0].material.name, base.objects[0].material.name);
+    EXPECT_EQ(changed.lights.size(), base.lights.size());
+}
+
+TEST_F(ChangedScenes, TakeObjectsOutAndAddTheirOwn) {
+    const SyntheticScene base = load(folder_ / "b.json", small_scene());
+    const std::string first = base.objects[0].material.name;
+    const json ball = {{"name", "new ball"},
+                       {"material", {{"kd", 0.5}, {"ks", 0.05}, {"alpha", 0.1}}},
+                       {"parts", {{{"sphere", {{"radius", 0.1}}}}}}};
+    const SyntheticScene changed =
+        load(folder_ / "a.json", {{"base", "base.json"}, {"without", {first}}, {"objects", {ball}}});
+    ASSERT_EQ(changed.objects.size(), base.objects.size());
+    EXPECT_EQ(changed.objects.back().material.name, "new ball");
+    for (size_t i = 0; i < changed.objects.size(); ++i) {
+        EXPECT_EQ(changed.objects[i].material.id, i + 1);
+        EXPECT_NE(changed.objects[i].material.name, first);
+    }
+}
+
+TEST_F(ChangedScenes, WhatIsWrongIsNamed) {
+    EXPECT_THAT(error_of({{"base", "none.json"}}), HasSubstr("a.json: base: "));
+    EXPECT_THAT(error_of({{"base", "../base.json"}}), HasSubstr("base is \"../base.json\", must be a file beside it"));
+    write_text(folder_ / "second.json", R"({"base": "base.json"})");
+    EXPECT_THAT(error_of({{"base", "second.json"}}), HasSubstr("which has a base itself"));
+    EXPECT_THAT(error_of({{"base", "base.json"}, {"without", {"sofa"}}}),
+                HasSubstr(R"(without[0] is "sofa", which is no object of a)"));
+    EXPECT_THAT(error_of({{"base", "base.json"}, {"bumps", {{"depth", -1}, {"size", 0.1}}}}),
+                HasSubstr("a.json: bumps.depth is -1, must be"));
 }
 
 TEST(SceneFile, WhatIsNoJsonIsNamedWithItsLine) {

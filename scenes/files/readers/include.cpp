@@ -1,23 +1,16 @@
 #include "scenes/files/readers/include.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scenes/files/readers/objects.h"
 #include "scenes/files/readers/values.h"
 
 namespace patina::scenes {
 namespace {
-
-void remove_objects(const sensor::JsonValue& names, SyntheticScene& scene) {
-    for (const sensor::JsonValue& name : names.elements()) {
-        const auto has_name = [&](const SceneObject& object) { return object.material.name == name.string(); };
-        if (std::erase_if(scene.objects, has_name) == 0) name.fail("which is no object of " + scene.name);
-    }
-}
 
 /// `lit`: the lamps that are on, by their places in the scene's list.
 void keep_lights(const sensor::JsonValue& lit, SyntheticScene& scene) {
@@ -62,10 +55,7 @@ void add_included(const sensor::JsonValue& include,
             add_copy(part, read_placement(place), name, scene);
         }
     }
-    if (scene.objects.size() > UINT16_MAX)
-        include.fail("which makes " + std::to_string(scene.objects.size()) + " objects, but label images tell apart " +
-                     std::to_string(UINT16_MAX));
-    for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material.id = static_cast<uint32_t>(i + 1);
+    number_objects(include, scene);
 }
 
 }  // namespace patina::scenes

@@ -68,8 +68,8 @@ MeshSettings read_mesh_settings(const sensor::JsonValue& value) {
 
 class ObjectReader {
   public:
-    ObjectReader(const MaterialReader& materials, fs::path mesh)
-        : materials_(materials), replacement_(std::move(mesh)) {}
+    ObjectReader(const MaterialReader& materials, MeshChanges changes)
+        : materials_(materials), changes_(std::move(changes)) {}
 
     SceneObject read(const sensor::JsonValue& value) {
         value.expect_keys({"name", "material", "parts", "position", "rotations"});
@@ -107,36 +107,55 @@ class ObjectReader {
     MeshShape read_mesh_shape(const sensor::JsonValue& value) {
         const MeshSettings settings = read_mesh_settings(value);
         const sensor::JsonValue name = value.at("file");
-        if (settings.height_m && !replacement_.empty()) return {shared_mesh(replacement_, settings)};
+        if (settings.height_m && !changes_.file.empty()) return {shared_mesh(changes_.file, settings)};
         return located(name, [&] { return MeshShape{shared_mesh(beside_file(name), settings)}; });
     }
 
     /// Meshes of the same file and settings are read once.
     std::shared_ptr<const TriangleMesh> shared_mesh(const fs::path& file, const MeshSettings& settings) {
         std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, settings}];
-        if (!mesh) mesh = std::make_shared<const TriangleMesh>(read_mesh(file, settings));
-        return mesh;
+        if (mesh) return mesh;
+        TriangleMesh triangles = read_mesh(file, settings);
+        if (settings.height_m && changes_.bumps) triangles = with_bumps(std::move(triangles), *changes_.bumps);
+        return mesh = std::make_shared<const TriangleMesh>(std::move(triangles));
     }
 
     const MaterialReader& materials_;
-    fs::path replacement_;
+    MeshChanges changes_;
     std::map<std::string, std::string> place_of_name_;
     std::map<std::pair<fs::path, MeshSettings>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
 }  // namespace
 
-std::vector<SceneObject> read_objects(const sensor::JsonValue& value, const MaterialReader& materials,
-                                      const fs::path& mesh) {
-    const std::vector<sensor::JsonValue> elements = value.elements();
-    if (elements.empty()) value.fail("must hold at least one object");
-    if (elements.size() > UINT16_MAX) {
-        throw Error(value.where(), " holds ", elements.size(), " objects, but label images tell apart ", UINT16_MAX);
-    }
-    ObjectReader reader(materials, mesh);
+std::vector<SceneObject> read_objects(std::span<const sensor::JsonValue> lists, const MaterialReader& materials,
+                                      const MeshChanges& changes) {
+    ObjectReader reader(materials, changes);
     std::vector<SceneObject> objects;
-    for (const sensor::JsonValue& element : elements) objects.push_back(reader.read(element));
+    for (const sensor::JsonValue& list : lists) {
+        const std::vector<sensor::JsonValue> elements = list.elements();
+        if (elements.empty()) list.fail("must hold at least one object");
+        if (elements.size() > UINT16_MAX) {
+            throw Error(list.where(), " holds ", elements.size(), " objects, but label images tell apart ", UINT16_MAX);
+        }
+        for (const sensor::JsonValue& element : elements) objects.push_back(reader.read(element));
+    }
     return objects;
+}
+
+void remove_objects(const sensor::JsonValue& names, SyntheticScene& scene) {
+    for (const sensor::JsonValue& name : names.elements()) {
+        const auto has_name = [&](const SceneObject& object) { return object.material.name == name.string(); };
+        if (std::erase_if(scene.objects, has_name) == 0) name.fail("which is no object of " + scene.name);
+    }
+    number_objects(names, scene);
+}
+
+void number_objects(const sensor::JsonValue& value, SyntheticScene& scene) {
+    if (scene.objects.size() > UINT16_MAX)
+        value.fail("which makes " + std::to_string(scene.objects.size()) + " objects, but label images tell apart " +
+                   std::to_string(UINT16_MAX));
+    for (size_t i = 0; i < scene.objects.size(); ++i) scene.objects[i].material.id = static_cast<uint32_t>(i + 1);
 }
 
 }  // namespace patina::scenes
