@@ -291,6 +291,9 @@ constexpr std::array kRows = {
                                     "While more observed voxels are in use, those that are far away leave the device "
                                     "for the host's memory (map.host_mib), and come back before they are seen; 0 keeps "
                                     "all."),
+    choice<&Refl::detail>("reflectance.detail",
+                          "Pictures show detail that is finer than the observed voxels, restored from the fused "
+                          "colour."),
     choice<&Refine::shadows>("reflectance.shadows",
                              "Finds which lights reach a surface; without it every light reaches every surface."),
     number<&Refine::first_marched_records>("reflectance.first_marched_records", "records", 1, kAnyCount,

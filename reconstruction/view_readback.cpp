@@ -63,7 +63,7 @@ ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCame
         const RestoreDetailInputs inputs{model.position_m, model.normal, color,
                                          static_cast<float>(camera.intrinsics.fx), settings.voxel_m};
         // Under other lights than those of the frames, their colours would bring back the shadows of these.
-        const bool detailed = stages.settings.fusion.color && settings.refine.albedo;
+        const bool detailed = stages.settings.fusion.color && settings.refine.albedo && settings.detail;
         const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
         ViewReadback::Reflectance& read = view.reflectance_.emplace();
         read.kd = graph.read_back(seen.kd);

@@ -27,6 +27,7 @@ struct ReflectanceStageSettings {
     uint32_t resident_records = 524288;
     /// Frames after which a part of the observations gives back what holds no surface any more; 0: never
     uint32_t reclaim_every = 16;
+    bool detail = true;  ///< pictures show detail that is restored from the fused colour
     ObservationSettings observe;
     ReflectanceSettings refine;
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at first that of the segments

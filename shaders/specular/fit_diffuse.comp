@@ -54,6 +54,9 @@ void main() {
     const uint label = batch[1u + segment];
     if (label >= params.labels) return;
     const WardFit fit = fits[label];
+    // What has been fitted often hardly changes.
+    const bool often = fit.estimates > kFitDiffuseEvery;
+    if (often && fit.estimates % kFitDiffuseEvery != 0u) return;
     const vec3 ks_scaled = fit.ks_alpha.rgb * ward_scale(fit.ks_alpha.w);
     vec3 diffuse = vec3(0.0), light2 = vec3(0.0);
     for (uint slot = lane; slot < kSegmentSamples; slot += kFitGroup) {
@@ -87,7 +90,7 @@ void main() {
         diffuse += diffuse_of[i];
         light2 += light2_of[i];
     }
-    const float kept = fit.estimates > 1u ? params.memory : 0.0;
+    const float kept = fit.estimates > 1u ? pow(params.memory, often ? float(kFitDiffuseEvery) : 1.0) : 0.0;
     fits[label].diffuse = vec4(diffuse + kept * fit.diffuse.rgb, 0.0);
     fits[label].light2 = vec4(light2 + kept * fit.light2.rgb, 0.0);
 }

@@ -3,12 +3,21 @@
 #include <system_error>
 
 #include "engine/core/error.h"
+#include "reconstruction/api/access.h"
+#include "reconstruction/session/choices.h"
 #include "reconstruction/store/map_file.h"
 #include "tools/commands/parse.h"
 
 namespace patina::tools {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// More segments than a frame of a room shows; the network's activations of so many take 77 MB.
+constexpr uint32_t kPaperSegments = 128;
+
+}  // namespace
 
 void declare(CLI::App& command, RunArguments& arguments) {
     RunOptions& run = arguments.run;
@@ -28,6 +37,19 @@ void declare(CLI::App& command, RunArguments& arguments) {
                     "by default given where there are any")
         ->transform(one_of<Poses>({{"given", Poses::kGiven}, {"track", Poses::kTrack}, {"prior", Poses::kPrior}}))
         ->option_text("given|track|prior");
+    command
+        .add_flag_callback(
+            "--paper",
+            [&arguments] {
+                ReconstructionSettings& settings = Access::values(arguments.run.settings);
+                if (!settings.reflectance) settings.reflectance.emplace();
+                if (!settings.specular) settings.specular.emplace();
+                settings.reflectance->detail = false;
+                settings.specular->segments_per_frame = kPaperSegments;
+                arguments.sequence.specular = name_of(Materials::kNetwork);
+            },
+            "As the paper has it: HemiCNN alone, of every segment in every frame, and no detail restored")
+        ->excludes("--specular");
     command.add_flag("--tiles", run.tiles,
                      "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
     command.add_option("--hold-out", run.hold_out,

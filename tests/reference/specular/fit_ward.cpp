@@ -216,7 +216,9 @@ Ward WardFitSeries::fit(const std::vector<FittedVoxel>& voxels) {
 }
 
 void WardFitSeries::sum_diffuse(const std::vector<Weighed>& voxels) {
-    const double memory = fits_ == 0 ? 0 : 0.93;
+    const bool often = fits_ + 1 > 4;
+    if (often && (fits_ + 1) % 4 != 0) return;
+    const double memory = fits_ == 0 ? 0 : std::pow(0.93, often ? 4 : 1);
     diffuse_ *= memory;
     light2_ *= memory;
     for (const auto& [voxel, weights] : voxels) {

@@ -38,7 +38,7 @@ class WardFitSeries {
     double confidence() const { return confidence_; }
 
     /// The kd that, as one for all voxels, leaves the least squared error of what highlights leave of their unclipped
-    /// colours. 0 without any.
+    /// colours; from the fourth fit on as of every fourth. 0 without any.
     glm::dvec3 kd() const;
 
   private:
