@@ -27,6 +27,10 @@ bool TrackedFusion::add(const RgbdFrame& frame) {
     const TrackingReport report = first ? judge_first(frame) : track(frame);
     if (first) tracking_.accept(report, frame.time, true);
     if (report.state != TrackingState::kTracking) return false;
+    if (frame.only_track && !first) {
+        cast_reference(frame.depth.camera, report.world_from_depth);
+        return false;
+    }
     if (first) {
         fusion_.add(frame);
     } else {

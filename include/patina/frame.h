@@ -96,7 +96,8 @@ struct RgbdFrame {
     /// Of the time since the frame before, the share in which the colour camera's shutter was open; 0: its pictures are
     /// not blurred by motion.
     float shutter_share = 0;
-    bool held_out = false;  ///< its colours are neither fused nor observed, its depth is fused
+    bool held_out = false;    ///< its colours are neither fused nor observed, its depth is fused
+    bool only_track = false;  ///< its pose is found, where poses are tracked, and nothing of it enters the model
 };
 
 }  // namespace patina

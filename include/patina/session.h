@@ -76,7 +76,9 @@ struct SessionOptions {
     std::filesystem::path network;  ///< weights; empty: those that ship with Patina
     /// Of everything that is drawn at random, of a synthetic scene noise and samples too; empty: the fixed ones.
     std::optional<uint64_t> seed;
-    uint32_t hold_out = 0;  ///< the colours of every so many-th frame are kept out of the model; 0: of none
+    /// Every so many-th frame is kept out of the model: its colours, depth and labels; 0: none. With tracking, its pose
+    /// is found. At least 2.
+    uint32_t hold_out = 0;
     /// A file that keeps the session's state, a map: a session that was stopped or killed goes on from it, and what
     /// comes out is the same. Empty: none. One that holds a session which has come to its end is replaced.
     std::filesystem::path map;

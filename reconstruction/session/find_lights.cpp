@@ -176,6 +176,7 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device, glm::dvec
     std::optional<RigidTransform> first_given;
     for_each_frame(options, *source, options.sequence, "lights", [&](const Frame& frame) -> std::string {
         if (!frame.world_from_camera && !tracks) return without_pose(frame);
+        if (is_held_out(frame.index, options.hold_out)) return {};
         RgbdFrame rgbd = to_rgbd(info, frame);
         if (!first_given) first_given = rgbd.world_from_depth;
         if (tracks) rgbd.world_from_depth = *first_given;

@@ -32,6 +32,7 @@ struct LightsOptions {
     std::string main;
     std::string main_format;   ///< empty: recognised
     uint32_t main_frames = 0;  ///< as `frames`, of the main sequence, when a lighting sequence is found in its room
+    uint32_t hold_out = 0;     ///< every so many-th frame of the main sequence is left aside (is_held_out); 0: none
     bool track = false;        ///< poses of the main sequence are tracked though it has some
     std::optional<uint64_t> seed{};  ///< of a synthetic scene's noise and samples; empty: what the scene says
     LightEstimationSettings settings;

@@ -81,6 +81,7 @@ std::string full_pool_warning(const PoolState& pool) {
 /// Wrong paths and options are found before lights are looked for, which takes time.
 SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source)
     : device_(device), options_(options) {
+    if (options_.hold_out == 1) throw Error("every frame is held out, which leaves none for a model");
     if (!options_.map.empty()) open_map();
     const std::shared_ptr<MapFile> earlier = earlier_map();
     open(std::move(source), earlier ? std::optional(world_offset_in(device_, *earlier)) : std::nullopt);
@@ -148,6 +149,7 @@ void SessionCore::take_light(SessionLight light) {
 
 bool SessionCore::step() {
     fused_.reset();
+    held_out_.reset();
     stop_if_interrupted();
     const uint32_t limit = info_.frames.value_or(options_.frames);
     std::optional<Reading> reading;
@@ -203,9 +205,17 @@ void SessionCore::skip(uint32_t index, std::string reason) {
     ledger_.skip(index, std::move(reason));
 }
 
+void SessionCore::hold_out(Frame frame) {
+    last_ = FrameResult{.fused = false, .reason = "held out", .world_from_depth = *frame.world_from_camera};
+    ledger_.use(frame.index);
+    held_out_indices_.push_back(frame.index);
+    held_out_ = std::move(frame);
+}
+
 void SessionCore::fuse(Frame frame) {
     if (!frame.world_from_camera && !tracks())
         return skip(frame.index, fmt::format("frame {} has no pose", frame.index));
+    if (is_held_out(frame.index, options_.hold_out) && !tracks()) return hold_out(std::move(frame));
     RgbdFrame rgbd = to_rgbd(info_, frame);
     Image<uint16_t> labels;
     if (options_.labels == Labels::kTruth) {
@@ -217,7 +227,7 @@ void SessionCore::fuse(Frame frame) {
         rgbd.labels = labels.pixels();
     }
     if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
-    rgbd.held_out = options_.hold_out > 0 && frame.index % options_.hold_out == options_.hold_out - 1;
+    rgbd.only_track = is_held_out(frame.index, options_.hold_out);
     if (!add(rgbd, frame)) return;
     last_ = FrameResult{.fused = true, .reason = "", .world_from_depth = *frame.world_from_camera};
     ledger_.use(frame.index);
@@ -236,6 +246,10 @@ bool SessionCore::add(RgbdFrame& rgbd, Frame& frame) {
     const TrackingReport& report = *pipeline_->tracking_report();
     tracked_.push_back({frame.index, report});
     frame.world_from_camera = report.world_from_depth;
+    if (rgbd.only_track && !fused && report.state == TrackingState::kTracking) {
+        hold_out(std::move(frame));
+        return false;
+    }
     if (!fused) {
         ledger_.skip(frame.index, fmt::format("frame {} was not fused, tracking was {}: {}", frame.index,
                                               name_of(report.state), report.reason));

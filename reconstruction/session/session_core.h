@@ -70,6 +70,8 @@ class SessionCore {
     /// The frame that the last step() fused, with its pose; null where it fused none.
     const Frame* fused() const { return fused_ ? &*fused_ : nullptr; }
     const std::optional<FrameResult>& last() const { return last_; }
+    /// The frame of the last step() where it was held out (SessionOptions::hold_out), with its pose; else null.
+    const Frame* held_out() const { return held_out_ ? &*held_out_ : nullptr; }
 
     /// Throws Interrupted when the caller stops it; the device has finished then.
     void stop_if_interrupted();
@@ -122,6 +124,7 @@ class SessionCore {
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
+    void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);
     void report_progress();
@@ -145,12 +148,13 @@ class SessionCore {
     std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene
     std::optional<Pipeline> pipeline_;
     sensor::Ledger ledger_;
-    std::optional<Frame> fused_;
+    std::optional<Frame> fused_, held_out_;
     std::optional<FrameResult> last_;
     std::vector<TimedPose> poses_;
     std::vector<TrackedFrame> tracked_;
     std::optional<RigidTransform> first_given_;  ///< of the first frame that has a pose
     std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
+    std::vector<uint32_t> held_out_indices_;     ///< and of those that were held out
     std::set<std::string> full_pools_;           ///< those that were reported
     std::string stream_problem_;                 ///< Pipeline::stream_problem(), the first that was reported
 };

@@ -23,6 +23,7 @@ LightsOptions search_of(const SessionOptions& options, glm::dvec3 world_offset_m
     if (!synthetic_scene(options)) find.main = options.sequence;
     find.main_format = options.format;
     find.main_frames = options.frames;
+    find.hold_out = options.hold_out;
     find.track = options.poses == Poses::kTrack || options.poses == Poses::kPrior;
     find.seed = options.seed;
     find.reconstruction = Access::values(options.settings);

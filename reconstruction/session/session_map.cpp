@@ -61,7 +61,7 @@ std::shared_ptr<MapFile> SessionCore::earlier_map() const {
 
 void SessionCore::visit(graph::StateVisitor& visitor) {
     pipeline_->visit(visitor);
-    patina::visit(visitor, ledger_, used_);
+    patina::visit(visitor, ledger_, used_, held_out_indices_);
     patina::visit(visitor, tracked_);
     visitor.values("session.poses", poses_);
     visitor.value("session.first_given", first_given_);

@@ -100,7 +100,8 @@ void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked) {
     for (size_t i = 0; i < indices.size(); ++i) tracked.push_back({indices[i], {figures.at(i), reasons.at(i)}});
 }
 
-void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& used) {
+void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
+           std::vector<uint32_t>& held_out) {
     uint32_t read = ledger.read();
     std::vector<uint32_t> indices;
     std::vector<std::string> reasons;
@@ -109,7 +110,8 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
         reasons.push_back(skipped.reason);
     }
     visitor.value("session.read", read);
-    visitor.values("session.used", used);
+    visitor.values("session.used", fused);
+    visitor.values("session.held_out", held_out);
     visitor.values("session.skipped", indices);
     visitor.texts("session.skipped_because", reasons);
     ledger = {};
@@ -118,7 +120,8 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
         frame.index = index;
         ledger.note(frame);
     }
-    for (const uint32_t index : used) ledger.use(index);
+    for (const std::vector<uint32_t>* used : {&fused, &held_out})
+        for (const uint32_t index : *used) ledger.use(index);
     for (size_t i = 0; i < indices.size(); ++i) ledger.skip(indices[i], reasons.at(i));
 }
 

@@ -32,17 +32,17 @@ shared vec3 diffuse_of[kFitGroup];
 shared vec3 light2_of[kFitGroup];
 
 // What the lights do to a voxel, over pi.
-vec3 irradiance(vec3 point_m, vec3 normal, uvec2 reached) {
+vec3 irradiance(vec3 point_m, vec3 normal, uvec2 reached, uint count) {
     vec3 sum = header.ambient.rgb;
-    for (uint i = 0u; i < header.count; ++i) sum += fit_light(i, point_m, normal, reached).received;
+    for (uint i = 0u; i < count; ++i) sum += fit_light(i, point_m, normal, reached).received;
     return sum;
 }
 
 // The lobes of all lights, as ks multiplies them but for ward_scale().
-vec3 lobes(vec3 point_m, vec3 normal, uvec2 reached, WardShape shape, vec3 to_viewer) {
+vec3 lobes(vec3 point_m, vec3 normal, uvec2 reached, uint count, WardShape shape, vec3 to_viewer) {
     const float cosine = max(dot(to_viewer, normal), kFitLeastCosine);
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < header.count; ++i) {
+    for (uint i = 0u; i < count; ++i) {
         const FitLight light = fit_light(i, point_m, normal, reached);
         sum += light.gloss * ward_falloff(shape, tan2_of_half(light, to_viewer, cosine));
     }
@@ -52,14 +52,16 @@ vec3 lobes(vec3 point_m, vec3 normal, uvec2 reached, WardShape shape, vec3 to_vi
 void main() {
     const uint segment = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
     const uint label = batch[1u + segment];
-    if (label >= params.labels) return;
-    const WardFit fit = fits[label];
+    const bool known = label < params.labels;
+    const WardFit fit = fits[known ? label : 0u];
     // What has been fitted often hardly changes.
     const bool often = fit.estimates > kFitDiffuseEvery;
-    if (often && fit.estimates % kFitDiffuseEvery != 0u) return;
+    const bool due = known && (!often || fit.estimates % kFitDiffuseEvery == 0u);
+    // Of a count that is a uniform alone, lavapipe (Mesa 22.3) compiles the shader anew in each frame, and leaks it.
+    const uint count = due ? header.count : 0u;
     const vec3 ks_scaled = fit.ks_alpha.rgb * ward_scale(fit.ks_alpha.w);
     vec3 diffuse = vec3(0.0), light2 = vec3(0.0);
-    for (uint slot = lane; slot < kSegmentSamples; slot += kFitGroup) {
+    for (uint slot = lane; due && slot < kSegmentSamples; slot += kFitGroup) {
         const FitVoxel voxel = voxels[segment * kSegmentSamples + slot];
         if (voxel.record == kNoRecord) continue;
         const VoxelRecord record = records[voxel.record];
@@ -74,18 +76,18 @@ void main() {
             const uint word = load_direction(params.records.chunk_shift, voxel.record, k);
             const vec3 channels = weight * vec3(not(observation_clipped(word)));
             const vec3 color = unpack_shared_exponent(load_color(params.records.chunk_shift, voxel.record, k));
-            const vec3 glossy = ks_scaled * lobes(point_m, normal, reached, shape, observation_direction(word));
+            const vec3 glossy = ks_scaled * lobes(point_m, normal, reached, count, shape, observation_direction(word));
             rest += channels * (color - glossy);
             weight_sum += channels;
         }
-        const vec3 light = irradiance(point_m, normal, reached);
+        const vec3 light = irradiance(point_m, normal, reached, count);
         diffuse += light * rest;
         light2 += light * light * weight_sum;
     }
     diffuse_of[lane] = diffuse;
     light2_of[lane] = light2;
     barrier();
-    if (lane != 0u) return;
+    if (lane != 0u || !due) return;
     for (uint i = 1u; i < kFitGroup; ++i) {
         diffuse += diffuse_of[i];
         light2 += light2_of[i];

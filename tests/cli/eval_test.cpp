@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/run_folder.h"
@@ -201,6 +203,49 @@ TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunTha
     for (const fs::path& truth : {bare / "truth", bare / "lighting/truth"}) fs::remove_all(truth);
     run_quietly(bare, options);
     EXPECT_EQ(read_text(out() / "scene.glb"), scene) << "a run knows nothing of the truth";
+}
+
+class HeldOutFrames : public RunFolderTest {
+  protected:
+    fs::path recorded() {
+        const fs::path recording = beside("cubes");
+        const Outcome synth = patina(
+            {"synth", "cubes", "--frames", "6", "--extent", "128x106", "--no-lighting", "--quiet", "--out", recording});
+        EXPECT_EQ(synth.exit_code, 0) << synth.err;
+        return recording;
+    }
+    const std::vector<std::string> options_{"--hold-out",       "3",     "--set",
+                                            "map.voxel_m=0.02", "--set", "reflectance.voxel_m=0.04"};
+};
+
+TEST_F(HeldOutFrames, ChangeNothingOfTheScene) {
+    const fs::path recording = recorded();
+    std::vector<std::string> options = options_;
+    options.insert(options.end(),
+                   {"--lights", (recording / "truth/lights.json").string(), "--set", "reflectance.voxel_m=0.04"});
+    const auto summary = run_quietly(recording, options);
+    EXPECT_EQ(summary["held_out"]["pictures"], 2);
+    EXPECT_GT(summary["held_out"]["reflectance_own_gain"]["psnr_linear_db"], 10);
+    const std::string scene = read_text(out() / "scene.glb");
+    // Another view in their place is seen in the scores and nowhere else.
+    for (const char* folder : {"color", "depth"}) {
+        for (const char* held_out : {"000002.png", "000005.png"})
+            fs::copy_file(recording / folder / "000000.png", recording / folder / held_out,
+                          fs::copy_options::overwrite_existing);
+    }
+    const auto changed = run_quietly(recording, options);
+    EXPECT_EQ(read_text(out() / "scene.glb"), scene);
+    EXPECT_NE(changed["held_out"], summary["held_out"]);
+}
+
+TEST_F(HeldOutFrames, AreTrackedWhereTheirPosesAreNotGiven) {
+    std::vector<std::string> options = options_;
+    options.insert(options.end(), {"--poses", "track", "--lighting", "none"});
+    const auto summary = run_quietly(recorded(), options);
+    EXPECT_EQ(summary["held_out"]["pictures"], 2);
+    EXPECT_GT(summary["held_out"]["mean_color"]["coverage"], 0.5);
+    const std::string trajectory = read_text(out() / "trajectory.txt");
+    EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 4) << trajectory;
 }
 
 }  // namespace

@@ -38,6 +38,20 @@ TEST(PictureScore, PicturesOfTwoSizesAreRefused) {
     EXPECT_THROW(score_picture(Image<glm::vec3>({2, 1}), Image<glm::vec4>({1, 2})), Error);
 }
 
+TEST(PictureScore, TheGainBetweenIsTheMedianRatioOfWhatIsNeitherDarkNorBright) {
+    const Extent2D extent{20, 20};
+    Image<glm::vec3> seen(extent, glm::vec3(0.4f, 0.3f, 0.2f));
+    Image<glm::vec4> predicted(extent, glm::vec4(0.5f, 0.3f, 0.1f, 1));
+    for (size_t i = 0; i < 150; ++i) seen.pixels()[i] = glm::vec3(1);            // clipped
+    for (size_t i = 150; i < 190; ++i) predicted.pixels()[i] = glm::vec4(0.6f);  // few
+    for (size_t i = 190; i < 200; ++i) predicted.pixels()[i].a = 0;
+    const glm::vec3 gain = gain_between(seen, predicted);
+    EXPECT_NEAR(gain.r, 0.8f, 1e-6);
+    EXPECT_NEAR(gain.g, 1, 1e-6);
+    EXPECT_NEAR(gain.b, 2, 1e-6);
+    EXPECT_EQ(gain_between(Image<glm::vec3>(extent), predicted), glm::vec3(1)) << "nothing to compare";
+}
+
 TEST(PictureScore, MediansAreOfEachNumberAlone) {
     const std::vector<PictureScore> scores{{0.1, 30, 5}, {0.3, 10, 7}, {0.2, 20, 9}, {0.4, 25, 8}};
     const PictureScore median = median_of(scores);

@@ -71,12 +71,18 @@ def test_gains_are_estimated_where_asked_for(device):
     assert not {name for name in off if "gain" in name}
 
 
-def test_held_out_colours_are_not_fused(device):
-    session = patina.Session(device, CUBES, frames=2, lighting="none", hold_out=1)
+def test_held_out_frames_are_not_fused(device):
+    session = patina.Session(device, CUBES, frames=2, lighting="none", hold_out=2)
     while session.step():
         pass
-    scene = session.finish()
-    assert len(scene.positions) > 1000 and not scene.colors.any()
+    held_out = session.finish()
+    session = patina.Session(device, CUBES, frames=1, lighting="none")
+    while session.step():
+        pass
+    alone = session.finish()
+    assert (held_out.positions == alone.positions).all() and (held_out.colors == alone.colors).all()
+    with pytest.raises(patina.Error, match="every frame is held out"):
+        patina.Session(device, CUBES, frames=2, lighting="none", hold_out=1)
 
 
 def test_wrong_choices_are_sentences(device):

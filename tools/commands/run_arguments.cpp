@@ -53,7 +53,7 @@ void declare(CLI::App& command, RunArguments& arguments) {
     command.add_flag("--tiles", run.tiles,
                      "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
     command.add_option("--hold-out", run.hold_out,
-                       "Keep the colours of every so many-th frame out of the model, and compare them in the end");
+                       "Keep every so many-th frame out of the model, and compare its colours in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
     command
         .add_option("--checkpoint-every", run.checkpoint_every,

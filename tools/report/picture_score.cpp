@@ -48,6 +48,25 @@ PictureScore score_picture(const Image<glm::vec3>& seen, const Image<glm::vec4>&
             psnr_db(linear, 3 * known), psnr_db(srgb, 3 * known)};
 }
 
+glm::vec3 gain_between(const Image<glm::vec3>& seen, const Image<glm::vec4>& predicted) {
+    constexpr float kDarkest = 0.015f, kBrightest = 0.9f;
+    constexpr size_t kFewest = 100;
+    glm::vec3 gain(1);
+    for (glm::length_t c = 0; c < 3; ++c) {
+        std::vector<float> ratios;
+        for (size_t i = 0; i < seen.pixels().size(); ++i) {
+            const float a = seen.pixels()[i][c], b = predicted.pixels()[i][c];
+            const bool counts = predicted.pixels()[i].a > 0 && std::min(a, b) > kDarkest && std::max(a, b) < kBrightest;
+            if (counts) ratios.push_back(a / b);
+        }
+        if (ratios.size() < kFewest) continue;
+        const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+        std::nth_element(ratios.begin(), middle, ratios.end());
+        gain[c] = *middle;
+    }
+    return gain;
+}
+
 PictureScore median_of(std::span<const PictureScore> scores) {
     return {median_of(scores, &PictureScore::coverage), median_of(scores, &PictureScore::psnr_linear_db),
             median_of(scores, &PictureScore::psnr_srgb_db)};

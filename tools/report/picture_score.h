@@ -19,6 +19,10 @@ struct PictureScore {
 /// when the extents differ.
 PictureScore score_picture(const Image<glm::vec3>& seen, const Image<glm::vec4>& predicted);
 
+/// The gain of each channel that brings `predicted` nearest to `seen`: the median of their ratios over pixels of which
+/// both are above 0.015 and below 0.9; 1 where there are fewer than 100.
+glm::vec3 gain_between(const Image<glm::vec3>& seen, const Image<glm::vec4>& predicted);
+
 /// The median of each number; zeros for an empty list.
 PictureScore median_of(std::span<const PictureScore> scores);
 

@@ -56,9 +56,12 @@ Json score_json(const PictureScore& score) {
 }
 
 Json held_out_json(const HeldOutSummary& held_out) {
-    return {{"pictures", held_out.pictures},
-            {"mean_color", score_json(held_out.mean_color)},
-            {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()}};
+    return {
+        {"pictures", held_out.pictures},
+        {"mean_color", score_json(held_out.mean_color)},
+        {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()},
+        {"mean_color_own_gain", score_json(held_out.mean_color_own_gain)},
+        {"reflectance_own_gain", held_out.reflectance_own_gain ? score_json(*held_out.reflectance_own_gain) : Json()}};
 }
 
 template <class Value>

@@ -65,6 +65,9 @@ struct HeldOutSummary {
     size_t pictures = 0;
     PictureScore mean_color;                    ///< of the fused colour, as if it were painted on
     std::optional<PictureScore> reflectance{};  ///< of the re-rendering, where the model has reflectance
+    /// The same after a gain per channel of each picture's own (gain_between()).
+    PictureScore mean_color_own_gain{};
+    std::optional<PictureScore> reflectance_own_gain{};
 };
 
 /// A segment that the run told apart.

@@ -46,10 +46,21 @@ std::string line_of(const PictureScore& score) {
     return fmt::format(" {:.4f} {:.3f} {:.3f}", score.coverage, score.psnr_linear_db, score.psnr_srgb_db);
 }
 
+/// Of all pictures, as they are rendered, and with a gain that brings each nearest to the picture.
+struct Scores {
+    std::vector<PictureScore> plain, own_gain;
+
+    /// Returns both as text.
+    std::string add(const Image<glm::vec3>& seen, const Image<glm::vec4>& predicted) {
+        plain.push_back(score_picture(seen, predicted));
+        own_gain.push_back(score_picture(seen, at_gain(predicted, gain_between(seen, predicted))));
+        return line_of(plain.back()) + line_of(own_gain.back());
+    }
+};
+
 }  // namespace
 
 void HeldOut::keep(const Frame& frame, uint32_t order) {
-    if (every_ == 0 || frame.index % every_ != every_ - 1) return;
     kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
 }
 
@@ -91,31 +102,35 @@ void HeldOut::visit(graph::StateVisitor& visitor) {
 HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const {
     pipeline.wait();
     const std::span<const gpu::ColorGains> gains = pipeline.gains();
-    std::vector<PictureScore> mean_color, reflectance;
+    Scores mean_color, reflectance;
     std::string lines =
-        "# index, then coverage, PSNR linear and PSNR sRGB in dB of the mean colour, and of the re-rendering\n";
+        "# index, then coverage, PSNR linear and PSNR sRGB in dB of the mean colour, and with a gain of the picture's "
+        "own; "
+        "the same of the re-rendering\n";
     for (const Kept& kept : kept_) {
         const ViewReadback pending =
             pipeline.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
         pipeline.wait();
         ModelView view = pending.get();
-        const glm::vec3 gain = gains.empty() ? glm::vec3(1) : glm::vec3(gains[kept.order].gain);
+        // Of the frame that was fused before it: this one has no part in gains, either.
+        const glm::vec3 gain = kept.order < gains.size() ? glm::vec3(gains[kept.order].gain) : glm::vec3(1);
         const Image<glm::vec3> seen = undistorted(linear_of(kept.color), info.color);
         view.color = at_gain(std::move(view.color), gain);
-        mean_color.push_back(score_picture(seen, view.color));
-        lines += std::to_string(kept.index) + line_of(mean_color.back());
+        lines += std::to_string(kept.index) + mean_color.add(seen, view.color);
         if (view.reflectance) {
             view.reflectance->rgb = at_gain(std::move(view.reflectance->rgb), gain);
-            reflectance.push_back(score_picture(seen, view.reflectance->rgb));
-            lines += line_of(reflectance.back());
+            lines += reflectance.add(seen, view.reflectance->rgb);
         }
         lines += '\n';
         folder.write(fmt::format("held_out/{:06}.png", kept.index),
                      preview_png(seen, to_dump(view), {.title = fmt::format("frame {}, held out", kept.index)}));
     }
     folder.write("held_out/scores.txt", lines);
-    HeldOutSummary summary{kept_.size(), median_of(mean_color), {}};
-    if (!reflectance.empty()) summary.reflectance = median_of(reflectance);
+    HeldOutSummary summary{kept_.size(), median_of(mean_color.plain), {}, median_of(mean_color.own_gain), {}};
+    if (!reflectance.plain.empty()) {
+        summary.reflectance = median_of(reflectance.plain);
+        summary.reflectance_own_gain = median_of(reflectance.own_gain);
+    }
     return summary;
 }
 

@@ -12,20 +12,18 @@
 
 namespace patina::tools {
 
-/// Colour pictures that a run keeps out of its model, to compare them in the end with what the model looks like from
-/// there.
+/// Frames that a session keeps out of its model (SessionOptions::hold_out). Their colours are compared in the end with
+/// what the model looks like from there.
 class HeldOut {
   public:
-    /// Every `every`-th frame of the sequence, from its every-th on; 0: none.
-    explicit HeldOut(uint32_t every) : every_(every) {}
-
-    /// Keeps a frame if it is one of these; `order`: how many frames were added to the reconstruction before it.
+    /// Keeps such a frame; `order`: of the last frame that was added to the reconstruction before it.
     void keep(const Frame& frame, uint32_t order);
 
     void visit(graph::StateVisitor& visitor);
 
-    /// Renders the model from where each picture was taken, at that picture's gains, and scores it. Writes
-    /// held_out/NNNNNN.png (picture, rendering, normals) and held_out/scores.txt. Waits for the device.
+    /// Renders the model from where each picture was taken, at the gains of the frame that was fused before it, and
+    /// scores it; and once more with a gain of its own. Writes held_out/NNNNNN.png (picture, rendering, normals) and
+    /// held_out/scores.txt. Waits for the device.
     HeldOutSummary compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const;
 
   private:
@@ -35,7 +33,6 @@ class HeldOut {
         RigidTransform world_from_depth;
     };
 
-    uint32_t every_;
     std::vector<Kept> kept_;
 };
 

@@ -77,8 +77,7 @@ class Run {
           device_(options.device),
           session_(Access::vulkan(device_), options),
           pipeline_(session_.pipeline()),
-          dumps_(folder, session_.info().frames, options.dump_every),
-          held_out_(options.hold_out) {
+          dumps_(folder, session_.info().frames, options.dump_every) {
         session_.bring_back([this](graph::StateVisitor& visitor, MapFile& map) {
             for (const std::string& name : map.files()) folder_.write(name, map.content_of_file(name));
             visit(visitor);
@@ -90,6 +89,7 @@ class Run {
         try {
             while (session_.step()) {
                 if (const Frame* frame = session_.fused()) after(*frame);
+                if (const Frame* frame = session_.held_out()) held_out_.keep(*frame, pipeline_.frames() - 1);
                 session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
             }
             session_.end();
@@ -173,7 +173,6 @@ class Run {
             graph_dot_ = graph::to_dot(compiled.description, compiled.plan);
             graph_json_ = graph::to_json(compiled.description, compiled.plan);
         }
-        held_out_.keep(frame, pipeline_.frames() - 1);
         dumps_.after(pipeline_, session_.info(), frame);
         if (session_.ledger().used() == 1) {
             pipeline_.wait();

@@ -83,6 +83,21 @@ TEST_F(SessionTest, TheFrameLimitHoldsForALiveSource) {
     EXPECT_EQ(session.finish().trajectory.size(), 2u);
 }
 
+TEST_F(SessionTest, FramesThatAreHeldOutAreNoPartOfTheModel) {
+    SessionOptions options;
+    options.lighting = NoLights{};
+    options.hold_out = 2;
+    Session session(device_, std::make_unique<LiveWall>(), options);
+    std::vector<std::string> reasons;
+    while (session.step()) reasons.push_back(session.last()->reason);
+    EXPECT_THAT(reasons, ElementsAre("", "held out", HasSubstr("a packet was lost"), "held out", ""));
+    EXPECT_EQ(session.statistics().frames, 2u);
+    EXPECT_EQ(session.finish().trajectory.size(), 2u);
+    options.hold_out = 1;
+    EXPECT_THAT([&] { Session(device_, std::make_unique<LiveWall>(), options); },
+                testing::ThrowsMessage<Error>(HasSubstr("every frame is held out")));
+}
+
 TEST_F(SessionTest, GivenLightMakesMaterials) {
     SessionOptions options;
     options.lighting = Lighting{.lights = {{glm::dvec3(0), glm::dvec3(2), 0.05}}};
