@@ -214,8 +214,7 @@ class HeldOutFrames : public RunFolderTest {
         EXPECT_EQ(synth.exit_code, 0) << synth.err;
         return recording;
     }
-    const std::vector<std::string> options_{"--hold-out",       "3",     "--set",
-                                            "map.voxel_m=0.02", "--set", "reflectance.voxel_m=0.04"};
+    const std::vector<std::string> options_{"--hold-out", "3", "--set", "map.voxel_m=0.02"};
 };
 
 TEST_F(HeldOutFrames, ChangeNothingOfTheScene) {
@@ -243,9 +242,9 @@ TEST_F(HeldOutFrames, AreTrackedWhereTheirPosesAreNotGiven) {
     options.insert(options.end(), {"--poses", "track", "--lighting", "none"});
     const auto summary = run_quietly(recorded(), options);
     EXPECT_EQ(summary["held_out"]["pictures"], 2);
-    EXPECT_GT(summary["held_out"]["mean_color"]["coverage"], 0.5);
+    EXPECT_GT(summary["held_out"]["mean_color"]["coverage"], 0.4);
     const std::string trajectory = read_text(out() / "trajectory.txt");
-    EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 4) << trajectory;
+    EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 1 + 4) << trajectory;
 }
 
 }  // namespace
