@@ -80,7 +80,7 @@ def test_held_out_frames_are_not_fused(device):
     while session.step():
         pass
     alone = session.finish()
-    assert (held_out.positions == alone.positions).all() and (held_out.colors == alone.colors).all()
+    assert np.array_equal(held_out.positions, alone.positions) and np.array_equal(held_out.colors, alone.colors)
     with pytest.raises(patina.Error, match="every frame is held out"):
         patina.Session(device, CUBES, frames=2, lighting="none", hold_out=1)
 
