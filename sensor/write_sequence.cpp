@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/srgb.h"
 #include "sensor/camera_json.h"
 #include "sensor/files/exr_file.h"
 #include "sensor/files/picture_file.h"
@@ -18,11 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// IEC 61966-2-1: linear 0..1 to an 8-bit code.
+/// Linear 0..1 to an 8-bit code.
 uint8_t srgb_code(float linear) {
     const double v = std::isnan(linear) ? 0.0 : std::clamp(static_cast<double>(linear), 0.0, 1.0);
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    return static_cast<uint8_t>(std::lround(255 * encoded));
+    return static_cast<uint8_t>(std::lround(255 * srgb_encoded(v)));
 }
 
 Image<SrgbPixel> encoded(const Image<glm::vec3>& linear) {

@@ -15,4 +15,8 @@ glm::vec3 linear_color(SrgbPixel encoded) {
     return {linear_from_srgb(v.r), linear_from_srgb(v.g), linear_from_srgb(v.b)};
 }
 
+double srgb_encoded(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
 }  // namespace patina

@@ -69,4 +69,15 @@ double Clearance::at(glm::dvec3 point_m) const {
     return least_m;
 }
 
+glm::dvec3 Clearance::reached(glm::dvec3 from_m, glm::dvec3 way_m, double keep_m) const {
+    const double length_m = glm::length(way_m);
+    double gone_m = 0;
+    for (int step = 0; step < 64 && gone_m < length_m; ++step) {
+        const double free_m = at(from_m + way_m * (gone_m / length_m)) - keep_m;
+        if (!(free_m > 1e-4)) break;
+        gone_m = std::min(length_m, gone_m + free_m);
+    }
+    return length_m > 0 ? from_m + way_m * (gone_m / length_m) : from_m;
+}
+
 }  // namespace patina::scenes

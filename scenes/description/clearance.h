@@ -19,6 +19,10 @@ class Clearance {
     /// any. A mesh counts as its bounding box, filled: 0 inside.
     double at(glm::dvec3 point_m) const;
 
+    /// How far something gets from `from_m` along `way_m` that keeps `keep_m` from all surfaces and passes through
+    /// none: in steps as long as the room that is left.
+    glm::dvec3 reached(glm::dvec3 from_m, glm::dvec3 way_m, double keep_m) const;
+
   private:
     struct Obstacle {
         Shape shape;

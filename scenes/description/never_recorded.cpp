@@ -1,6 +1,5 @@
 #include "scenes/description/never_recorded.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -17,22 +16,10 @@ constexpr double kLeastAside_m = 0.25;             // else it is tried on the ot
 constexpr double kAhead_m = 2;
 constexpr double kKeep_m = 0.2;  // from everything
 
-/// How far a camera gets from `from_m` along `way_m`, in steps through the free ball around it.
-glm::dvec3 reached(const Clearance& clearance, glm::dvec3 from_m, glm::dvec3 way_m) {
-    const double length_m = glm::length(way_m);
-    double gone_m = 0;
-    for (int step = 0; step < 64 && gone_m < length_m; ++step) {
-        const double free_m = clearance.at(from_m + way_m * (gone_m / length_m)) - kKeep_m;
-        if (!(free_m > 1e-3)) break;
-        gone_m = std::min(length_m, gone_m + free_m);
-    }
-    return from_m + way_m * (gone_m / length_m);
-}
-
 Waypoint beside(const RigidTransform& world_from_camera, const Clearance& clearance, double side, double higher_m) {
     const glm::dvec3 at_m(world_from_camera[3]), right(world_from_camera[0]);
     const auto on = [&](double which) {
-        return reached(clearance, at_m, which * kAside_m * right + glm::dvec3(0, -higher_m, 0));
+        return clearance.reached(at_m, which * kAside_m * right + glm::dvec3(0, -higher_m, 0), kKeep_m);
     };
     glm::dvec3 position_m = on(side);
     if (glm::distance(position_m, at_m) < kLeastAside_m) {

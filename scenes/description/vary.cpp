@@ -70,17 +70,10 @@ glm::dvec3 tint_between_warm_and_cool(double share) {
     return glm::mix(glm::dvec3(1.233, 0.967, 0.637), glm::dvec3(0.779, 1.011, 1.541), share);
 }
 
-/// How far a lamp gets along `way_m` if it keeps half its room: steps as long as the room that is left.
+/// How far a lamp gets along `way_m` if it keeps half its room.
 glm::dvec3 moved(const Light& light, glm::dvec3 way_m, const Clearance& clearance) {
-    const auto room_m = [&](glm::dvec3 at_m) { return clearance.at(at_m) - light.radius_m; };
-    const double least_m = room_m(light.position_m) / 2, length_m = glm::length(way_m);
-    double gone_m = 0;
-    for (int step = 0; step < 64 && gone_m < length_m; ++step) {
-        const double free_m = room_m(light.position_m + way_m * (gone_m / length_m)) - least_m;
-        if (!(free_m > 1e-4)) break;
-        gone_m = std::min(length_m, gone_m + free_m);
-    }
-    return length_m > 0 ? light.position_m + way_m * (gone_m / length_m) : light.position_m;
+    const double room_m = clearance.at(light.position_m) - light.radius_m;
+    return clearance.reached(light.position_m, way_m, light.radius_m + room_m / 2);
 }
 
 glm::dvec3 center_of(const std::vector<SceneObject>& objects) {

@@ -72,7 +72,7 @@ sensor::JsonValue read_base(const sensor::JsonValue& name) {
     return base;
 }
 
-std::optional<Bumps> read_bumps(const sensor::JsonValue& value) {
+Bumps read_bumps(const sensor::JsonValue& value) {
     value.expect_keys({"depth", "size", "seed"});
     Bumps bumps;
     bumps.depth_m = read_positive(value.at("depth"));
@@ -95,7 +95,8 @@ SyntheticScene read_scene(const fs::path& file, const fs::path& mesh, bool inclu
     if (base) objects.push_back(base->at("objects"));
     if (!base || own.find("objects")) objects.push_back(own.at("objects"));
     const auto bumps = root.find("bumps");
-    scene.objects = read_objects(objects, MaterialReader(root), {mesh, bumps ? read_bumps(*bumps) : std::nullopt});
+    scene.objects =
+        read_objects(objects, MaterialReader(root), {mesh, bumps ? std::optional(read_bumps(*bumps)) : std::nullopt});
     if (const auto without = root.find("without")) remove_objects(*without, scene);
     if (const auto lights = root.find("lights")) scene.lights = read_lights(*lights);
     if (const auto include = root.find("include")) {

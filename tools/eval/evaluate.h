@@ -29,8 +29,8 @@ Evaluation evaluate(const std::filesystem::path& sequence, const std::filesystem
 Views evaluate_views(const std::filesystem::path& sequence, const std::filesystem::path& pictures,
                      const glm::dmat3& truth_from_run = glm::dmat3(1));
 
-/// truth_from_run of the worlds of a run that found its poses by itself; of others nothing is changed. Throws Error for
-/// a trajectory that cannot be read.
+/// truth_from_run of the worlds, by the poses that both have; the identity where one has none. Throws Error for a
+/// trajectory that cannot be read.
 RigidTransform world_of_run(const std::filesystem::path& sequence, const std::filesystem::path& run);
 
 }  // namespace patina::eval

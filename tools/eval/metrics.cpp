@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/srgb.h"
 #include "tools/eval/ssim.h"
 
 namespace patina::eval {
@@ -17,11 +18,6 @@ struct Deviations {
 };
 
 double psnr_db_of(double squared, uint64_t count) { return -10 * std::log10(squared / static_cast<double>(count)); }
-
-/// IEC 61966-2-1.
-double srgb_encoded(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 /// Over a mask's pixels; where the run has no value it counts as 0.
 Deviations deviations_of(const ObjectPictures& pictures, const Image<uint8_t>& mask) {
