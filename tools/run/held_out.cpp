@@ -104,9 +104,8 @@ HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, Ou
     const std::span<const gpu::ColorGains> gains = pipeline.gains();
     Scores mean_color, reflectance;
     std::string lines =
-        "# index, then coverage, PSNR linear and PSNR sRGB in dB of the mean colour, and with a gain of the picture's "
-        "own; "
-        "the same of the re-rendering\n";
+        "# index; coverage, PSNR linear and PSNR sRGB in dB of the mean colour; the same with a gain of the picture's "
+        "own; then both of the re-rendering\n";
     for (const Kept& kept : kept_) {
         const ViewReadback pending =
             pipeline.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
