@@ -6,25 +6,44 @@
 
 namespace patina {
 
-/// A glTF 2.0 material, metallic-roughness with KHR_materials_specular.
+/// How a dielectric's lobe changes with the angle of incidence.
+enum class GltfFresnel {
+    kIor,       ///< as glass does: the index of refraction has the strength, every factor is within 0..1
+    kConstant,  ///< not at all, as Ward's; specularColorFactor goes up to 25, which some readers refuse
+};
+
+/// A glTF 2.0 material, metallic-roughness with KHR_materials_ior and KHR_materials_specular.
 struct GltfMaterial {
-    bool metal = false;           ///< metallic 1, without the specular extension; else a dielectric
+    bool metal = false;           ///< metallic 1, without the extensions; else a dielectric
+    bool observed = false;        ///< the gloss is more than a guess, and strong enough to be seen
     float roughness = 1;          ///< the square root of the width of the lobe
+    float ior = 1.5f;             ///< index of refraction, of dielectrics
     float specular = 0;           ///< specularFactor, of dielectrics
     glm::vec3 specular_color{1};  ///< specularColorFactor, of dielectrics
     glm::vec3 base_color{1};      ///< of metals; that of dielectrics is per vertex, base_color_of()
 };
 
-/// The glTF material nearest to a segment's: a GGX lobe as wide as Ward's and as strong at normal incidence, with
-/// Fresnel's factor constant in the strongest channel, as Ward has none. GGX has longer tails: lobes differ by 27 to
-/// 37 % (relative L2). A segment is a metal where it is bright at normal incidence and has next to no diffuse `kd`.
-GltfMaterial gltf_material(const WardGloss& gloss, glm::vec3 kd);
+/// A fit of this confidence or more is an observation (WardGloss::confidence); what is given without one is, too.
+inline constexpr float kObservedConfidence = 0.5f;
+bool is_observed(const WardGloss& gloss);
+
+/// The glTF material nearest to a segment's: a GGX lobe as wide as Ward's and as strong at normal incidence. GGX has
+/// longer tails: lobes differ by 27 to 37 % (relative L2). With kIor a grazing highlight is brighter than Ward's, who
+/// has no Fresnel factor.
+///
+/// A segment is a metal where it was observed to be bright at normal incidence (0.25) and has next to no diffuse `kd`
+/// (luminance below 0.04). Gloss that was not observed, or reflects less than 0.002, is a colourless dielectric of
+/// index 1.5 whose specularFactor has the strength.
+GltfMaterial gltf_material(const WardGloss& gloss, glm::vec3 kd, GltfFresnel fresnel = GltfFresnel::kIor);
+
+/// What a material reflects at normal incidence.
+glm::vec3 f0_of(const GltfMaterial& material);
 
 /// The base colour that makes a dielectric's diffuse part `kd`; may exceed 1, which a file cannot hold.
 glm::vec3 base_color_of(const GltfMaterial& material, glm::vec3 kd);
 
 /// The inverses: kd of a dielectric's base colour, and ks and alpha of a material. Exact but for the clamps on
-/// roughness (alpha below 0.002) and on specular strength (above 0.98).
+/// roughness (alpha below 0.002) and on specular strength (above 0.6; with kConstant above 0.98).
 glm::vec3 kd_of(const GltfMaterial& material, glm::vec3 base_color);
 WardGloss ward_of(const GltfMaterial& material);
 

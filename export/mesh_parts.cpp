@@ -9,11 +9,6 @@ namespace {
 
 using Triangle = std::array<uint32_t, 3>;
 
-uint32_t label_of(const Triangle& triangle, std::span<const uint32_t> labels) {
-    const uint32_t a = labels[triangle[0]], b = labels[triangle[1]], c = labels[triangle[2]];
-    return b == c ? b : a;
-}
-
 /// Numbers the vertices in the order of first use; `number` is scratch, one entry per vertex, all kUnused.
 constexpr uint32_t kUnused = UINT32_MAX;
 void number_vertices(MeshPart& part, std::vector<uint32_t>& number) {
@@ -30,6 +25,11 @@ void number_vertices(MeshPart& part, std::vector<uint32_t>& number) {
 }
 
 }  // namespace
+
+uint32_t label_of(const Triangle& triangle, std::span<const uint32_t> labels) {
+    const uint32_t a = labels[triangle[0]], b = labels[triangle[1]], c = labels[triangle[2]];
+    return b == c ? b : a;
+}
 
 std::vector<MeshPart> parts_by_label(uint32_t vertex_count, std::span<const Triangle> triangles,
                                      std::span<const uint32_t> labels) {

@@ -14,9 +14,11 @@ struct MeshPart {
     std::vector<std::array<uint32_t, 3>> triangles;  ///< of the numbers within `vertices`
 };
 
-/// Divides triangles by their segment, in ascending order of labels: the label that two of a triangle's vertices agree
-/// on, else that of its first one. Where segments meet, each has its own copy of the vertices between them. Empty
-/// `labels` (by vertex): one part of all `vertex_count` vertices, label 0.
+/// The segment of a triangle: the label (by vertex) that two of its vertices agree on, else that of its first one.
+uint32_t label_of(const std::array<uint32_t, 3>& triangle, std::span<const uint32_t> labels);
+
+/// Divides triangles by their segment, label_of(), in ascending order of labels. Where segments meet, each has its own
+/// copy of the vertices between them. Empty `labels` (by vertex): one part of all `vertex_count` vertices, label 0.
 std::vector<MeshPart> parts_by_label(uint32_t vertex_count, std::span<const std::array<uint32_t, 3>> triangles,
                                      std::span<const uint32_t> labels);
 

@@ -2,6 +2,8 @@
 
 #include "engine/core/version.h"
 #include "export/materials.h"
+#include "export/photometric.h"
+#include "export/segment_names.h"
 #include "export/trajectory.h"
 #include "sensor/files/text_file.h"
 #include "sensor/output/output_file.h"
@@ -38,24 +40,39 @@ Lighting in_recorded_world(const Scene& scene) {
     return lighting;
 }
 
-GlbInfo glb_info(const Scene& scene, const std::string& version) {
-    return {.version = version,
-            .name = scene.name,
-            .world_offset_m = scene.world_offset_m,
-            .segment_names = scene.segment_names,
-            .lights = rounded(scene.lighting).lights};
+GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFileOptions& options,
+                 const std::string& version) {
+    UpHints hints{options.up, scene.gravity, {}};
+    for (const TimedPose& pose : scene.trajectory) hints.cameras.push_back(pose.world_from_camera);
+    const std::vector<Light> lights = rounded(scene.lighting).lights;
+    const Upright upright = find_upright(hints, survey.patches());
+    return {
+        .version = version,
+        .name = scene.name,
+        .upright = upright,
+        .world_offset_m = scene.world_offset_m,
+        .segment_names = names_of_segments(scene.reflectance.segments, scene.segment_names, survey.patches(), upright),
+        .lights = lights,
+        .candela_per_intensity = candela_per_intensity(lights, survey.patches())};
 }
 
-GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
-                           const std::string& version) {
-    GlbWriter writer(file, glb_info(scene, version));
-    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, &reflectance); });
-    return writer.finish();
+WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
+                           const SceneFileOptions& options, const std::string& version) {
+    GlbWriter writer(file, options.glb);
+    SurfaceSurvey survey;
+    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) {
+        writer.add(mesh, &reflectance);
+        survey.add(mesh, reflectance.labels);
+    });
+    WrittenGlb written;
+    written.info = glb_info(scene, survey, options, version);
+    written.summary = writer.finish(written.info);
+    return written;
 }
 
 void Scene::save_glb(const std::filesystem::path& file) const {
     const auto whole = [this](const TakePiece& take) { take(mesh, reflectance); };
-    put(file, [&](const auto& partial) { write_scene_glb(partial, *this, whole, kVersion); });
+    put(file, [&](const auto& partial) { write_scene_glb(partial, *this, whole, {}, kVersion); });
 }
 
 void Scene::save(const std::filesystem::path& folder) const {

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "export/surface_survey.h"
 #include "export/write_glb.h"
 #include "patina/scene.h"
 
@@ -17,16 +19,30 @@ Lighting rounded(Lighting lighting);
 /// The same in the recording's world, as lights.json holds them.
 Lighting in_recorded_world(const Scene& scene);
 
-/// What its scene.glb says besides the surface; `version`: of Patina.
-GlbInfo glb_info(const Scene& scene, const std::string& version);
+/// What a user may say about a scene's files.
+struct SceneFileOptions {
+    GlbOptions glb{};
+    std::optional<glm::dvec3> up{};  ///< direction in the world, of any length but 0; empty: it is found
+};
+
+/// What its scene.glb and tiles say besides the surface, which the survey is of: where up is, the factor to candela,
+/// the segments' names; `version`: of Patina.
+GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFileOptions& options,
+                 const std::string& version);
 
 /// What a surface's pieces are given to, and what gives them all (GlbWriter::add).
 using TakePiece = std::function<void(const Mesh&, const MeshReflectance&)>;
 using GivePieces = std::function<void(const TakePiece&)>;
 
+/// A scene.glb that was written.
+struct WrittenGlb {
+    GlbSummary summary;
+    GlbInfo info;
+};
+
 /// Writes scene.glb, with the surface in pieces in place of the scene's; `version`: of Patina. Throws Error as
 /// GlbWriter does.
-GlbSummary write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
-                           const std::string& version);
+WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
+                           const SceneFileOptions& options, const std::string& version);
 
 }  // namespace patina

@@ -22,6 +22,7 @@ using Triangle = std::array<uint32_t, 3>;
 using Value = tinygltf::Value;
 
 constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kIor = "KHR_materials_ior";
 constexpr const char* kLights = "KHR_lights_punctual";
 constexpr const char* kSurface = "surface";
 
@@ -36,11 +37,23 @@ bool displayable(glm::vec3 linear) { return linear == glm::clamp(linear, 0.0f, 1
 
 Value array_of(glm::dvec3 v) { return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)}); }
 
-Value ward_extras(const WardGloss& gloss) {
-    Value::Object ward{{"variant", Value(std::string("ward"))}, {"exposureScale", Value(1.0)}};
-    ward["ks"] = array_of(glm::dvec3(gloss.ks));
-    ward["alpha"] = Value(double{gloss.alpha});
+/// What is known of a segment's gloss, as it is; `observed`: of its glTF material.
+Value ward_extras(const SegmentReflectance& segment, bool observed) {
+    Value::Object ward{{"variant", Value(std::string("ward"))}, {"observed", Value(observed)}};
+    if (segment.gloss) {
+        ward["ks"] = array_of(glm::dvec3(segment.gloss->ks));
+        ward["alpha"] = Value(double{segment.gloss->alpha});
+    }
     return Value(Value::Object{{"ward", Value(std::move(ward))}});
+}
+
+Value photometric_extras(double candela_per_intensity) {
+    Value::Object photometric{
+        {"candela_per_intensity", Value(candela_per_intensity)},
+        {"meaning", Value(std::string("intensity of a light / candela_per_intensity = linear pixel value of the "
+                                      "recording * m^2; the factor gives a white surface at the scene's mean "
+                                      "irradiance 500 lux, and is no measurement"))}};
+    return Value(Value::Object{{"photometric", Value(std::move(photometric))}});
 }
 
 /// A part's vertices out of an array of the whole mesh.
@@ -73,13 +86,13 @@ struct GlbWriter::State {
         std::vector<tinygltf::Primitive> primitives;
     };
 
-    State(const std::filesystem::path& at, GlbInfo about) : path(at), info(std::move(about)), file(at) {}
+    State(const std::filesystem::path& at, const GlbOptions& how) : path(at), options(how), file(at) {}
 
     void add(const Piece& piece, const MeshPart& part);
-    GlbSummary finish();
+    GlbSummary finish(const GlbInfo& info);
 
     std::filesystem::path path;
-    GlbInfo info;
+    GlbOptions options;
     GlbFile file;
     tinygltf::Model model;
     GltfArrays arrays{model, file};
@@ -87,23 +100,25 @@ struct GlbWriter::State {
     GlbSummary summary;
 
   private:
-    std::string name_of(uint32_t label) const {
+    static std::string name_of(uint32_t label, const GlbInfo& info) {
         if (label == 0) return kSurface;
         const bool named = label < info.segment_names.size() && !info.segment_names[label].empty();
-        return named ? info.segment_names[label] : "segment " + std::to_string(label);
+        return named ? info.segment_names[label] : "object " + std::to_string(label);
     }
 
-    void add_root() {
-        const glm::dquat turn = glm::normalize(info.y_up_from_world);
+    void add_root(const GlbInfo& info) {
+        const glm::dquat turn = glm::normalize(info.upright.y_up_from_world);
         tinygltf::Node root;
         root.name = info.name;
         root.rotation = {turn.x, turn.y, turn.z, turn.w};
+        if (info.upright.floor_m != 0) root.translation = {0, -info.upright.floor_m, 0};
         if (info.world_offset_m != glm::dvec3(0))
             root.extras = Value(Value::Object{{"world_offset_m", array_of(info.world_offset_m)}});
         model.nodes.push_back(std::move(root));
         tinygltf::Scene scene;
         scene.name = info.name;
         scene.nodes = {0};
+        if (!info.lights.empty()) scene.extras = photometric_extras(info.candela_per_intensity);
         model.scenes.push_back(std::move(scene));
         model.defaultScene = 0;
         model.asset.version = "2.0";
@@ -123,31 +138,34 @@ struct GlbWriter::State {
         if (std::ranges::find(used, name) == used.end()) used.emplace_back(name);
     }
 
-    void add_segment(uint32_t label, Segment&& segment) {
+    void add_segment(uint32_t label, const std::string& name, Segment&& segment) {
         const int material = static_cast<int>(model.materials.size());
         for (tinygltf::Primitive& primitive : segment.primitives) primitive.material = material;
+        segment.material.name = name;
         model.materials.push_back(std::move(segment.material));
-        add_node(name_of(label)).mesh = static_cast<int>(model.meshes.size());
+        tinygltf::Node& node = add_node(name);
+        node.mesh = static_cast<int>(model.meshes.size());
+        if (label > 0) node.extras = Value(Value::Object{{"segment", Value(static_cast<int>(label))}});
         tinygltf::Mesh& mesh = model.meshes.emplace_back();
-        mesh.name = name_of(label);
+        mesh.name = name;
         mesh.primitives = std::move(segment.primitives);
     }
 
     tinygltf::Material material_of(const Piece& piece, uint32_t label) {
         tinygltf::Material material;
-        material.name = name_of(label);
         material.pbrMetallicRoughness.metallicFactor = 0;
         material.pbrMetallicRoughness.roughnessFactor = 1;
         if (!piece.reflectance) return material;
         const SegmentReflectance& own = piece.segment(label);
-        set_material(look_of(own), material);
-        if (own.gloss) material.extras = ward_extras(*own.gloss);
+        const GltfMaterial look = look_of(own);
+        set_material(look, material);
+        material.extras = ward_extras(own, look.observed);
         return material;
     }
 
     /// A segment without a material has no highlight at all, which is what ks = 0 becomes.
-    static GltfMaterial look_of(const SegmentReflectance& segment) {
-        return gltf_material(segment.gloss.value_or(WardGloss{}), segment.kd.value_or(glm::vec3(1)));
+    GltfMaterial look_of(const SegmentReflectance& segment) const {
+        return gltf_material(segment.gloss.value_or(WardGloss{}), segment.kd.value_or(glm::vec3(1)), options.fresnel);
     }
 
     void add_colors(tinygltf::Primitive& primitive, const std::vector<glm::vec3>& linear) {
@@ -174,14 +192,18 @@ struct GlbWriter::State {
         const SegmentReflectance& own = piece.segment(part.label);
         const std::vector<glm::vec3> albedo = albedo_of(piece, part);
         const GltfMaterial shown = look_of(own);
-        primitive.attributes["_KD"] = arrays.add_vertices("_KD", albedo);
         if (!shown.metal) {
             std::vector<glm::vec3> base(albedo.size());
             std::ranges::transform(albedo, base.begin(), [&](glm::vec3 kd) { return base_color_of(shown, kd); });
             add_colors(primitive, base);
         }
+        if (options.raw_attributes) add_raw(own, albedo, primitive);
+    }
+
+    void add_raw(const SegmentReflectance& own, const std::vector<glm::vec3>& albedo, tinygltf::Primitive& primitive) {
+        primitive.attributes["_KD"] = arrays.add_vertices("_KD", albedo);
         if (!own.gloss) return;
-        const size_t count = part.vertices.size();
+        const size_t count = albedo.size();
         primitive.attributes["_KS"] = arrays.add_vertices("_KS", std::vector<glm::vec3>(count, own.gloss->ks));
         primitive.attributes["_WARD_ALPHA"] =
             arrays.add_vertices("_WARD_ALPHA", std::vector<float>(count, own.gloss->alpha));
@@ -195,14 +217,16 @@ struct GlbWriter::State {
             pbr.baseColorFactor = {shown.base_color.r, shown.base_color.g, shown.base_color.b, 1};
             return;
         }
-        // Black without a highlight: Blender 3.4 reads the colour and not the factor.
-        const glm::dvec3 color(shown.specular > 0 ? shown.specular_color : glm::vec3(0));
-        material.extensions[kSpecular] = Value(
-            Value::Object{{"specularFactor", Value(double{shown.specular})}, {"specularColorFactor", array_of(color)}});
+        material.extensions[kSpecular] =
+            Value(Value::Object{{"specularFactor", Value(double{shown.specular})},
+                                {"specularColorFactor", array_of(glm::dvec3(shown.specular_color))}});
         use_extension(kSpecular);
+        if (shown.ior == GltfMaterial{}.ior) return;
+        material.extensions[kIor] = Value(Value::Object{{"ior", Value(double{shown.ior})}});
+        use_extension(kIor);
     }
 
-    void add_light(const Light& light) {
+    void add_light(const Light& light, double candela_per_intensity) {
         const double strongest = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
         const glm::dvec3 color = strongest > 0 ? light.intensity / strongest : glm::dvec3(1);
         const int index = static_cast<int>(model.lights.size());
@@ -210,9 +234,8 @@ struct GlbWriter::State {
         lamp.name = "light " + std::to_string(index + 1);
         lamp.type = "point";
         lamp.color = {color.r, color.g, color.b};
-        lamp.intensity = strongest;
-        Value::Object extras{{"calibrated", Value(false)},
-                             {"unit", Value(std::string("linear pixel value times square metre"))}};
+        lamp.intensity = strongest * candela_per_intensity;
+        Value::Object extras{{"calibrated", Value(false)}};
         if (light.radius_m > 0) extras["radius_m"] = Value(light.radius_m);
         lamp.extras = Value(std::move(extras));
         tinygltf::Node& node = add_node(lamp.name);
@@ -242,17 +265,17 @@ void GlbWriter::State::add(const Piece& piece, const MeshPart& part) {
     summary.triangles += part.triangles.size();
 }
 
-GlbSummary GlbWriter::State::finish() {
-    add_root();
+GlbSummary GlbWriter::State::finish(const GlbInfo& info) {
+    add_root(info);
     if (segments.empty()) add_node(kSurface);
-    for (auto& [label, segment] : segments) add_segment(label, std::move(segment));
-    for (const Light& light : info.lights) add_light(light);
+    for (auto& [label, segment] : segments) add_segment(label, name_of(label, info), std::move(segment));
+    for (const Light& light : info.lights) add_light(light, info.candela_per_intensity);
     file.finish(model);
     return summary;
 }
 
-GlbWriter::GlbWriter(const std::filesystem::path& path, GlbInfo info)
-    : state_(std::make_unique<State>(path, std::move(info))) {}
+GlbWriter::GlbWriter(const std::filesystem::path& path, const GlbOptions& options)
+    : state_(std::make_unique<State>(path, options)) {}
 
 GlbWriter::~GlbWriter() = default;
 
@@ -270,12 +293,13 @@ void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance) {
         state_->add(piece, part);
 }
 
-GlbSummary GlbWriter::finish() { return state_->finish(); }
+GlbSummary GlbWriter::finish(const GlbInfo& info) { return state_->finish(info); }
 
-GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info) {
-    GlbWriter writer(path, info);
+GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info,
+                     const GlbOptions& options) {
+    GlbWriter writer(path, options);
     writer.add(scene.mesh, scene.reflectance);
-    return writer.finish();
+    return writer.finish(info);
 }
 
 }  // namespace patina

@@ -6,25 +6,29 @@
 #include <string>
 #include <vector>
 
-#include <glm/gtc/quaternion.hpp>
-
+#include "export/gltf_material.h"
+#include "export/upright.h"
 #include "patina/scene.h"
 #include "sensor/truth.h"
 
 namespace patina {
 
-/// Half a turn about x: a world with the first camera's axes (x right, y down, z forward) comes to glTF's y up.
-inline constexpr glm::dquat kYDownToYUp{0, 1, 0, 0};
+/// How a scene is put into a GLB.
+struct GlbOptions {
+    GltfFresnel fresnel = GltfFresnel::kIor;
+    bool raw_attributes = false;  ///< _KD, _KS and _WARD_ALPHA by vertex, too
+};
 
 /// What a scene.glb says besides its mesh.
 struct GlbInfo {
-    std::string version;                       ///< of Patina; asset.generator becomes "Patina VERSION"
-    std::string name = "scene";                ///< of the scene and its root node
-    glm::dquat y_up_from_world = kYDownToYUp;  ///< the root node's rotation
+    std::string version;         ///< of Patina; asset.generator becomes "Patina VERSION"
+    std::string name = "scene";  ///< of the scene and its root node
+    Upright upright{};           ///< the root node's rotation and translation
     /// What was taken from all positions, metres; told in the root node's extras as "world_offset_m" where it is not 0.
     glm::dvec3 world_offset_m{0};
-    std::vector<std::string> segment_names{};  ///< by label; where one is missing or empty, "segment LABEL"
+    std::vector<std::string> segment_names{};  ///< by label; where one is missing or empty, "object LABEL"
     std::vector<Light> lights{};
+    double candela_per_intensity = 1;  ///< of the lights, see candela_per_intensity()
 };
 
 /// A mesh, and what it reflects.
@@ -38,23 +42,26 @@ struct GlbSummary {
     uint64_t vertices = 0;              ///< written; those between segments or pieces once for each
     uint64_t triangles = 0;             ///< written
     uint64_t degenerate_triangles = 0;  ///< left out: a repeated vertex, or no area
-    uint64_t clamped_colors = 0;        ///< vertices with a channel of COLOR_0 outside 0..1
+    uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
 };
 
-/// Writes a binary glTF 2.0: a root node with the rotation, below it the surface and the lights. Every primitive has
-/// POSITION (float32), NORMAL (float32, made unit length) and COLOR_0 (linear, normalised u16, alpha 1).
+/// Writes a binary glTF 2.0: a root node that turns and moves the world upright, below it the surface and the lights.
+/// Every primitive has POSITION (float32), NORMAL (float32, made unit length) and COLOR_0 (linear, normalised u16,
+/// alpha 1).
 ///
 /// Without reflectance the surface is one node "surface" with the mesh's colours and a fully rough dielectric.
 ///
 /// With it, each segment has a node, a mesh and a material of its name, surface without a label those of "surface".
-/// _KD (float32 x 3) is the diffuse albedo, COLOR_0 the base colour that renders as it; segments with a specular
-/// material also have _KS (float32 x 3) and _WARD_ALPHA (float32), the material is gltf_material()'s, and its extras
-/// tell Ward's. A metal has a base colour instead of COLOR_0. Where a vertex's albedo is not known it is the segment's
-/// mean, without one the fused colour, up to 1.
+/// Extras of the node have the "segment"'s label. COLOR_0 is the base colour that renders as the diffuse albedo, up to
+/// 1. The material is gltf_material()'s. Its extras "ward" have Ward's ks and alpha, where there are any, and whether
+/// they were observed. A metal has a base colour instead of COLOR_0. Where a vertex's albedo is not known it is the
+/// segment's mean, without one the fused colour, up to 1. On request _KD (float32 x 3) is the diffuse albedo;
+/// segments with a specular material then have _KS (float32 x 3) and _WARD_ALPHA (float32), too.
 ///
-/// Lights are point lights (KHR_lights_punctual) whose intensity is in linear pixel values times square metres instead
-/// of candela: the extras say that it is not calibrated, and the lamp's radius where that is known.
+/// Lights are point lights (KHR_lights_punctual) in candela. Extras of the scene, "photometric", have the factor from
+/// linear pixel values times square metres. Extras of a light say that it is not calibrated, and the lamp's radius
+/// where that is known.
 ///
 /// Without a triangle left the node "surface" has no mesh. A normal without direction becomes that of the triangles
 /// of its piece around it. The same scene gives the same bytes.
@@ -64,7 +71,7 @@ struct GlbSummary {
 class GlbWriter {
   public:
     /// Throws Error where the disk refuses.
-    GlbWriter(const std::filesystem::path& path, GlbInfo info);
+    explicit GlbWriter(const std::filesystem::path& path, const GlbOptions& options = {});
     ~GlbWriter();
     GlbWriter(const GlbWriter&) = delete;
     GlbWriter& operator=(const GlbWriter&) = delete;
@@ -75,7 +82,7 @@ class GlbWriter {
     void add(const Mesh& mesh, const MeshReflectance* reflectance);
 
     /// Writes the file; nothing may follow. Throws Error as add().
-    GlbSummary finish();
+    GlbSummary finish(const GlbInfo& info);
 
   private:
     struct State;
@@ -83,6 +90,7 @@ class GlbWriter {
 };
 
 /// Writes a mesh in one piece. Throws Error as GlbWriter.
-GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info);
+GlbSummary write_glb(const std::filesystem::path& path, const GlbScene& scene, const GlbInfo& info,
+                     const GlbOptions& options = {});
 
 }  // namespace patina

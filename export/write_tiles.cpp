@@ -25,10 +25,11 @@ struct Box {
 };
 
 /// In the tileset's coordinates, in which z is up: viewers turn the y of a glTF there.
-Box box_of(const Mesh& mesh, glm::dquat y_up_from_world) {
+Box box_of(const Mesh& mesh, const Upright& upright) {
     Box box;
+    const RigidTransform gltf_from_world = upright.gltf_from_world();
     for (const glm::vec3& position : mesh.positions_m) {
-        const glm::dvec3 y_up = glm::normalize(y_up_from_world) * glm::dvec3(position);
+        const glm::dvec3 y_up(gltf_from_world * glm::dvec4(position, 1));
         box.add({y_up.x, -y_up.z, y_up.y});
     }
     return box;
@@ -64,7 +65,8 @@ MeshReflectance of_vertices(const MeshReflectance& reflectance, const std::vecto
 
 }  // namespace
 
-TileWriter::TileWriter(Write write, GlbInfo info) : write_(std::move(write)), info_(std::move(info)) {
+TileWriter::TileWriter(Write write, GlbInfo info, const GlbOptions& options)
+    : write_(std::move(write)), info_(std::move(info)), options_(options) {
     info_.lights.clear();
 }
 
@@ -78,14 +80,14 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
         levels[level] = {fmt::format("{}/{:06}.glb", level, cells_),
                          level > 0 ? std::max(coarse.error_m, levels[level - 1].error_m) : 0};
         write_(levels[level].name, [&](const std::filesystem::path& path) {
-            GlbWriter writer(path, info_);
+            GlbWriter writer(path, options_);
             if (level == 0) {
                 writer.add(mesh, &reflectance);
             } else {
                 const MeshReflectance some = of_vertices(reflectance, coarse.vertices);
                 writer.add(coarse.mesh, &some);
             }
-            const GlbSummary written = writer.finish();
+            const GlbSummary written = writer.finish(info_);
             if (level == 0) add(written);
         });
     }
@@ -95,7 +97,7 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
 
 /// The coarsest level, with each finer one below the one before.
 void TileWriter::add_tile(const Mesh& mesh, const std::array<Level, kLevels>& levels) {
-    const Box box = box_of(mesh, info_.y_up_from_world);
+    const Box box = box_of(mesh, info_.upright);
     low_ = glm::min(low_, box.low);
     high_ = glm::max(high_, box.high);
     nlohmann::ordered_json tile;

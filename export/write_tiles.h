@@ -24,7 +24,7 @@ class TileWriter {
     /// `write`: calls its second argument with where to write the file of a name, and sees to it that the file is kept.
     using Write =
         std::function<void(const std::string& name, const std::function<void(const std::filesystem::path&)>&)>;
-    TileWriter(Write write, GlbInfo info);
+    TileWriter(Write write, GlbInfo info, const GlbOptions& options = {});
 
     /// Adds a cell with what its vertices reflect; without triangles nothing. Throws Error as GlbWriter.
     void add(const Mesh& mesh, const MeshReflectance& reflectance);
@@ -43,6 +43,7 @@ class TileWriter {
 
     Write write_;
     GlbInfo info_;
+    GlbOptions options_;
     GlbSummary summary_;
     uint32_t cells_ = 0;
     glm::dvec3 low_{1e9}, high_{-1e9};  ///< of all tiles, z up

@@ -134,14 +134,15 @@ void SequenceWriter::write_sequence_file() const {
     Json depth = camera_json(info_.depth);
     depth["metres_per_unit"] = info_.metres_per_unit;
     depth["max_metres"] = info_.max_metres;
-    const Json root{{"format", "patina-sequence"},
-                    {"version", 1},
-                    {"name", info_.name},
-                    {"fps", info_.fps},
-                    {"frames", timestamps_s_.size()},
-                    {"color", color},
-                    {"depth", depth},
-                    {"depth_to_color", to_json(info_.color_from_depth)}};
+    Json root{{"format", "patina-sequence"},
+              {"version", 1},
+              {"name", info_.name},
+              {"fps", info_.fps},
+              {"frames", timestamps_s_.size()},
+              {"color", color},
+              {"depth", depth},
+              {"depth_to_color", to_json(info_.color_from_depth)}};
+    if (info_.gravity) root["gravity"] = {info_.gravity->x, info_.gravity->y, info_.gravity->z};
     write_bytes(partial_folder() / "sequence.json", root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -10,6 +10,7 @@ same by hand.
 import argparse
 import json
 import pathlib
+import struct
 import sys
 
 import bpy
@@ -21,6 +22,12 @@ Z_UP_FROM_Y_UP = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0
 CAMERA_AXES = mathutils.Matrix.Diagonal((1, -1, -1, 1))  # Blender's cameras look along -z with y up
 
 
+def description_of(path):
+    """The JSON part of a GLB."""
+    data = path.read_bytes()
+    return json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
+
+
 def import_scene(path):
     """Returns the root object, whose children are in the recording's world."""
     numpy.bool = bool  # the importer of Debian 12's Blender 3.4 uses this name, which its NumPy 1.24 no longer has
@@ -28,7 +35,8 @@ def import_scene(path):
         bpy.data.objects.remove(thing)
     for material in list(bpy.data.materials):
         bpy.data.materials.remove(material)
-    # Unitless: a lamp of intensity I gives a white diffuse surface at distance r the value I / (pi r^2), as in Patina.
+    # Unitless: a lamp of intensity I gives a white diffuse surface at distance r the value I / (pi r^2), as in Patina
+    # once set_lamps() has brought candela back to pixel values.
     bpy.ops.import_scene.gltf(filepath=str(path), convert_lighting_mode="COMPAT")
     return next(thing for thing in bpy.data.objects if thing.parent is None)
 
@@ -37,26 +45,34 @@ def node_of(material, kind):
     return next((node for node in material.node_tree.nodes if node.bl_idname == kind), None)
 
 
-def set_material(material):
-    """Lambert's diffuse reflection plus a GGX lobe without Fresnel's effect, which is what the file means."""
-    principled, extension = (node_of(material, "ShaderNode" + kind) for kind in ("BsdfPrincipled", "Group"))
+def f0_of(description):
+    """What a dielectric of the file reflects at normal incidence, as export/gltf_material.h has it."""
+    extensions = description["extensions"]
+    ior = extensions.get("KHR_materials_ior", {}).get("ior", 1.5)
+    specular = extensions["KHR_materials_specular"]
+    strength = ((ior - 1) / (ior + 1)) ** 2
+    return [min(strength * c, 1) * specular["specularFactor"] for c in specular["specularColorFactor"]]
+
+
+def set_material(material, description):
+    """Lambert's diffuse reflection plus a GGX lobe without Fresnel's effect, as Ward's model has none."""
+    principled = node_of(material, "ShaderNodeBsdfPrincipled")
     color = node_of(material, "ShaderNodeVertexColor")
     if not principled or not color:
         return  # a metal, which the importer sets right
     new, link = material.node_tree.nodes.new, material.node_tree.links.new
     surface = node_of(material, "ShaderNodeOutputMaterial").inputs["Surface"]
-    if not extension:  # fused colours, which hold the recording's light
+    if "KHR_materials_specular" not in description.get("extensions", {}):  # fused colours, which hold the recording's light
         link(color.outputs["Color"], surface)
         return
-    strength = extension.inputs["Specular"].default_value
-    f0 = [min(0.04 * c, 1) * strength for c in extension.inputs["Specular Color"].default_value[:3]]
+    f0 = f0_of(description)
     dim, diffuse, glossy, both = (new("ShaderNode" + kind)
                                   for kind in ("VectorMath", "BsdfDiffuse", "BsdfGlossy", "AddShader"))
     dim.operation = "SCALE"
-    dim.inputs["Scale"].default_value = 1 - strength
+    dim.inputs["Scale"].default_value = 1 - max(f0)
     glossy.distribution = "GGX"
     glossy.inputs["Color"].default_value = (*f0, 1)
-    glossy.inputs["Roughness"].default_value = principled.inputs["Roughness"].default_value
+    glossy.inputs["Roughness"].default_value = description["pbrMetallicRoughness"]["roughnessFactor"]
     link(color.outputs["Color"], dim.inputs[0])
     link(dim.outputs[0], diffuse.inputs["Color"])
     link(diffuse.outputs[0], both.inputs[0])
@@ -72,8 +88,9 @@ def is_bulb_of(lamp, mesh_object):
     return near > len(vertices) / 2
 
 
-def set_lamps(things):
+def set_lamps(things, candela_per_intensity):
     for lamp in [thing for thing in things if thing.type == "LIGHT"]:
+        lamp.data.energy /= candela_per_intensity
         lamp.data.shadow_soft_size = lamp.data.get("radius_m", POINT_LAMP_RADIUS_M)
         for bulb in [thing for thing in things if thing.type == "MESH" and is_bulb_of(lamp, thing)]:
             bulb.visible_shadow = False
@@ -122,11 +139,14 @@ def main():
     if bpy.app.version >= (4, 0):
         sys.exit("tools/blender_import.py sets what Blender 3.4's importer makes; this is " + bpy.app.version_string)
     scene = bpy.context.scene
+    description = description_of(given.run / "scene.glb")
     root = import_scene(given.run / "scene.glb")
-    for material in bpy.data.materials:
-        set_material(material)
+    for material in description.get("materials", []):
+        if material["name"] in bpy.data.materials:
+            set_material(bpy.data.materials[material["name"]], material)
     bpy.context.view_layer.update()  # of matrix_world
-    set_lamps(list(bpy.data.objects))
+    photometric = description["scenes"][0].get("extras", {}).get("photometric", {})
+    set_lamps(list(bpy.data.objects), photometric.get("candela_per_intensity", 1))
     lights = given.run / "lights.json"
     set_world(scene, json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0))
     poses = [line for line in (given.run / "trajectory.txt").read_text().splitlines() if not line.startswith("#")]

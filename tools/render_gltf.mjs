@@ -1,8 +1,8 @@
 // Renders the scene.glb of a run with three.js in headless Chromium, from the pose of a recorded frame:
 //   node tools/render_gltf.mjs RUN SEQUENCE FRAME OUT.png [EXPOSURE]
-// RUN holds scene.glb and trajectory.txt, SEQUENCE sequence.json. The lights are those of the file, their unit the
-// recording's pixel value, so that the picture is comparable with that of `patina render`. Needs npm's three and Chromium
-// (Debian: chromium).
+// RUN holds scene.glb and trajectory.txt, SEQUENCE sequence.json. The lights are those of the file, brought from candela
+// back to the recording's pixel value, so that the picture is comparable with that of `patina render`. Needs npm's three
+// and Chromium (Debian: chromium).
 import {spawn} from 'node:child_process';
 import {mkdtemp, readFile, rename, rm, writeFile} from 'node:fs/promises';
 import {createServer} from 'node:http';

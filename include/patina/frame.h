@@ -56,8 +56,10 @@ struct SequenceInfo {
     bool has_poses = false;
     bool exposure_known = false;  ///< frames hold their exposure; else the camera may have changed it, and its white
                                   ///< balance, by itself
-    bool motion_blur = true;      ///< colour pictures blur where the camera moves; false: each is of one instant, as
-                                  ///< those of a synthetic scene are
+    /// Direction in which things fall, in the world of the poses, of any length but 0; empty where it is not recorded.
+    std::optional<glm::dvec3> gravity{};
+    bool motion_blur = true;  ///< colour pictures blur where the camera moves; false: each is of one instant, as
+                              ///< those of a synthetic scene are
 };
 
 /// A depth picture as a sensor gave it. The pixels are borrowed.

@@ -62,9 +62,10 @@ struct Scene {
     Lighting lighting;
     std::vector<TimedPose> trajectory;  ///< of the depth camera, in the frames that were fused
     glm::dvec3 world_offset_m{0};
+    std::optional<glm::dvec3> gravity{};  ///< direction in which things fall; empty where it is not recorded
 
-    /// Writes a binary glTF 2.0 with materials and lights, whole or not at all. Throws Error for a value that is not
-    /// finite, a mesh that is too large for glTF, or a file that cannot be written.
+    /// Writes a binary glTF 2.0 with materials and lights, upright and on the floor, whole or not at all. Throws Error
+    /// for a value that is not finite, a mesh that is too large for glTF, or a file that cannot be written.
     void save_glb(const std::filesystem::path& file) const;
 
     /// Writes scene.glb, trajectory.txt and, where there are any, materials.json and lights.json into a folder, which

@@ -323,6 +323,7 @@ Scene SessionCore::scene_without_surface() const {
     scene.lighting = lighting();
     scene.trajectory = poses_;
     scene.world_offset_m = world_offset_m_;
+    if (!settings().tracking) scene.gravity = info_.gravity;  // else the world is another than that of the poses
     return scene;
 }
 

@@ -42,6 +42,13 @@ RigidTransform read_transform(const JsonValue& value) {
     return checked_pose(matrix_from_rows(value.numbers(16)), value.where()).transform;
 }
 
+glm::dvec3 read_direction(const JsonValue& value) {
+    const std::vector<double> numbers = value.numbers(3);
+    const glm::dvec3 direction(numbers[0], numbers[1], numbers[2]);
+    if (!(glm::length(direction) > 0)) throw Error(value.where(), " is [0, 0, 0], which is no direction");
+    return direction;
+}
+
 void expect_format(const JsonValue& root) {
     const std::string format = root.at("format").string();
     if (format != "patina-sequence") {
@@ -67,6 +74,7 @@ SequenceFile read_sequence_file(const fs::path& file, const std::string& default
     info.metres_per_unit = depth.at("metres_per_unit").positive();
     if (const auto far = depth.find("max_metres")) info.max_metres = far->positive();
     if (const auto transform = root.find("depth_to_color")) info.color_from_depth = read_transform(*transform);
+    if (const auto gravity = root.find("gravity")) info.gravity = read_direction(*gravity);
     if (const auto exposure = color.find("exposure_s")) {
         sequence.exposure.exposure_s = exposure->positive();
         info.exposure_known = true;

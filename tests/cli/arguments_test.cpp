@@ -21,6 +21,11 @@ TEST_F(Arguments, WrongUsageIsOneLine) {
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--speed"}), kUsage), HasSubstr("--speed"));
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--gains", "maybe"}), kUsage),
                 HasSubstr("--gains"));
+    for (const char* up : {"0,0,0", "1,2", "1,2,3,4", "up", "0,nan,1", "0,inf,1", "1, 2,3"})
+        EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--up", up}), kUsage),
+                    AllOf(HasSubstr(up), HasSubstr("X,Y,Z")));
+    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--gltf-fresnel", "none"}), kUsage),
+                HasSubstr("'none' is none of ior, constant"));
     EXPECT_FALSE(fs::exists(out()));
 }
 

@@ -72,7 +72,35 @@ TEST_F(Endings, WithoutALampThereIsAmbientLight) {
     EXPECT_EQ(summary["settings"]["specular"], "off");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
     EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, summary["lights"]["ambient"][0], 1e-6);
-    EXPECT_THAT(read_text(out() / "scene.glb"), HasSubstr("_KD"));
+    EXPECT_THAT(read_text(out() / "scene.glb"), HasSubstr("\"ward\""));
+}
+
+TEST_F(Endings, SceneStandsUprightAsTheUserSaysOrTheRecording) {
+    const auto expect_up = [&](const std::vector<std::string>& more, const std::string& source, glm::dvec3 up) {
+        ASSERT_EQ(run(sequence(), more).exit_code, 0);
+        const nlohmann::json gltf = summary_of(out())["gltf"];
+        EXPECT_EQ(gltf["up"]["source"], source);
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            EXPECT_NEAR(gltf["up"]["direction"][static_cast<size_t>(axis)], up[axis], 1e-12);
+            EXPECT_NEAR(gltf["gltf_from_world"][static_cast<size_t>(4 + axis)], up[axis], 1e-12) << "the row of y";
+        }
+        EXPECT_FALSE(gltf.contains("candela_per_intensity")) << "there is no lamp";
+    };
+    expect_up({"--up", "0,0,-2"}, "option", {0, 0, -1});
+    edit_sequence([](nlohmann::json& json) { json["gravity"] = {-9.81, 0, 0}; });
+    expect_up({}, "gravity", {1, 0, 0});
+    expect_up({"--up", "0,1,0"}, "option", {0, 1, 0});
+}
+
+TEST_F(Endings, OptionsOfTheSceneReachIt) {
+    write_text(beside("ambient.json"), R"({"lights": [], "ambient": [0.5, 0.5, 0.5]})");
+    const auto scene_with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--lights", beside("ambient.json")});
+        EXPECT_EQ(run(sequence(), more).exit_code, 0);
+        return read_text(out() / "scene.glb");
+    };
+    EXPECT_THAT(scene_with({}), Not(HasSubstr("_KD")));
+    EXPECT_THAT(scene_with({"--raw-attributes", "--gltf-fresnel", "constant"}), HasSubstr("_KD"));
 }
 
 TEST_F(Endings, AmbientLightFromAFileIsLight) {

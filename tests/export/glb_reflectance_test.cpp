@@ -24,12 +24,13 @@ struct Scene {
 };
 
 /// Of pieces, one or more.
-Scene written_and_read(const std::vector<GlbScene>& pieces, const GlbInfo& info = kInfo) {
+Scene written_and_read(const std::vector<GlbScene>& pieces, const GlbInfo& info = kInfo,
+                       const GlbOptions& options = {}) {
     const TemporaryFolder folder;
     Scene result;
-    GlbWriter writer(folder / "a.glb", info);
+    GlbWriter writer(folder / "a.glb", options);
     for (const GlbScene& piece : pieces) writer.add(piece.mesh, piece.reflectance);
-    result.summary = writer.finish();
+    result.summary = writer.finish(info);
     std::string error, warning;
     EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&result.model, &error, &warning, folder / "a.glb")) << error;
     EXPECT_EQ(error + warning, "");
@@ -82,6 +83,8 @@ GltfMaterial material_of(const tinygltf::Material& material) {
         const tinygltf::Value& color = specular.Get("specularColorFactor");
         result.specular_color = vector_of([&](size_t c) { return color.Get(c).GetNumberAsDouble(); });
     }
+    if (const auto ior = material.extensions.find("KHR_materials_ior"); ior != material.extensions.end())
+        result.ior = static_cast<float>(ior->second.Get("ior").GetNumberAsDouble());
     return result;
 }
 
@@ -103,7 +106,7 @@ struct Sheet {
         reflectance.segments[1] = {glm::vec3(0.4f), WardGloss{{0.1f, 0.08f, 0.05f}, 0.3f}, 10, 100, 1};
         reflectance.segments[2].voxels = 10;
     }
-    Scene write() { return written_and_read({{mesh, &reflectance}}, info); }
+    Scene write(const GlbOptions& options = {}) { return written_and_read({{mesh, &reflectance}}, info, options); }
 };
 
 TEST(GlbReflectance, EachSegmentHasItsNodeMeshAndMaterial) {
@@ -111,11 +114,13 @@ TEST(GlbReflectance, EachSegmentHasItsNodeMeshAndMaterial) {
     ASSERT_EQ(scene.model.nodes.size(), 3u);
     EXPECT_THAT(scene.model.nodes[0].children, ElementsAre(1, 2));
     EXPECT_EQ(scene.model.nodes[1].name, "floor");
-    EXPECT_EQ(scene.model.nodes[2].name, "segment 2");
+    EXPECT_EQ(scene.model.nodes[2].name, "object 2");
     EXPECT_EQ(scene.model.meshes.size(), 2u);
     EXPECT_EQ(material(scene.model, "floor").name, "floor");
-    EXPECT_EQ(material(scene.model, "segment 2").name, "segment 2");
-    EXPECT_THAT(scene.model.extensionsUsed, ElementsAre("KHR_materials_specular"));
+    EXPECT_EQ(material(scene.model, "object 2").name, "object 2");
+    EXPECT_EQ(scene.model.nodes[1].extras.Get("segment").GetNumberAsInt(), 1);
+    EXPECT_EQ(scene.model.nodes[2].extras.Get("segment").GetNumberAsInt(), 2);
+    EXPECT_THAT(scene.model.extensionsUsed, ElementsAre("KHR_materials_specular", "KHR_materials_ior"));
     EXPECT_EQ(scene.summary.triangles, 70u);
     EXPECT_EQ(scene.summary.vertices, 48u + 2 * 5u) << "vertices of triangles in between are both segments'";
     EXPECT_EQ(scene.summary.unknown_albedo, 0u);
@@ -123,8 +128,8 @@ TEST(GlbReflectance, EachSegmentHasItsNodeMeshAndMaterial) {
 
 TEST(GlbReflectance, KdKsAndAlphaConvertBackFromWhatAnyViewerReads) {
     const Sheet sheet;
-    const Scene scene = Sheet(sheet).write();
-    for (const std::string node : {"floor", "segment 2"}) {
+    const Scene scene = Sheet(sheet).write({.raw_attributes = true});
+    for (const std::string node : {"floor", "object 2"}) {
         const GltfMaterial shown = material_of(material(scene.model, node));
         const auto kd = read<glm::vec3>(scene.model, node, "_KD");
         const auto colors = read<std::array<uint16_t, 4>>(scene.model, node, "COLOR_0");
@@ -137,18 +142,55 @@ TEST(GlbReflectance, KdKsAndAlphaConvertBackFromWhatAnyViewerReads) {
     const WardGloss back = ward_of(material_of(material(scene.model, "floor")));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.ks[c], sheet.reflectance.segments[1].gloss->ks[c], 0.02f * back.ks[c]);
     EXPECT_NEAR(back.alpha, 0.3f, 0.02f * 0.3f);
-    EXPECT_EQ(ward_of(material_of(material(scene.model, "segment 2"))).ks, glm::vec3(0));
+    EXPECT_EQ(ward_of(material_of(material(scene.model, "object 2"))).ks, glm::vec3(0));
 }
 
-TEST(GlbReflectance, WithoutGlossTheSpecularColourIsBlackToo) {
+TEST(GlbReflectance, WithoutGlossThereIsNoHighlight) {
     const Scene scene = Sheet().write();
-    EXPECT_EQ(material_of(material(scene.model, "segment 2")).specular_color, glm::vec3(0));
-    EXPECT_NE(material_of(material(scene.model, "floor")).specular_color, glm::vec3(0));
+    const tinygltf::Material& diffuse = material(scene.model, "object 2");
+    EXPECT_EQ(material_of(diffuse).specular, 0);
+    EXPECT_EQ(material_of(diffuse).specular_color, glm::vec3(1));
+    EXPECT_FALSE(diffuse.extensions.contains("KHR_materials_ior"));
+    EXPECT_FALSE(diffuse.extras.Get("ward").Get("observed").Get<bool>());
+    EXPECT_FALSE(diffuse.extras.Get("ward").Has("ks"));
 }
 
-TEST(GlbReflectance, ExactValuesAreInAttributesAndExtras) {
+TEST(GlbReflectance, GlossThatWasNotObservedIsMarked) {
+    Sheet sheet;
+    sheet.reflectance.segments[1].gloss->confidence = 0.1f;
+    const Scene guessed = sheet.write();
+    const tinygltf::Material& floor = material(guessed.model, "floor");
+    EXPECT_FALSE(floor.extras.Get("ward").Get("observed").Get<bool>());
+    EXPECT_FLOAT_EQ(static_cast<float>(floor.extras.Get("ward").Get("ks").Get(0).GetNumberAsDouble()), 0.1f)
+        << "the guess is told";
+    EXPECT_FALSE(floor.extensions.contains("KHR_materials_ior"));
+    EXPECT_EQ(material_of(floor).specular, 1);
+}
+
+TEST(GlbReflectance, WithConstantFresnelTheSpecularColourHasTheStrength) {
+    const Scene scene = Sheet().write({.fresnel = GltfFresnel::kConstant});
+    EXPECT_THAT(scene.model.extensionsUsed, ElementsAre("KHR_materials_specular"));
+    const GltfMaterial floor = material_of(material(scene.model, "floor"));
+    EXPECT_NEAR(floor.specular_color.r, 25, 1e-4f);
+    EXPECT_NEAR(ward_of(floor).ks.r, 0.1f, 1e-5f);
+}
+
+TEST(GlbReflectance, BaseColoursAbove1AreClampedAndCounted) {
+    Sheet sheet;
+    for (glm::vec4& kd : sheet.reflectance.kd) kd = {0.95f, 0.2f, 0.2f, 1};
+    const Scene scene = sheet.write();
+    const auto colors = read<std::array<uint16_t, 4>>(scene.model, "floor", "COLOR_0");
+    EXPECT_EQ(colors.at(0)[0], 65535);
+    EXPECT_EQ(scene.summary.clamped_colors, colors.size())
+        << "0.95 / (1 - 0.08) is above 1; the other segment's is not";
+}
+
+TEST(GlbReflectance, ExactValuesAreInAttributesOnRequestAndInExtras) {
     const Sheet sheet;
-    const Scene scene = Sheet(sheet).write();
+    const Scene without = Sheet(sheet).write();
+    for (const auto& [name, accessor] : primitive(without.model, "floor").attributes)
+        EXPECT_NE(name.front(), '_') << name;
+    const Scene scene = Sheet(sheet).write({.raw_attributes = true});
     const auto positions = read<glm::vec3>(scene.model, "floor", "POSITION");
     const auto kd = read<glm::vec3>(scene.model, "floor", "_KD"), ks = read<glm::vec3>(scene.model, "floor", "_KS");
     const auto alpha = read<float>(scene.model, "floor", "_WARD_ALPHA");
@@ -161,21 +203,21 @@ TEST(GlbReflectance, ExactValuesAreInAttributesAndExtras) {
     }
     const tinygltf::Value& ward = material(scene.model, "floor").extras.Get("ward");
     EXPECT_EQ(ward.Get("variant").Get<std::string>(), "ward");
+    EXPECT_TRUE(ward.Get("observed").Get<bool>());
     EXPECT_FLOAT_EQ(static_cast<float>(ward.Get("alpha").GetNumberAsDouble()), 0.3f);
     EXPECT_FLOAT_EQ(static_cast<float>(ward.Get("ks").Get(2).GetNumberAsDouble()), 0.05f);
-    EXPECT_FALSE(primitive(scene.model, "segment 2").attributes.contains("_KS"));
-    EXPECT_FALSE(primitive(scene.model, "segment 2").attributes.contains("_WARD_ALPHA"));
+    EXPECT_FALSE(primitive(scene.model, "object 2").attributes.contains("_KS"));
+    EXPECT_FALSE(primitive(scene.model, "object 2").attributes.contains("_WARD_ALPHA"));
 }
 
 TEST(GlbReflectance, AnUnknownKdIsTheSegmentsElseTheColour) {
     Sheet sheet;
     for (glm::vec4& kd : sheet.reflectance.kd) kd = glm::vec4(0);
     for (glm::vec3& color : sheet.mesh.colors) color = {0.5f, 1.5f, 0.25f};
-    const Scene scene = sheet.write();
+    const Scene scene = sheet.write({.raw_attributes = true});
     for (const glm::vec3 kd : read<glm::vec3>(scene.model, "floor", "_KD")) EXPECT_EQ(kd, glm::vec3(0.4f));
-    for (const glm::vec3 kd : read<glm::vec3>(scene.model, "segment 2", "_KD"))
-        EXPECT_EQ(kd, glm::vec3(0.5f, 1, 0.25f));
-    EXPECT_EQ(scene.summary.unknown_albedo, read<glm::vec3>(scene.model, "segment 2", "_KD").size());
+    for (const glm::vec3 kd : read<glm::vec3>(scene.model, "object 2", "_KD")) EXPECT_EQ(kd, glm::vec3(0.5f, 1, 0.25f));
+    EXPECT_EQ(scene.summary.unknown_albedo, read<glm::vec3>(scene.model, "object 2", "_KD").size());
 }
 
 TEST(GlbReflectance, AMetalHasABaseColourInsteadOfVertexColours) {
@@ -231,10 +273,14 @@ TEST(GlbReflectance, LightsAreNodesBelowTheRoot) {
     const Mesh mesh = wavy_sheet(2, 2);
     GlbInfo info = kInfo;
     info.lights = {{{1, -2, 3}, {2, 4, 1}, 0.05}, {{0, 0, 0}, {0, 0, 0}}};
+    info.candela_per_intensity = 25;
     const Scene scene = written_and_read({{mesh}}, info);
     ASSERT_EQ(scene.model.lights.size(), 2u);
     EXPECT_EQ(scene.model.lights[0].type, "point");
-    EXPECT_EQ(scene.model.lights[0].intensity, 4);
+    EXPECT_EQ(scene.model.lights[0].intensity, 100);
+    const tinygltf::Value& photometric = scene.model.scenes.at(0).extras.Get("photometric");
+    EXPECT_EQ(photometric.Get("candela_per_intensity").GetNumberAsDouble(), 25);
+    EXPECT_THAT(photometric.Get("meaning").Get<std::string>(), testing::HasSubstr("500 lux"));
     EXPECT_THAT(scene.model.lights[0].color, ElementsAre(0.5, 1, 0.25));
     EXPECT_FALSE(scene.model.lights[0].extras.Get("calibrated").Get<bool>());
     EXPECT_EQ(scene.model.lights[0].extras.Get("radius_m").GetNumberAsDouble(), 0.05);

@@ -93,12 +93,17 @@ TEST_F(KhronosValidator, AcceptsSegmentsMaterialsAndLights) {
     reflectance.segments.resize(4);
     reflectance.segments[1].gloss = WardGloss{glm::vec3(0.2f, 0.1f, 0.05f), 0.1f};
     reflectance.segments[2] = {glm::vec3(0.01f), WardGloss{glm::vec3(0.8f), 0.2f}, 1, 1, 1};  // a metal
-    GlbWriter writer(file_, {.version = "0.0",
-                             .segment_names = {"", "glossy", "metal", "diffuse \"one\""},
-                             .lights = {{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}}});
-    for (int piece = 0; piece < 3; ++piece) writer.add(mesh, &reflectance);
-    writer.finish();
-    expect_valid_file();
+    const GlbInfo info{.version = "0.0",
+                       .upright = {UpSource::kFloor, y_up_from({0.1, 0.2, 0.9}), 1.25},
+                       .segment_names = {"", "glossy", "metal", "diffuse \"one\""},
+                       .lights = {{{1, 2, 3}, {4, 5, 6}, 0.1}, {{0, 0, 0}, {0, 0, 0}}},
+                       .candela_per_intensity = 42};
+    for (const GltfFresnel fresnel : {GltfFresnel::kIor, GltfFresnel::kConstant}) {
+        GlbWriter writer(file_, {.fresnel = fresnel, .raw_attributes = fresnel == GltfFresnel::kConstant});
+        for (int piece = 0; piece < 3; ++piece) writer.add(mesh, &reflectance);
+        writer.finish(info);
+        expect_valid_file();
+    }
 }
 
 TEST_F(KhronosValidator, RejectsADamagedScene) {

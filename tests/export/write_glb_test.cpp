@@ -154,9 +154,11 @@ TEST(WriteGlb, RootNodeTurnsTheWorldUpright) {
     EXPECT_LT(glm::distance(turned_by_root(camera_world, {0, 0, 1}), glm::dvec3(0, 0, -1)), 1e-12);
 
     GlbInfo z_up = kInfo;
-    z_up.y_up_from_world = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
+    z_up.upright = {UpSource::kOption, glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0)), 1.5};
     const tinygltf::Model other = written_and_read(wavy_sheet(2, 2), z_up).model;
     EXPECT_LT(glm::distance(turned_by_root(other, {0, 0, 1}), glm::dvec3(0, 1, 0)), 1e-12);
+    EXPECT_THAT(other.nodes.at(0).translation, ElementsAre(0, -1.5, 0)) << "the floor comes to height 0";
+    EXPECT_TRUE(camera_world.nodes.at(0).translation.empty());
 }
 
 TEST(WriteGlb, DegenerateTrianglesAreLeftOut) {

@@ -210,6 +210,20 @@ TEST(WriteTiles, VolumesHoldTheirTilesWithZUp) {
     EXPECT_EQ(root["boundingVolume"]["box"], json({8, 7, -5, 7, 0, 0, 0, 4, 0, 0, 0, 3}));
 }
 
+TEST(WriteTiles, StandOnTheFloor) {
+    Tiles tiles;
+    TileWriter writer(tiles.write(), {.version = "1.2.3", .upright = {UpSource::kFloor, kYDownToYUp, -8}},
+                      {.raw_attributes = true});
+    Mesh mesh = wavy_sheet(2, 2);
+    mesh.positions_m = {{1, 2, 3}, {5, 2, 3}, {1, 2, 11}, {1, 8, 3}};
+    writer.add(mesh, halves(mesh));
+    writer.finish();
+    EXPECT_EQ(tiles.tileset()["root"]["boundingVolume"]["box"], json({3, 7, 3, 2, 0, 0, 0, 4, 0, 0, 0, 3}));
+    const tinygltf::Model model = tiles.read("0/000000.glb");
+    EXPECT_THAT(model.nodes.at(0).translation, ElementsAre(0, 8, 0));
+    EXPECT_TRUE(model.meshes.at(0).primitives.at(0).attributes.contains("_KD"));
+}
+
 TEST(WriteTiles, WithoutTrianglesThereIsATilesetAlone) {
     Tiles tiles;
     TileWriter writer(tiles.write(), {.version = "1.2.3"});

@@ -76,7 +76,7 @@ TEST(NativeReader, ReadsEveryFieldOfSequenceJson) {
                   "exposure_s": 0.02, "gain": 4},
         "depth": {"width": 16, "height": 12, "fx": 20, "fy": 21, "cx": 7, "cy": 5, "distortion": [0, 0, 0, 0, 1],
                   "metres_per_unit": 0.0002, "max_metres": 3},
-        "depth_to_color": [0,-1,0,0.5, 1,0,0,0.25, 0,0,1,0.125, 0,0,0,1]})");
+        "depth_to_color": [0,-1,0,0.5, 1,0,0,0.25, 0,0,1,0.125, 0,0,0,1], "gravity": [0, 9.5, 2]})");
     const auto source = open_sequence(folder / "a");
     const SequenceInfo& info = source->info();
     EXPECT_EQ(info.name, "n");
@@ -86,6 +86,7 @@ TEST(NativeReader, ReadsEveryFieldOfSequenceJson) {
     EXPECT_EQ(info.metres_per_unit, 0.0002);
     EXPECT_EQ(info.max_metres, 3);
     EXPECT_EQ(info.color_from_depth * glm::dvec4(1, 0, 0, 1), glm::dvec4(0.5, 1.25, 0.125, 1));
+    EXPECT_EQ(info.gravity.value(), glm::dvec3(0, 9.5, 2));
     EXPECT_EQ(frame_at(read_all(*source), 0).exposure, (Exposure{0.02, 4}));
 }
 
@@ -101,6 +102,7 @@ TEST(NativeReader, WhatMayBeLeftOutHasItsDefault) {
     EXPECT_EQ(source->info().fps, 30);
     EXPECT_EQ(source->info().color_from_depth, RigidTransform(1.0));
     EXPECT_FALSE(source->info().has_poses);
+    EXPECT_FALSE(source->info().gravity);
     EXPECT_FALSE(frame_at(read_all(*source), 0).world_from_camera);
 }
 
@@ -129,6 +131,8 @@ INSTANTIATE_TEST_SUITE_P(
         JsonFault{"\"frames\":2", "\"frames\":-2", ": frames is -2, must be a positive whole number"},
         JsonFault{"\"frames\":2", "\"frames\":1e20", ": frames is 1e+20, must be a positive whole number"},
         JsonFault{"\"frames\":2,", "", ": frames is missing"},
+        JsonFault{"\"frames\":2,", "\"frames\":2,\"gravity\":[0,1],", ": gravity is [0,1], must be"},
+        JsonFault{"\"frames\":2,", "\"frames\":2,\"gravity\":[0,0,0],", ": gravity is [0, 0, 0], which is no"},
         JsonFault{"\"fps\":30.0", "\"fps\":0", ": fps is 0, must be positive"},
         JsonFault{"\"color\":{", "\"colour\":{", ": color is missing"},
         JsonFault{"\"metres_per_unit\":0.001,", "", ": depth.metres_per_unit is missing"},

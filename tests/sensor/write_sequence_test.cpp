@@ -29,6 +29,7 @@ TEST(SequenceWriter, WhatItWritesReadsBackTheSame) {
     info.fps = 12.5;
     info.metres_per_unit = 0.0002;
     info.max_metres = 4;
+    info.gravity = glm::dvec3(0.5, 9.75, -1);
     info.color.distortion = {0.1, -0.2, 0.001, 0.002, 0.3};
     info.color_from_depth = glm::translate(RigidTransform(1.0), {0.05, 0.001, -0.002}) *
                             glm::rotate(RigidTransform(1.0), 0.1, glm::dvec3(0, 1, 0));
@@ -52,6 +53,7 @@ TEST(SequenceWriter, WhatItWritesReadsBackTheSame) {
     EXPECT_EQ(source->info().depth, info.depth);
     EXPECT_EQ(source->info().metres_per_unit, 0.0002);
     EXPECT_EQ(source->info().max_metres, 4);
+    EXPECT_EQ(source->info().gravity, info.gravity);
     for (int column = 0; column < 4; ++column) {
         EXPECT_LT(glm::distance(source->info().color_from_depth[column], info.color_from_depth[column]), 1e-15);
     }

@@ -1,6 +1,7 @@
 #include "tools/commands/parse.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "engine/core/did_you_mean.h"
@@ -23,6 +24,19 @@ CLI::Validator at_least_one() {
                 return text("'", given, "' is not a whole number from 1");
             },
             ""};
+}
+
+glm::dvec3 parse_up(const std::string& text) {
+    glm::dvec3 up(0);
+    const size_t comma = text.find(',');
+    const bool parsed = comma != text.npos && parse(std::string_view(text).substr(0, comma), up.x) &&
+                        parse_pair(std::string_view(text).substr(comma + 1), ',', up.y, up.z);
+    const double length = glm::length(up);
+    if (!parsed || !std::isfinite(length) || length == 0) {
+        throw CLI::ValidationError("--up",
+                                   patina::text("'", text, "' is not X,Y,Z with one that is not 0, such as 0,0,1"));
+    }
+    return up;
 }
 
 Extent2D parse_extent(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <glm/glm.hpp>
 
 #include "patina/image.h"
 
@@ -49,6 +50,9 @@ CLI::Validator one_of(const std::vector<std::pair<std::string, Value>>& values) 
 
 /// Takes whole numbers from 1.
 CLI::Validator at_least_one();
+
+/// The value of --up, X,Y,Z. Throws CLI::ValidationError for anything else, and for 0,0,0.
+glm::dvec3 parse_up(const std::string& text);
 
 /// The value of --extent, WIDTHxHEIGHT. Throws CLI::ValidationError for anything else, and beyond 8192 pixels.
 Extent2D parse_extent(const std::string& text);

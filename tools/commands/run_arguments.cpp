@@ -52,6 +52,21 @@ void declare(CLI::App& command, RunArguments& arguments) {
         ->excludes("--specular");
     command.add_flag("--tiles", run.tiles,
                      "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
+    command
+        .add_option_function<std::string>(
+            "--up", [&run](const std::string& text) { run.files.up = parse_up(text); },
+            "The direction that is up in the recording's world, as 0,0,1: scene.glb stands upright by it; by default "
+            "it is found")
+        ->option_text("X,Y,Z");
+    command
+        .add_option("--gltf-fresnel", run.files.glb.fresnel,
+                    "How highlights in scene.glb change with the angle: as those of glass do (ior), or not at all as "
+                    "Ward's do (constant), for renderers that take specular colours above 1")
+        ->transform(one_of<GltfFresnel>({{"ior", GltfFresnel::kIor}, {"constant", GltfFresnel::kConstant}}))
+        ->option_text("ior|constant");
+    command.add_flag(
+        "--raw-attributes", run.files.glb.raw_attributes,
+        "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, _WARD_ALPHA");
     command.add_option("--hold-out", run.hold_out,
                        "Keep every so many-th frame out of the model, and compare its colours in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/core/error.h"
+#include "export/upright.h"
 
 namespace patina::tools {
 
@@ -19,23 +20,9 @@ Value median(std::vector<Value>& values) {
 
 glm::dvec3 position_of(const RigidTransform& pose) { return glm::dvec3(pose[3]); }
 
-/// The mean of the cameras' up directions, brought across their x axes: cameras are tilted up and down rather than
-/// rolled. Where they all face one way, only that one x axis says so, and the mean stays as it is along the rest.
 glm::dvec3 up_of(std::span<const RigidTransform> cameras) {
-    constexpr double kLevel = 1e-3;  // a mean square of x axes along up that is level enough: 2 degrees
-    const double count = static_cast<double>(cameras.size());
-    glm::dvec3 mean(0);
-    glm::dmat3 squares(kLevel);
-    for (const RigidTransform& pose : cameras) {
-        const glm::dvec3 x(pose[0]), down(pose[1]);
-        mean -= down / count;
-        squares += glm::outerProduct(x, x) / count;
-    }
-    if (glm::length(mean) < 1e-3) {
-        throw Error("an orbit needs to know where up is, but the up directions of ", cameras.size(),
-                    " cameras cancel out");
-    }
-    return glm::normalize(glm::inverse(squares) * mean);
+    if (const auto up = mean_up(cameras)) return *up;
+    throw Error("an orbit needs to know where up is, but the up directions of ", cameras.size(), " cameras cancel out");
 }
 
 RigidTransform look_at(glm::dvec3 from_m, glm::dvec3 at_m, glm::dvec3 up) {

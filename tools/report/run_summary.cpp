@@ -104,6 +104,7 @@ Json json_of(const RunSummary& summary) {
     if (summary.held_out) run["held_out"] = held_out_json(*summary.held_out);
     if (summary.world_offset_m != glm::dvec3(0))
         run["world_offset_m"] = {summary.world_offset_m.x, summary.world_offset_m.y, summary.world_offset_m.z};
+    if (!summary.gltf.empty()) run["gltf"] = summary.gltf;
     if (!summary.materials_missing.empty()) run["materials_missing"] = summary.materials_missing;
     run["shortfalls"] = summary.shortfalls;
     run["warnings"] = summary.warnings;

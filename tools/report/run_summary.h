@@ -99,8 +99,9 @@ struct RunSummary {
     std::vector<ValueRange> color_gains;     ///< of red, green and blue over the frames; empty where there are none
     std::optional<HeldOutSummary> held_out;  ///< empty where no picture was held out
     glm::dvec3 world_offset_m{0};  ///< of the scene's coordinates, to be added for those of the recording's world
-    glm::dvec3 ambient{0};         ///< for report.html: irradiance over pi that every surface receives
-    std::vector<Light> lamps;      ///< like the segments for report.html: they have files of their own
+    nlohmann::ordered_json gltf = nlohmann::ordered_json::object();  ///< how the world was put into scene.glb
+    glm::dvec3 ambient{0};     ///< for report.html: irradiance over pi that every surface receives
+    std::vector<Light> lamps;  ///< like the segments for report.html: they have files of their own
     std::vector<SegmentSummary> segments;
     std::string materials_missing;        ///< why materials are not all that they could be, and what to give
     std::vector<std::string> shortfalls;  ///< of what was asked for: the run ended with exit code 3

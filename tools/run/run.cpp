@@ -196,7 +196,7 @@ class Run {
         try {
             Scene scene = session_.scene_without_surface();
             attempt("what the surface reflects", [&] { session_.add_segments(scene); });
-            scene_.emplace(std::move(scene));
+            scene_.emplace(std::move(scene), options_.files);
             attempt("materials.json and lights.json", [&] { scene_->write_lists(folder_); });
             write_surface();
             times_s_.emplace_back("scene", seconds_since(start));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "export/scene_files.h"
 #include "tools/program/outcome.h"
 #include "tools/program/sequence_options.h"
 
@@ -16,8 +17,9 @@ struct RunOptions : SequenceOptions {
     /// The command line after "run", and the folder it was given in: they are kept in the map.
     std::vector<std::string> arguments;
     std::filesystem::path started_in;
-    bool tiles = false;       ///< writes tiles/, too
-    uint32_t dump_every = 0;  ///< frames/NNNNNN.exr of every so many frames; 0 writes none
+    bool tiles = false;        ///< writes tiles/, too
+    SceneFileOptions files{};  ///< of scene.glb and tiles/
+    uint32_t dump_every = 0;   ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     std::filesystem::path
         dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none
 };

@@ -1,5 +1,7 @@
 #include "tools/run/scene_files.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "export/materials.h"
 #include "export/write_tiles.h"
 
@@ -14,23 +16,48 @@ void SceneFiles::write_lists(OutputFolder& folder) const {
     }
 }
 
-GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
-    const GlbSummary summary = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, version);
+GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) {
+    const WrittenGlb written = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, options_, version);
     folder.publish("scene.glb");
-    return summary;
+    info_ = written.info;
+    return written.summary;
 }
 
-GlbSummary SceneFiles::write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const {
+GlbSummary SceneFiles::write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) {
+    if (!info_) {
+        SurfaceSurvey survey;
+        pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { survey.add(mesh, reflectance.labels); });
+        info_ = glb_info(scene_, survey, options_, version);
+    }
     const auto write = [&](const std::string& name, const auto& write_to) {
         write_to(folder.stage("tiles/" + name));
         folder.publish("tiles/" + name);
     };
-    TileWriter writer(write, glb_info(scene_, version));
+    TileWriter writer(write, *info_, options_.glb);
     pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { writer.add(mesh, reflectance); });
     return writer.finish();
 }
 
+namespace {
+
+/// As in scene.glb; the transform is of the recording's world, row by row.
+nlohmann::ordered_json gltf_json(const GlbInfo& info) {
+    const glm::dvec3 up = info.upright.up();
+    const RigidTransform gltf_from_world =
+        info.upright.gltf_from_world() * glm::translate(RigidTransform(1), -info.world_offset_m);
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (glm::length_t row = 0; row < 4; ++row)
+        for (glm::length_t column = 0; column < 4; ++column) rows.push_back(gltf_from_world[column][row]);
+    nlohmann::ordered_json json{{"up", {{"source", name_of(info.upright.source)}, {"direction", {up.x, up.y, up.z}}}},
+                                {"gltf_from_world", std::move(rows)}};
+    if (!info.lights.empty()) json["candela_per_intensity"] = info.candela_per_intensity;
+    return json;
+}
+
+}  // namespace
+
 void SceneFiles::add_to(RunSummary& summary) const {
+    if (info_) summary.gltf = gltf_json(*info_);
     const Lighting lighting = in_recorded_world(scene_);
     summary.lamps = lighting.lights;
     summary.ambient = lighting.ambient;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "export/scene_files.h"
@@ -14,22 +15,24 @@ namespace patina::tools {
 class SceneFiles {
   public:
     /// The scene has no surface: it comes in pieces.
-    explicit SceneFiles(Scene scene) : scene_(std::move(scene)) {}
+    SceneFiles(Scene scene, const SceneFileOptions& options) : scene_(std::move(scene)), options_(options) {}
 
     const std::vector<SegmentReflectance>& segments() const { return scene_.reflectance.segments; }
 
     /// Writes materials.json and lights.json, where there are any. Throws Error where the disk refuses.
     void write_lists(OutputFolder& folder) const;
     /// Writes scene.glb; `version`: of Patina. Throws Error as write_scene_glb() does.
-    GlbSummary write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
-    /// Writes tiles/ (TileWriter).
-    GlbSummary write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version) const;
+    GlbSummary write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version);
+    /// Writes tiles/ (TileWriter), placed as scene.glb is.
+    GlbSummary write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version);
 
-    /// Adds lights and segments to the run's summary.
+    /// Adds lights, segments and the place of what was written to the run's summary.
     void add_to(RunSummary& summary) const;
 
   private:
     Scene scene_;
+    SceneFileOptions options_;
+    std::optional<GlbInfo> info_;  ///< of what was written; empty where nothing was
 };
 
 }  // namespace patina::tools

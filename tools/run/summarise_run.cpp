@@ -127,6 +127,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
     summary.totals = {{"vertices", scene.vertices},
                       {"triangles", scene.triangles},
                       {"degenerate triangles left out", scene.degenerate_triangles},
+                      {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
     add_stream_totals(summary, pipeline);
     if (pipeline.segmentation()) add_segment_totals(summary, counters);

@@ -1,0 +1,38 @@
+#include "export/photometric.h"
+
+#include <gtest/gtest.h>
+
+namespace patina {
+namespace {
+
+Patch level_patch(glm::vec3 center_m, float area_m2) { return {center_m, {0, area_m2, 0}, 0}; }
+
+TEST(Photometric, AWhiteSurfaceBelowALampGets500Lux) {
+    // 4 cd at 2 m are 1 lx, so 500 times as many are needed.
+    const std::vector<Light> lights{{{0, 2, 0}, glm::dvec3(4), 0.05}};
+    const std::vector<Patch> patches{level_patch({0, 0, 0}, 0.01f)};
+    EXPECT_NEAR(candela_per_intensity(lights, patches), 500, 1e-3);
+}
+
+TEST(Photometric, TheMeanIsOverTheAreaOfAllLampsByLuminance) {
+    const std::vector<Light> lights{{{0, 1, 0}, {1, 0, 0}, 0}, {{0, 1, 0}, {0, 1, 1}, 0}};
+    const std::vector<Patch> lit_and_turned_away{level_patch({0, 0, 0}, 1), level_patch({0, 2, 0}, 3)};
+    EXPECT_NEAR(candela_per_intensity(lights, lit_and_turned_away), 500.0 * 4, 0.01);
+    const std::vector<Patch> slanted{level_patch({1, 0, 0}, 1)};  // at 45 degrees, and at the root of 2
+    EXPECT_NEAR(candela_per_intensity(lights, slanted), 500.0 * 2 * std::sqrt(2.0), 0.01);
+}
+
+TEST(Photometric, SurfaceInALampCountsAsBesideIt) {
+    const std::vector<Light> lights{{{0, 1e-6, 0}, glm::dvec3(1), 0.2}};
+    EXPECT_GE(candela_per_intensity(lights, std::vector<Patch>{level_patch({0, 0, 0}, 1)}), 500 * 0.2 * 0.2);
+}
+
+TEST(Photometric, WithoutLightTheFactorIs1) {
+    const std::vector<Patch> patches{level_patch({0, 0, 0}, 1)};
+    EXPECT_EQ(candela_per_intensity({}, patches), 1);
+    EXPECT_EQ(candela_per_intensity(std::vector<Light>{{{0, -1, 0}, glm::dvec3(1), 0}}, patches), 1);
+    EXPECT_EQ(candela_per_intensity(std::vector<Light>{{{0, 1, 0}, glm::dvec3(1), 0}}, {}), 1);
+}
+
+}  // namespace
+}  // namespace patina
