@@ -23,7 +23,8 @@ class SurfaceSurvey {
     /// 3.5 MiB of patches; a plane that has a hundredth of the surface has 600 or more of them.
     static constexpr size_t kMostPatches = 1 << 17;
 
-    /// `labels` by vertex; empty: none.
+    /// `labels` by vertex; empty: none. A patch faces where the mesh's normals do, which are smoother than its
+    /// triangles are; without normals, or where they cancel out, as its triangle.
     void add(const Mesh& mesh, std::span<const uint32_t> labels);
 
     std::span<const Patch> patches() const { return patches_; }

@@ -11,34 +11,48 @@ namespace patina {
 namespace {
 
 /// Of a plane's patches: a fused surface is rough by that.
-const double kConeCosine = std::cos(glm::radians(6.0));
+const double kConeCosine = std::cos(glm::radians(6.0)), kConeSine = std::sin(glm::radians(6.0));
 const double kLevelCosine = std::cos(glm::radians(12.0));
 const double kNearCosine = std::cos(glm::radians(20.0)), kFarCosine = std::cos(glm::radians(60.0));
 const double kMostRoll = std::sin(glm::radians(10.0));
-constexpr double kLeastShare = 0.05;  // of the surface, that makes a plane
-constexpr double kFarWeight = 0.5;    // of a plane's area, where the cameras' mean up is more than 20 degrees off
-constexpr double kLayer_m = 0.03;     // half a floor's thickness: three voxels of 1 cm
-constexpr double kLeastFloor = 0.25;  // of the largest level layer
-constexpr double kLowest = 0.01;      // of the surface, that may be below the floor where there is no layer
+constexpr double kLeastShare = 0.05;   // of the surface, that is level or upright
+constexpr double kLeastLevel = 0.005;  // of the surface, that is level
+constexpr double kFarWeight = 0.5;     // of the surface, where the cameras' mean up is more than 20 degrees off
+constexpr double kLayer_m = 0.03;      // half a floor's thickness: three voxels of 1 cm
+constexpr double kLeastFloor = 0.25;   // of the largest level layer
+constexpr double kLowest = 0.01;       // of the surface, that may be below the floor where there is no layer
 
 /// Area by direction, on the faces of a cube in steps of some 3 degrees.
 class DirectionHistogram {
   public:
-    explicit DirectionHistogram(std::span<const Patch> patches) : sums_(6 * kSteps * kSteps) {
-        for (const Patch& patch : patches) {
-            sums_[bin_of(glm::dvec3(patch.area_m2))] += glm::dvec3(patch.area_m2);
-            total_m2_ += glm::length(glm::dvec3(patch.area_m2));
+    /// A direction, of unit length, and the area that faces there.
+    struct Bin {
+        glm::dvec3 direction{0};
+        double area_m2 = 0;
+    };
+
+    explicit DirectionHistogram(std::span<const Patch> patches) {
+        std::vector<glm::dvec3> sums(6 * kSteps * kSteps);
+        for (const Patch& patch : patches) sums[bin_of(glm::dvec3(patch.area_m2))] += glm::dvec3(patch.area_m2);
+        for (const glm::dvec3& sum : sums) {
+            if (sum == glm::dvec3(0)) continue;
+            bins_.push_back({glm::normalize(sum), glm::length(sum)});
+            total_m2_ += glm::length(sum);
         }
     }
     double total_m2() const { return total_m2_; }
-    /// By direction, each the sum of area vectors; zero where there are none.
-    std::span<const glm::dvec3> sums() const { return sums_; }
-    /// What lies around a direction of unit length.
-    glm::dvec3 sum_around(glm::dvec3 direction) const {
-        glm::dvec3 sum(0);
-        for (const glm::dvec3& each : sums_)
-            if (glm::dot(each, direction) > kConeCosine * glm::length(each)) sum += each;
-        return sum;
+    std::span<const Bin> bins() const { return bins_; }
+
+    /// How much of the surface is level if `up` is up, and how much stands upright beyond what surface without any
+    /// order has: of directions at random, the sine of the cone's angle is so near to level.
+    std::pair<double, double> areas(glm::dvec3 up) const {
+        double level_m2 = 0, upright_m2 = -kConeSine * total_m2_;
+        for (const Bin& bin : bins_) {
+            const double cosine = glm::dot(bin.direction, up);
+            if (cosine > kConeCosine) level_m2 += bin.area_m2;
+            if (std::abs(cosine) < kConeSine) upright_m2 += bin.area_m2;
+        }
+        return {level_m2, std::max(upright_m2, 0.0)};
     }
 
   private:
@@ -55,7 +69,7 @@ class DirectionHistogram {
         return (face * kSteps + step((axis + 1) % 3)) * kSteps + step((axis + 2) % 3);
     }
 
-    std::vector<glm::dvec3> sums_;
+    std::vector<Bin> bins_;
     double total_m2_ = 0;
 };
 
@@ -67,42 +81,50 @@ double roll_of(std::span<const RigidTransform> cameras, glm::dvec3 up) {
     return std::sqrt(sum / static_cast<double>(cameras.size()));
 }
 
-/// How much a plane's area counts that is level if `up` is up; 0: it cannot be.
+/// How much the surface counts that speaks for `up`; 0: it cannot be up.
 double weight_of(std::span<const RigidTransform> cameras, glm::dvec3 cameras_up, glm::dvec3 up) {
     const double cosine = glm::dot(cameras_up, up);
     if (cosine >= kNearCosine) return 1;
     return cosine >= kFarCosine && roll_of(cameras, up) <= kMostRoll ? kFarWeight : 0;
 }
 
-/// The mean normal of the patches around a direction.
-glm::dvec3 refined(glm::dvec3 direction, std::span<const Patch> patches) {
-    constexpr int kSteps = 5;
-    for (int i = 0; i < kSteps; ++i) {
-        glm::dvec3 sum(0);
+/// The direction that level patches face and that upright ones are across, by least squares of their areas.
+glm::dvec3 refined(glm::dvec3 up, std::span<const Patch> patches) {
+    constexpr int kRounds = 5;
+    for (int round = 0; round < kRounds; ++round) {
+        glm::dvec3 level_m2(0);
+        glm::dmat3 across_m2(0);
         for (const Patch& patch : patches) {
-            const glm::dvec3 area_m2(patch.area_m2);
-            if (glm::dot(area_m2, direction) > kConeCosine * glm::length(area_m2)) sum += area_m2;
+            const glm::dvec3 vector_m2(patch.area_m2);
+            const double area_m2 = glm::length(vector_m2), cosine = glm::dot(vector_m2, up) / area_m2;
+            if (cosine > kConeCosine) {
+                level_m2 += vector_m2;
+                across_m2 += glm::dmat3(area_m2);
+            } else if (std::abs(cosine) < kConeSine) {
+                across_m2 += glm::outerProduct(vector_m2, vector_m2) / area_m2;
+            }
         }
-        if (glm::length(sum) > 0) direction = glm::normalize(sum);
+        if (level_m2 == glm::dvec3(0)) break;
+        up = glm::normalize(glm::inverse(across_m2) * level_m2);
     }
-    return direction;
+    return up;
 }
 
-/// The normal of the largest plane that may be level; empty where none is.
-std::optional<glm::dvec3> level_normal(std::span<const RigidTransform> cameras, glm::dvec3 cameras_up,
+/// The direction with the most surface that is level or upright if it is up; empty where there is too little.
+std::optional<glm::dvec3> up_of_planes(std::span<const RigidTransform> cameras, glm::dvec3 cameras_up,
                                        std::span<const Patch> patches) {
     const DirectionHistogram histogram(patches);
     double most = 0;
     glm::dvec3 best(0);
-    for (const glm::dvec3& sum : histogram.sums()) {
-        if (sum == glm::dvec3(0)) continue;
-        const glm::dvec3 direction = glm::normalize(sum);
-        const double weight = weight_of(cameras, cameras_up, direction);
+    for (const DirectionHistogram::Bin& bin : histogram.bins()) {
+        const double weight = weight_of(cameras, cameras_up, bin.direction);
         if (weight == 0) continue;
-        const double area_m2 = glm::length(histogram.sum_around(direction));
-        if (area_m2 < kLeastShare * histogram.total_m2() || weight * area_m2 <= most) continue;
-        most = weight * area_m2;
-        best = direction;
+        const auto [level_m2, upright_m2] = histogram.areas(bin.direction);
+        if (level_m2 < kLeastLevel * histogram.total_m2()) continue;
+        if (level_m2 + upright_m2 < kLeastShare * histogram.total_m2()) continue;
+        if (weight * (level_m2 + upright_m2) <= most) continue;
+        most = weight * (level_m2 + upright_m2);
+        best = bin.direction;
     }
     if (most == 0) return std::nullopt;
     return refined(best, patches);
@@ -185,7 +207,7 @@ std::pair<glm::dvec3, UpSource> find_up(const UpHints& hints, std::span<const Pa
     if (hints.gravity) return {-*hints.gravity, UpSource::kGravity};
     const auto cameras_up = mean_up(hints.cameras);
     if (!cameras_up) return {glm::dvec3(0, -1, 0), UpSource::kNothing};
-    if (const auto normal = level_normal(hints.cameras, *cameras_up, patches)) return {*normal, UpSource::kFloor};
+    if (const auto up = up_of_planes(hints.cameras, *cameras_up, patches)) return {*up, UpSource::kFloor};
     return {*cameras_up, UpSource::kCameras};
 }
 

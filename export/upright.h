@@ -18,7 +18,7 @@ inline constexpr glm::dquat kYDownToYUp{0, 1, 0, 0};
 enum class UpSource {
     kOption,   ///< the user
     kGravity,  ///< the recording
-    kFloor,    ///< the largest level plane that the cameras look down at
+    kFloor,    ///< level and upright surface
     kCameras,  ///< how the cameras were held
     kNothing,  ///< y is taken for down
 };
@@ -54,9 +54,10 @@ std::optional<glm::dvec3> mean_up(std::span<const RigidTransform> cameras);
 /// way. A world whose axes are level keeps them level, and little changes of `up` change it little.
 glm::dquat y_up_from(glm::dvec3 up);
 
-/// Finds up. Without option and gravity it is the normal of the largest plane within 20 degrees of the cameras' mean
-/// up; where the cameras look down at more than that without being rolled, within 60 degrees. A plane has 5 % of the
-/// surface or more; without one up is the cameras' own.
+/// Finds up. Without option and gravity it is the direction with the most surface that is level or stands upright: one
+/// that some surface faces, within 20 degrees of the cameras' mean up; where the cameras look down at more than that
+/// without being rolled, within 60 degrees. Without 0.5 % of the surface that are level, and 5 % that are level or
+/// upright, up is the cameras' own.
 ///
 /// The floor is the lowest level layer with a quarter of the area of the largest one, below the cameras where there are
 /// any; without one the height above which 99 % of the surface are. Of nothing it is 0.

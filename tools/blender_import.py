@@ -72,7 +72,7 @@ def set_material(material, description):
     dim.inputs["Scale"].default_value = 1 - max(f0)
     glossy.distribution = "GGX"
     glossy.inputs["Color"].default_value = (*f0, 1)
-    glossy.inputs["Roughness"].default_value = description["pbrMetallicRoughness"]["roughnessFactor"]
+    glossy.inputs["Roughness"].default_value = description["pbrMetallicRoughness"].get("roughnessFactor", 1)
     link(color.outputs["Color"], dim.inputs[0])
     link(dim.outputs[0], diffuse.inputs["Color"])
     link(diffuse.outputs[0], both.inputs[0])
