@@ -14,11 +14,12 @@ namespace {
 /// Of a plane's patches: a fused surface is rough by that.
 const double kConeCosine = std::cos(glm::radians(6.0)), kConeSine = std::sin(glm::radians(6.0));
 const double kLevelCosine = std::cos(glm::radians(12.0));
-const double kNearCosine = std::cos(glm::radians(20.0)), kFarCosine = std::cos(glm::radians(60.0));
-const double kMostRoll = std::sin(glm::radians(10.0));
-constexpr double kLeastShare = 0.05;   // of the surface, that is level or upright
+/// Of cameras against up. Tried on one room, from 3 frames to 60, and four other recordings: docs/log/changes.md.
+const double kUsualTilt = glm::radians(15.0), kTiltDeviation = glm::radians(40.0), kMostTilt = glm::radians(60.0);
+const double kRollDeviation = glm::radians(20.0), kMostRoll = glm::radians(30.0);
+constexpr double kUprightPart = 0.25;  // of what level surface counts: things stand at all angles about up
+constexpr double kLeastShare = 0.03;   // of the surface, that speaks for up
 constexpr double kLeastLevel = 0.005;  // of the surface, that is level
-constexpr double kFarWeight = 0.5;     // of the surface, where the cameras' mean up is more than 20 degrees off
 constexpr double kLayer_m = 0.03;      // half a floor's thickness: three voxels of 1 cm
 constexpr double kLeastFloor = 0.25;   // of the largest level layer
 constexpr double kLowest = 0.01;       // of the surface, that may be below the floor where there is no layer
@@ -82,11 +83,15 @@ double roll_of(std::span<const RigidTransform> cameras, glm::dvec3 up) {
     return std::sqrt(sum / static_cast<double>(cameras.size()));
 }
 
-/// How much the surface counts that speaks for `up`; 0: it cannot be up.
+/// From a likelihood of 1: how much the surface counts that speaks for `up`; 0: it cannot be up. A hand tilts a camera
+/// by up to kUsualTilt at random; more is rarer, and a roll rarer than a tilt.
 double weight_of(std::span<const RigidTransform> cameras, glm::dvec3 cameras_up, glm::dvec3 up) {
-    const double cosine = glm::dot(cameras_up, up);
-    if (cosine >= kNearCosine) return 1;
-    return cosine >= kFarCosine && roll_of(cameras, up) <= kMostRoll ? kFarWeight : 0;
+    const double tilt = std::acos(std::clamp(glm::dot(cameras_up, up), -1.0, 1.0));
+    if (tilt > kMostTilt) return 0;
+    const double roll = std::asin(std::min(roll_of(cameras, up), 1.0));
+    if (roll > kMostRoll) return 0;
+    const double unusual = std::max(tilt - kUsualTilt, 0.0) / kTiltDeviation, rolled = roll / kRollDeviation;
+    return std::exp(-0.5 * (unusual * unusual + rolled * rolled));
 }
 
 /// The direction that level patches face and that upright ones are across, by least squares of their areas.
@@ -102,7 +107,7 @@ glm::dvec3 refined(glm::dvec3 up, std::span<const Patch> patches) {
                 level_m2 += vector_m2;
                 across_m2 += glm::dmat3(area_m2);
             } else if (std::abs(cosine) < kConeSine) {
-                across_m2 += glm::outerProduct(vector_m2, vector_m2) / area_m2;
+                across_m2 += glm::outerProduct(vector_m2, vector_m2) * (kUprightPart / area_m2);
             }
         }
         if (level_m2 == glm::dvec3(0)) break;
@@ -122,9 +127,9 @@ std::optional<glm::dvec3> up_of_planes(std::span<const RigidTransform> cameras, 
         if (weight == 0) continue;
         const auto [level_m2, upright_m2] = histogram.areas(bin.direction);
         if (level_m2 < kLeastLevel * histogram.total_m2()) continue;
-        if (level_m2 + upright_m2 < kLeastShare * histogram.total_m2()) continue;
-        if (weight * (level_m2 + upright_m2) <= most) continue;
-        most = weight * (level_m2 + upright_m2);
+        const double support_m2 = level_m2 + kUprightPart * upright_m2;
+        if (support_m2 < kLeastShare * histogram.total_m2() || weight * support_m2 <= most) continue;
+        most = weight * support_m2;
         best = bin.direction;
     }
     if (most == 0) return std::nullopt;

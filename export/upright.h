@@ -54,10 +54,10 @@ std::optional<glm::dvec3> mean_up(std::span<const RigidTransform> cameras);
 /// way. A world whose axes are level keeps them level, and little changes of `up` change it little.
 glm::dquat y_up_from(glm::dvec3 up);
 
-/// Finds up. Without option and gravity it is the direction with the most surface that is level or stands upright: one
-/// that some surface faces, within 20 degrees of the cameras' mean up; where the cameras look down at more than that
-/// without being rolled, within 60 degrees. Without 0.5 % of the surface that are level, and 5 % that are level or
-/// upright, up is the cameras' own.
+/// Finds up. Without option and gravity it is the direction for which the most surface speaks: level surface, and a
+/// quarter of what stands upright. It is one that some surface faces, at most 60 degrees from the cameras' mean up, and
+/// with cameras that are rolled by at most 30 degrees; the more of both, the less the surface counts. Without 0.5 % of
+/// the surface that are level, and 3 % that speak for it, up is the cameras' own.
 ///
 /// The floor is the lowest level layer with a quarter of the area of the largest one, below the cameras where there are
 /// any; without one the height above which 99 % of the surface are. Of nothing it is 0.

@@ -132,6 +132,17 @@ TEST(Upright, IsFoundByATableBelowACameraThatLooksDownAtIt) {
     }
 }
 
+TEST(Upright, IsNotWhatARolledCameraSays) {
+    std::mt19937 random(13);
+    World rolled = world(random, random_turn(random), glm::dvec3(0));
+    const RigidTransform roll = glm::rotate(RigidTransform(1), glm::radians(15.0), glm::dvec3(0, 0, 1));
+    rolled.hints.cameras = {rolled.hints.cameras.front() * roll};
+    EXPECT_GT(degrees_between(*mean_up(rolled.hints.cameras), rolled.up), 14);
+    const Upright upright = find_upright(rolled.hints, rolled.survey.patches());
+    EXPECT_EQ(upright.source, UpSource::kFloor);
+    expect_upright(rolled, upright, 0.5);
+}
+
 TEST(Upright, WithoutALevelPlaneIsTheCameras) {
     std::mt19937 random(10);
     const glm::dquat turn = random_turn(random);
