@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/luminance.h"
+
 namespace patina {
 namespace {
 
@@ -18,7 +20,6 @@ constexpr float kCommonIor = 1.5f, kCommonF0 = 0.04f;  // of glTF's core materia
 float ggx_over_ward(float alpha) { return 0.868f - 0.22f * alpha; }
 
 float largest(glm::vec3 v) { return std::max({v.r, v.g, v.b}); }
-float luminance(glm::vec3 rgb) { return glm::dot(rgb, glm::vec3(0.2126f, 0.7152f, 0.0722f)); }
 
 /// The index of refraction that reflects `f0` at normal incidence, and the other way.
 float ior_of(float f0) { return (1 + std::sqrt(f0)) / (1 - std::sqrt(f0)); }

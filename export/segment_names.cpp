@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/luminance.h"
 #include "engine/core/srgb.h"
 #include "export/gltf_material.h"
 
@@ -132,7 +133,7 @@ std::string color_name(glm::vec3 linear) {
     const glm::dvec3 within = glm::clamp(glm::dvec3(linear), 0.0, 1.0);
     const glm::dvec3 rgb(srgb_encoded(within.r), srgb_encoded(within.g), srgb_encoded(within.b));
     const double most = std::max({rgb.r, rgb.g, rgb.b}), chroma = most - std::min({rgb.r, rgb.g, rgb.b});
-    const double lightness = srgb_encoded(glm::dot(within, glm::dvec3(0.2126, 0.7152, 0.0722)));
+    const double lightness = srgb_encoded(luminance(within));
     if (most < 0.15) return "black";
     if (chroma < 0.15 * most)
         return lightness < 0.25 ? "black" : lightness < 0.45 ? "dark grey" : lightness < 0.75 ? "grey" : "white";

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/luminance.h"
 #include "export/coarser_mesh.h"
 #include "sensor/files/text_file.h"
 
@@ -47,7 +48,7 @@ std::vector<float> shades_of(const Mesh& mesh, const MeshReflectance& reflectanc
     for (size_t i = 0; i < mesh.colors.size(); ++i) {
         const bool known = !reflectance.kd.empty() && reflectance.kd[i].a > 0;
         const glm::vec3 color = known ? glm::vec3(reflectance.kd[i]) : mesh.colors[i];
-        shades.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+        shades.push_back(luminance(color));
     }
     return shades;
 }

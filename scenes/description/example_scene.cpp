@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/luminance.h"
 #include "scenes/description/draws.h"
 
 namespace patina::scenes {
@@ -46,8 +47,8 @@ glm::dvec3 draw_kd(Draws& draws) {
         glm::dvec3 code = three(draws, 0, 1);
         if (!colored) code = glm::clamp(glm::dvec3(code.x) + 0.12 * (2.0 * three(draws, 0, 1) - 1.0), 0.0, 1.0);
         const glm::dvec3 kd = glm::pow(code, glm::dvec3(2.2));
-        const double luminance = glm::dot(kd, glm::dvec3(0.2126, 0.7152, 0.0722));
-        if (luminance >= 0.02 && luminance <= 0.85) return kd;
+        const double brightness = luminance(kd);
+        if (brightness >= 0.02 && brightness <= 0.85) return kd;
     }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/luminance.h"
 #include "scenes/description/clearance.h"
 #include "scenes/description/draws.h"
 #include "scenes/description/vary_path.h"
@@ -57,8 +58,6 @@ void vary_materials(std::vector<SceneObject>& objects, uint64_t seed) {
         }
     }
 }
-
-double luminance(glm::dvec3 rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 double total_luminance(const std::vector<Light>& lights) {
     return std::accumulate(lights.begin(), lights.end(), 0.0,
