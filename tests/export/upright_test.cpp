@@ -11,14 +11,14 @@ constexpr glm::dvec3 kUp(0, 1, 0);
 
 /// Adds a grid of triangles with corners a, a + u, a + v, in steps of some 5 cm, each moved by a normal noise.
 void add_sheet(Mesh& mesh, glm::dvec3 a, glm::dvec3 u, glm::dvec3 v, std::mt19937& random, double noise_m = 0.001) {
-    std::normal_distribution<double> noise(0, noise_m);
+    std::normal_distribution<double> noise;
     const auto columns = static_cast<uint32_t>(glm::length(u) / 0.05) + 1,
                rows = static_cast<uint32_t>(glm::length(v) / 0.05) + 1;
     const auto first = static_cast<uint32_t>(mesh.positions_m.size());
     for (uint32_t y = 0; y <= rows; ++y) {
         for (uint32_t x = 0; x <= columns; ++x)
             mesh.positions_m.emplace_back(a + u * (double{1} * x / columns) + v * (double{1} * y / rows) +
-                                          glm::normalize(glm::cross(u, v)) * noise(random));
+                                          glm::normalize(glm::cross(u, v)) * noise_m * noise(random));
     }
     for (uint32_t y = 0; y < rows; ++y) {
         for (uint32_t x = 0; x < columns; ++x) {
