@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "reconstruction/sample_surface.h"
+#include "reconstruction/segment_intervals.h"
 #include "reconstruction/streaming/map_tiles.h"
 #include "reconstruction/streaming/surface_cells.h"
 
@@ -117,7 +118,7 @@ std::vector<SegmentReflectance> Pipeline::segments() {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     refine_all();
     std::vector<SegmentReflectance> segments = read_segments(runner_, *stages_.reflectance);
-    if (stages_.specular) add_confidence(segments);
+    if (stages_.specular) add_intervals(runner_, *stages_.reflectance, *stages_.specular, segments);
     return segments;
 }
 
@@ -135,18 +136,6 @@ MeshReflectance Pipeline::sample_part_by_part(const Mesh& mesh) {
     const double block_m = double{stages_.reflectance->observations().settings().block_m};
     return sample_cube_by_cube(runner_, *stages_.reflectance, mesh, block_m,
                                [&](const StreamRegion& region) { return streaming_.require_records(region); });
-}
-
-/// How sure the fits of the segments' gloss are.
-void Pipeline::add_confidence(std::vector<SegmentReflectance>& segments) {
-    graph::FrameGraph graph = runner_.begin();
-    const graph::Readback read = graph.read_back(stages_.specular->fits(graph));
-    runner_.submit(std::move(graph));
-    runner_.wait();
-    const auto fits = read.as<gpu::WardFit>();
-    for (size_t label = 0; label < std::min(fits.size(), segments.size()); ++label) {
-        if (auto& gloss = segments[label].gloss) gloss->confidence = fits[label].confidence;
-    }
 }
 
 PipelineCounters Pipeline::counters() {

@@ -127,7 +127,6 @@ class Pipeline {
   private:
     void fuse_waiting();
     MeshReflectance sample_part_by_part(const Mesh& mesh);
-    void add_confidence(std::vector<SegmentReflectance>& segments);
 
     graph::Runner runner_;
     Stages stages_;

@@ -30,6 +30,18 @@ struct WardGloss {
     std::optional<float> confidence{};  ///< of an estimate: 0 to 1
 };
 
+/// Where a segment's material lies with some probability.
+struct MaterialInterval {
+    glm::vec3 kd_low{0}, kd_high{1};  ///< RGB diffuse albedo
+    glm::vec3 ks_low{0}, ks_high{1};  ///< RGB specular albedo
+    float alpha_low = 0, alpha_high = 1;
+};
+
+/// Probabilities of a segment's intervals.
+inline constexpr std::array kIntervalLevels = {0.5, 0.8, 0.9, 0.95};
+/// The one that is reported first.
+inline constexpr size_t kIntervalLevel = 2;
+
 /// What is known of a segment.
 struct SegmentReflectance {
     std::optional<glm::vec3> kd;     ///< mean over its voxels; empty where too few know it
@@ -37,6 +49,8 @@ struct SegmentReflectance {
     uint32_t voxels = 0;             ///< that were observed
     uint32_t observations = 0;       ///< kept by them
     float confidence = 0;            ///< mean certainty of kd over its voxels, of the least sure channel: 0 to 1
+    /// One per kIntervalLevels, where a fit estimated the gloss. Each holds the estimate; kd's is 0 to 1 without one.
+    std::optional<std::array<MaterialInterval, kIntervalLevels.size()>> intervals{};
 };
 
 /// What the surface of a mesh reflects.

@@ -1,6 +1,7 @@
 #include "reconstruction/stages/specular_stage.h"
 
 #include "engine/core/error.h"
+#include "passes/specular/bound_materials.h"
 #include "passes/specular/choose_segments.h"
 #include "passes/specular/fit_ward.h"
 #include "passes/specular/fuse_estimates.h"
@@ -67,6 +68,11 @@ void SpecularStage::add(graph::FrameGraph& graph, ReflectanceStage& reflectance,
     SpecularEstimates::keep(graph, ids.estimates);
     WardFits::keep(graph, ids.fits);
     graph.keep(ids.materials);
+}
+
+std::optional<graph::BufferId> SpecularStage::add_bounds(graph::FrameGraph& graph, graph::BufferId albedo) const {
+    if (!settings_.fit) return std::nullopt;
+    return add_bound_materials(graph, {fits_, fits_.import(graph), albedo});
 }
 
 std::vector<VoxelMap::PoolBytes> SpecularStage::memory() const {

@@ -48,6 +48,10 @@ class SpecularStage {
     /// gpu::PerceptualMaterial per label: the mean of what the network said.
     graph::BufferId means(graph::FrameGraph& graph) const { return estimates_.import(graph).means; }
 
+    /// gpu::MaterialBounds[gpu::kBoundsLevels] per label (add_bound_materials), where materials are fitted; else empty.
+    /// `albedo`: ReflectanceStage::add_segments.
+    std::optional<graph::BufferId> add_bounds(graph::FrameGraph& graph, graph::BufferId albedo) const;
+
     void visit(graph::StateVisitor& visitor);
 
     std::vector<VoxelMap::PoolBytes> memory() const;

@@ -5,6 +5,7 @@
 // is one. The result is the mean over all alphas by how likely they are, given what was seen (Bayesian model
 // averaging): an alpha of which no view could tell is not less likely than one whose highlight was looked for in vain.
 #include "lib/brdf/fit_alphas.glsl"
+#include "lib/brdf/fit_prior.glsl"
 #include "lib/brdf/ward.glsl"
 #include "lib/lighting/set_material.glsl"
 #include "shared/specular/specular_estimates.h"
@@ -19,13 +20,6 @@ layout(std430, binding = 4) buffer Fits { WardFit fits[]; };
 layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
-const float kLeastDeviation = 0.1;  // of observations, for the prior's weight
-// Observations of one voxel, and voxels beside each other, err together: so many count as one.
-const float kCorrelated = 50.0;
-// What polished dielectrics reflect; 67 measured materials (MERL, as fitted by Ngan, Durand and Matusik 2005) have
-// 0.033 in the mean. The network's word on ks is no better where no highlight was seen.
-const float kKsBefore = 0.04;
-const float kKsDeviation = 0.15;
 const float kAlphaDeviation = 1.3;  // octaves, of alpha from kAlphaBefore, where no network has said anything
 const float kAlphaBefore = 0.2;
 const float kNetworkAlphaDeviation = 0.7;  // octaves, from the network's

@@ -97,10 +97,10 @@ TEST(EvalJson, ReadsBackAsMeasured) {
 
 TEST(EvalJson, KeysKeepTheirOrder) {
     const auto got = nlohmann::ordered_json::parse(eval_json(full_evaluation()));
-    EXPECT_THAT(keys_of(got),
-                ElementsAre("format", "version", "sequence", "run", "width", "height", "frames", "truth_frames",
-                            "run_frames", "seen_frames", "seen_share", "objects", "object_means", "depth_mm",
-                            "normal_deg", "segmentation", "trajectory", "states", "lights", "novel", "relit"));
+    EXPECT_THAT(keys_of(got), ElementsAre("format", "version", "sequence", "run", "width", "height", "frames",
+                                          "truth_frames", "run_frames", "seen_frames", "seen_share", "objects",
+                                          "object_means", "depth_mm", "normal_deg", "segmentation", "intervals",
+                                          "trajectory", "states", "lights", "novel", "relit"));
     EXPECT_THAT(keys_of(got["objects"][0]["quantities"]),
                 ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb", "kd_shown", "rgb_shown"));
 }

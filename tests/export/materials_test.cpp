@@ -20,6 +20,22 @@ TEST(Materials, TellWhatIsKnownOfEverySegmentThatWasSeen) {
     EXPECT_EQ(text.find("19999"), std::string::npos) << "floats are written as they are meant: " << text;
 }
 
+TEST(Materials, IntervalsStandBesideWhatTheyAreOf) {
+    std::vector<SegmentReflectance> segments(3);
+    segments[1] = {glm::vec3(0.5f), WardGloss{glm::vec3(0.125f), 0.2f, 0.75f}, 12, 20, 0.5f};
+    segments[1].intervals.emplace();
+    (*segments[1].intervals)[kIntervalLevel] = {glm::vec3(0.25f, 0.3f, 0.4f),  glm::vec3(0.75f), glm::vec3(0),
+                                                glm::vec3(0.25f, 0.2f, 0.15f), 0.125f,           0.25f};
+    segments[2] = segments[1];
+    segments[2].kd.reset();
+    const auto json = nlohmann::json::parse(materials_json(segments, {}));
+    const auto& known = json["materials"][0];
+    EXPECT_EQ(known["interval"], nlohmann::json::parse(R"({"kd": [[0.25, 0.75], [0.3, 0.75], [0.4, 0.75]],
+        "ks": [[0, 0.25], [0, 0.2], [0, 0.15]], "alpha": [0.125, 0.25]})"));
+    for (const char* key : {"interval_50", "interval_80", "interval_95"}) EXPECT_TRUE(known.contains(key)) << key;
+    EXPECT_FALSE(json["materials"][1]["interval"].contains("kd")) << "as long as kd is not known";
+}
+
 TEST(Materials, OfNothingAreAnEmptyList) {
     EXPECT_EQ(nlohmann::json::parse(materials_json({}, {})), nlohmann::json::parse(R"({"materials": []})"));
 }

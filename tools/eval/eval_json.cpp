@@ -94,13 +94,31 @@ struct Convert {
                 {"foreign_share", segmentation.foreign_share}};
     }
 
+    static Json to_json(const IntervalHits& hits) {
+        if (hits.values == 0) return Json();
+        return {{"covered", hits.within}, {"total", hits.values}, {"mean_width", hits.mean_width()}};
+    }
+
+    static Json to_json(const IntervalCounts& counts) {
+        return {{"probability", counts.probability},
+                {"kd", to_json(counts.kd)},
+                {"ks", to_json(counts.ks)},
+                {"alpha", to_json(counts.alpha)}};
+    }
+
+    static Json to_json(const ObjectIntervals& intervals) {
+        return {{"confidence", intervals.confidence ? Json(*intervals.confidence) : Json()},
+                {"levels", list_of(intervals.levels)}};
+    }
+
     static Json to_json(const ObjectResult& object) {
         return {{"id", object.id},
                 {"name", object.name},
                 {"pixels", object.pixels},
                 {"seen_pixels", object.seen_pixels},
                 {"quantities", to_json(object.quantities)},
-                {"segmentation", or_null(object.segmentation)}};
+                {"segmentation", or_null(object.segmentation)},
+                {"intervals", or_null(object.intervals)}};
     }
 
     static Json to_json(const SegmentationResult& segmentation) {
@@ -222,6 +240,7 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"depth_mm", Convert::or_null(evaluation.depth_mm)},
                        {"normal_deg", Convert::or_null(evaluation.normal_deg)},
                        {"segmentation", Convert::or_null(evaluation.segmentation)},
+                       {"intervals", evaluation.intervals.empty() ? Json() : Convert::list_of(evaluation.intervals)},
                        {"trajectory", Convert::or_null(evaluation.trajectory)},
                        {"states", Convert::or_null(evaluation.states)},
                        {"lights", Convert::or_null(evaluation.lights)},

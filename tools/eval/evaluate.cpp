@@ -12,6 +12,7 @@
 #include "tools/eval/exr_planes.h"
 #include "tools/eval/finished_run.h"
 #include "tools/eval/frame_channels.h"
+#include "tools/eval/intervals.h"
 #include "tools/eval/lights.h"
 #include "tools/eval/measure_frame.h"
 #include "tools/eval/metrics.h"
@@ -272,6 +273,8 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     measure_frames(pairs, reference, settings, totals);
     totals.finish(reference.groups.contains("label"), result);
     name_objects(sequence / "truth" / "materials.json", result.objects);
+    compare_intervals(sequence, run, result.objects);
+    result.intervals = count_intervals(result.objects);
     return result;
 }
 

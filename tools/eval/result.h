@@ -113,6 +113,28 @@ struct ObjectSegmentation {
     double foreign_share = 0;     ///< under-segmentation: of the best label's pixels, how many lie on other objects
 };
 
+/// How many true values lie within intervals: three channels an albedo, one an alpha.
+struct IntervalHits {
+    uint32_t within = 0;
+    uint32_t values = 0;
+    double width = 0;  ///< sum over the values
+
+    /// Only where there are values.
+    double mean_width() const { return width / values; }
+};
+
+/// The same of each quantity, for intervals of one probability.
+struct IntervalCounts {
+    double probability = 0;
+    IntervalHits kd, ks, alpha;
+};
+
+/// Whether an object's true material lies in the intervals of its segment.
+struct ObjectIntervals {
+    std::optional<double> confidence;    ///< that the run has in ks and alpha
+    std::vector<IntervalCounts> levels;  ///< by rising probability
+};
+
 struct ObjectResult {
     uint32_t id = 0;
     std::string name;                                       ///< from materials.json, else "object ID"
@@ -121,6 +143,7 @@ struct ObjectResult {
     PerQuantity<std::optional<ObjectQuantity>> quantities;  ///< empty where the run lacks the quantity, or no frame
                                                             ///< sees enough of the object
     std::optional<ObjectSegmentation> segmentation;         ///< empty where the run has no labels
+    std::optional<ObjectIntervals> intervals{};             ///< empty where no segment is the object's, or has any
 };
 
 /// Averages over the objects.
@@ -207,6 +230,7 @@ struct Evaluation {
     std::optional<PixelErrors> depth_mm;
     std::optional<PixelErrors> normal_deg;
     std::optional<SegmentationResult> segmentation;
+    std::vector<IntervalCounts> intervals;  ///< over the objects; empty where none has any
     std::optional<TrajectoryErrors> trajectory;
     std::string no_trajectory;          ///< why there is none, in a sentence; empty where there is one
     std::optional<FrameStates> states;  ///< of the run's tracking; empty where its poses were given

@@ -12,6 +12,7 @@ namespace patina::eval {
 namespace {
 
 constexpr const char* kNothing = "-";
+constexpr double kShownProbability = 0.9;  // of intervals
 
 std::string number(double value, int decimals) {
     return std::isinf(value) ? "inf" : fmt::format("{:.{}f}", value, decimals);
@@ -117,6 +118,21 @@ void add_relative(std::vector<Finding>& list, const char* name, const std::optio
                      1e3 * error->translation_rmse_m, error->rotation_rmse_deg, 1e3 * error->translation_median_m,
                      error->rotation_median_deg, 1e3 * error->translation_max_m, error->rotation_max_deg, error->pairs,
                      error->step_s)});
+}
+
+/// "kd 33 of 36, width 0.021".
+std::string hits_text(const char* name, const IntervalHits& hits) {
+    if (hits.values == 0) return fmt::format("{} -", name);
+    return fmt::format("{} {} of {}, width {:.3f}", name, hits.within, hits.values, hits.mean_width());
+}
+
+void add_intervals(std::vector<Finding>& list, const std::vector<IntervalCounts>& intervals) {
+    for (const IntervalCounts& counts : intervals) {
+        if (counts.probability != kShownProbability) continue;
+        list.push_back({"Intervals",
+                        fmt::format("of {:.0f}% hold {}; {}; {}", 100 * counts.probability, hits_text("kd", counts.kd),
+                                    hits_text("ks", counts.ks), hits_text("alpha", counts.alpha))});
+    }
 }
 
 std::string three(glm::dvec3 v, int decimals) {
@@ -291,6 +307,7 @@ std::vector<Finding> findings(const Evaluation& evaluation) {
                  segmentation->iou, percent(segmentation->best_label_share), percent(segmentation->foreign_share),
                  segmentation->labels)});
     }
+    add_intervals(list, evaluation.intervals);
     if (const auto& lights = evaluation.lights) {
         list.push_back({"Lights", fmt::format("{} of {} matched within {:.2f} m; {} missed, {} invented; the run's "
                                               "intensities are {:.3f} times the true ones",

@@ -62,7 +62,7 @@ struct Finding {
     std::string value;  ///< "2.10 mm median, ..."
 };
 
-/// What was measured of depth, normals, trajectory, segmentation and lights.
+/// What was measured of depth, normals, trajectory, segmentation, intervals and lights.
 std::vector<Finding> findings(const Evaluation& evaluation);
 
 /// A true light and what stands for it, or a light that the run invented.
