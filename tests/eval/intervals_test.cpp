@@ -61,8 +61,9 @@ TEST_F(Intervals, OfOtherThingsSegmentsDoNotCount) {
     const Evaluation merged = evaluate(std::string(kFloor) + ", " + kBox);
     size_t with_intervals = 0;
     for (const ObjectResult& object : merged.objects) {
-        if (object.intervals) ++with_intervals;
-        if (object.intervals) EXPECT_GE(object.segmentation->iou, kMatchedIou);
+        if (!object.intervals) continue;
+        ++with_intervals;
+        EXPECT_GE(object.segmentation->iou, kMatchedIou);
     }
     EXPECT_LE(with_intervals, 1u) << "a segment has one object at most";
 }

@@ -48,7 +48,7 @@ BoundedSegment sharp(size_t step, glm::dvec3 ks) {
 class BoundMaterials : public FitWardTest {
   protected:
     std::vector<gpu::MaterialBounds> bounds_of(const WardFitIds& fits, graph::BufferId albedo,
-                                               graph::FrameGraph frame) {
+                                               graph::FrameGraph& frame) {
         const graph::Readback read = frame.read_back(add_bound_materials(frame, {table_, fits, albedo}));
         run(std::move(frame));
         return read.as<gpu::MaterialBounds>();
@@ -81,7 +81,7 @@ class BoundMaterials : public FitWardTest {
         const WardFitIds ids{
             frame.upload<gpu::WardFit>("fits", fits), frame.upload<gpu::FitCurve>("curves", curves), {}};
         const graph::BufferId sums = frame.upload<gpu::SegmentAlbedo>("albedo", albedo);
-        return bounds_of(ids, sums, std::move(frame));
+        return bounds_of(ids, sums, frame);
     }
 
     /// Of 1000 certain records.
@@ -129,7 +129,7 @@ TEST_F(BoundMaterials, OfAHighlightThatNobodySawAreWide) {
     const gpu::MaterialBounds got = bound({unseen()})[gpu::kBoundsLevels + 2];
     for (glm::length_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(got.ks_alpha_high[c] + 0.003, 0.043 * std::exp(kAt90 * 0.47), 1e-4);
-        EXPECT_EQ(got.ks_alpha_low[c], 0.0f) << "there may be none";
+        EXPECT_LT(got.ks_alpha_low[c], 1e-6) << "there may be none";
         EXPECT_EQ(got.kd_low[c], 0.0f) << "not known";
         EXPECT_EQ(got.kd_high[c], 1.0f);
     }
@@ -142,11 +142,12 @@ TEST_F(BoundMaterials, OfAHighlightThatNobodySawAreWide) {
 
 TEST_F(BoundMaterials, AreWiderWhereTwoEstimatesOfKdDisagree) {
     BoundedSegment doubtful = sharp(4, glm::dvec3(0.2));
-    doubtful.squares_kd = 1.2 * *doubtful.kd;
+    doubtful.squares_kd = 1.05 * *doubtful.kd;
     const auto got = bound({sharp(4, glm::dvec3(0.2)), doubtful});
     const gpu::MaterialBounds &sure = got[gpu::kBoundsLevels + 2], &doubted = got[2 * gpu::kBoundsLevels + 2];
-    EXPECT_NEAR(doubted.kd_high.r, 0.5 * std::exp(kAt90 * 1.5 * std::log(1.2)), 0.03);
-    EXPECT_GT(doubted.ks_alpha_high.r, 1.02f * sure.ks_alpha_high.r);
+    EXPECT_NEAR(doubted.kd_high.r, 0.5 * std::exp(kAt90 * 1.5 * std::log(1.05)), 0.02);
+    EXPECT_GT(doubted.ks_alpha_high.r, sure.ks_alpha_high.r);
+    EXPECT_LT(doubted.ks_alpha_low.w, sure.ks_alpha_low.w);
 }
 
 TEST_F(BoundMaterials, AgreeWithTheReference) {
@@ -162,7 +163,7 @@ TEST_F(BoundMaterials, AgreeWithTheReference) {
             const double fits = std::exp(-std::pow((static_cast<double>(a) - center) / width, 2));
             segment.sums[a].lobe2 = glm::dvec3(lobe2);
             segment.sums[a].product = lobe2 * fits * ks;
-            segment.sums[a].seen = std::max(30 - static_cast<double>(a), 0.0) * uniform(random);
+            segment.sums[a].seen = 0.01 + std::max(30 - static_cast<double>(a), 0.0) * uniform(random);
         }
         segment.deviation = 2 * uniform(random);
         segment.ks = 0.9 * ks;
@@ -179,7 +180,7 @@ TEST_F(BoundMaterials, AgreeWithTheReference) {
             const gpu::MaterialBounds& bounds = got[(i + 1) * gpu::kBoundsLevels + level];
             const auto low = low_of(bounds), high = high_of(bounds);
             for (size_t k = 0; k < 7; ++k) {
-                // The reference's table has steps of 3e-4 of a factor, the albedo's sums steps of 3e-4.
+                // The table has steps of 7e-4 of a factor, and 32-bit floats keep as much of a likelihood's logarithm.
                 EXPECT_NEAR(low[k], want.low[k], 2e-3 * want.low[k] + 3e-4) << i << ' ' << level << ' ' << k;
                 EXPECT_NEAR(high[k], want.high[k], 2e-3 * want.high[k] + 3e-4) << i << ' ' << level << ' ' << k;
             }
@@ -196,7 +197,7 @@ TEST_F(BoundMaterials, OfFittedSegmentsHoldTheTruth) {
     std::vector<gpu::SegmentAlbedo> albedo(kLabels);
     albedo[1] = albedo_of({});
     const graph::BufferId sums = frame.upload<gpu::SegmentAlbedo>("albedo", albedo);
-    const auto bounds = bounds_of(table_.import(frame), sums, std::move(frame));
+    const auto bounds = bounds_of(table_.import(frame), sums, frame);
     for (uint32_t level = 0; level < gpu::kBoundsLevels; ++level) {
         const gpu::MaterialBounds& got = bounds[gpu::kBoundsLevels + level];
         for (glm::length_t c = 0; c < 3; ++c) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace patina::reference {
 
@@ -24,17 +23,34 @@ struct Spread {
     }
 };
 
-/// Where the sum of the distributions has the share `p` below it; their weights sum to 1.
-double quantile(const std::vector<Spread>& parts, double p, double least, double most) {
-    constexpr int kSteps = 20000;
-    for (int i = 0; i < kSteps; ++i) {
-        const double x = least + (most - least) * i / kSteps;
-        double below = 0;
-        for (const Spread& part : parts) below += part.below(x);
-        if (below >= p) return x;
+/// The sum of distributions whose weights sum to 1, as a table.
+class Distribution {
+  public:
+    Distribution(const std::vector<Spread>& parts, double least, double most) : least_(least), most_(most) {
+        for (int i = 0; i <= kSteps; ++i) {
+            below_.push_back(0);
+            for (const Spread& part : parts) below_.back() += part.below(at(i));
+        }
     }
-    return most;
-}
+
+    /// Where it has the share `p` below it.
+    double quantile(double p) const {
+        if (p <= below_.front()) return least_;
+        for (size_t i = 1; i < below_.size(); ++i) {
+            if (below_[i] < p) continue;
+            const double part = (p - below_[i - 1]) / (below_[i] - below_[i - 1]);
+            return at(static_cast<double>(i) - 1 + part);
+        }
+        return most_;
+    }
+
+  private:
+    static constexpr int kSteps = 8000;
+    double at(double step) const { return least_ + (most_ - least_) * step / kSteps; }
+
+    double least_, most_;
+    std::vector<double> below_;
+};
 
 double squared(double x) { return x * x; }
 
@@ -51,7 +67,7 @@ double doubt_of(const BoundedSegment& segment) {
 
 /// One alpha's part: with the ks that its sums show, and with one that nobody saw.
 struct Part {
-    double fitted = 0, unseen = 0;  ///< not normalised
+    double fitted = 0, unseen = 0;  ///< logarithms of weights, not normalised
     glm::dvec3 ks{0}, noise{0};
 };
 
@@ -68,10 +84,10 @@ Part part_of(const AlphaSums& sums, double deviation) {
         part.ks[c] = ks;
         part.noise[c] = std::min(std::sqrt(unit / bend) / (ks + kKsOffset), kUnseen);
     }
-    const double prior = std::exp(-squared(std::log2(sums.alpha / 0.4) / 2) / 2);
+    const double prior = -squared(std::log2(sums.alpha / 0.4) / 2) / 2;
     const double seen = 0.83 * std::min(sums.seen / 2.3, 1.0);
-    part.fitted = prior * seen * std::exp(evidence / 2);
-    part.unseen = prior * (1 - seen);
+    part.fitted = prior + std::log(seen) + evidence / 2;
+    part.unseen = prior + std::log(1 - seen);
     return part;
 }
 
@@ -80,10 +96,15 @@ Part part_of(const AlphaSums& sums, double deviation) {
 BoundedMaterial bound_material(const BoundedSegment& segment, double probability) {
     const double doubt = doubt_of(segment);
     std::vector<Part> parts;
-    double sum = 0;
+    double most_likely = -1e300, sum = 0;
     for (const AlphaSums& each : segment.sums) {
         parts.push_back(part_of(each, segment.deviation));
-        sum += parts.back().fitted + parts.back().unseen;
+        most_likely = std::max({most_likely, parts.back().fitted, parts.back().unseen});
+    }
+    for (Part& part : parts) {
+        part.fitted = std::exp(part.fitted - most_likely);
+        part.unseen = std::exp(part.unseen - most_likely);
+        sum += part.fitted + part.unseen;
     }
     std::array<std::vector<Spread>, 4> spreads;  // of ks by channel, and of alpha
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -99,15 +120,15 @@ BoundedMaterial bound_material(const BoundedSegment& segment, double probability
             of_ks.push_back({part.unseen / sum, std::log(0.04 + kKsOffset), 1.0, kUnseen});
         }
     }
+    std::vector<Distribution> distributions;
+    for (size_t i = 0; i < 3; ++i) distributions.emplace_back(spreads[i], std::log(kKsOffset), std::log(1 + kKsOffset));
+    distributions.emplace_back(spreads[3], std::log2(0.01), 0.0);
     const auto ends_of = [&](size_t parameter, double p) -> std::array<double, 2> {
-        const bool is_alpha = parameter == 3;
-        const double least = is_alpha ? std::log2(0.01) : std::log(kKsOffset);
-        const double most = is_alpha ? 0 : std::log(1 + kKsOffset);
         const auto end = [&](double share) {
-            const double x = quantile(spreads[parameter], share, least, most);
-            return is_alpha ? std::exp2(x) : std::max(std::exp(x) - kKsOffset, 0.0);
+            const double x = distributions[parameter].quantile(share);
+            return parameter == 3 ? std::exp2(x) : std::max(std::exp(x) - kKsOffset, 0.0);
         };
-        const double estimate = is_alpha ? segment.alpha : segment.ks[static_cast<glm::length_t>(parameter)];
+        const double estimate = parameter == 3 ? segment.alpha : segment.ks[static_cast<glm::length_t>(parameter)];
         return {std::min(end((1 - p) / 2), estimate), std::max(end((1 + p) / 2), estimate)};
     };
 
