@@ -303,6 +303,11 @@ constexpr std::array kRows = {
                                      "again."),
     number<&Refine::refreshed_records>("reflectance.refreshed_records", "records", 1, kAnyCount,
                                        "About this many other records a frame are computed again in turn."),
+    number<&Refine::gathered_rays>(
+        "reflectance.gathered_rays", "rays", 0, 12,
+        "Rays of each observed voxel whose shadows are found, by which it gathers the light "
+        "that walls and things around it send it, 16 times as many at the end; 0: lamps and the "
+        "ambient term are all."),
     number<&Refl::capacity_blocks>("reflectance.initial_blocks", "blocks", 1, kAnyCount,
                                    "Observed blocks that the pool has room for at first; it grows when needed."),
     number<&Refl::capacity_records>("reflectance.initial_records", "records", 1, kAnyCount,

@@ -143,6 +143,7 @@ void SequenceWriter::write_sequence_file() const {
               {"depth", depth},
               {"depth_to_color", to_json(info_.color_from_depth)}};
     if (info_.gravity) root["gravity"] = {info_.gravity->x, info_.gravity->y, info_.gravity->z};
+    if (!info_.indirect_light) root["indirect_light"] = false;
     write_bytes(partial_folder() / "sequence.json", root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -20,10 +20,9 @@ enum class LinearColor { kPng, kExr };
 /// and written on other threads. The same frames give the same bytes.
 class SequenceWriter {
   public:
-    /// `info` gives name, fps, cameras, metres_per_unit, max_metres, color_from_depth and motion_blur; its frame count
-    /// is not used, exposures are written where it says that they are known.
-    /// Throws Error when the folder exists and is not empty, its place cannot be written, or another process
-    /// writes it.
+    /// `info` gives name, fps, cameras, metres_per_unit, max_metres, color_from_depth, motion_blur and indirect_light;
+    /// its frame count is not used, exposures are written where it says that they are known. Throws Error when the
+    /// folder exists and is not empty, its place cannot be written, or another process writes it.
     SequenceWriter(const std::filesystem::path& folder, SequenceInfo info,
                    LinearColor linear_color = LinearColor::kPng);
     SequenceWriter(const SequenceWriter&) = delete;

@@ -58,8 +58,10 @@ struct SequenceInfo {
                                   ///< balance, by itself
     /// Direction in which things fall, in the world of the poses, of any length but 0; empty where it is not recorded.
     std::optional<glm::dvec3> gravity{};
-    bool motion_blur = true;  ///< colour pictures blur where the camera moves; false: each is of one instant, as
-                              ///< those of a synthetic scene are
+    bool motion_blur = true;     ///< colour pictures blur where the camera moves; false: each is of one instant, as
+                                 ///< those of a synthetic scene are
+    bool indirect_light = true;  ///< surfaces light each other; false: lamps alone do, as in a synthetic scene without
+                                 ///< bounces
 };
 
 /// A depth picture as a sensor gave it. The pixels are borrowed.

@@ -19,9 +19,10 @@ struct Light {
 
 /// What lights a room: lamps, and light that arrives everywhere alike.
 struct Lighting {
-    std::vector<Light> lights;       ///< at most 64
-    glm::dvec3 ambient{0};           ///< irradiance over pi that every surface receives, linear pixel value
-    std::string found_by = "given";  ///< "given", "file", "lighting sequence", "main sequence" or "none"
+    std::vector<Light> lights;  ///< at most 64
+    glm::dvec3 ambient{0};      ///< irradiance over pi that every surface receives, linear pixel value
+    std::string found_by =
+        "given";  ///< "given", "file", "lighting sequence", "main sequence", "surroundings" or "none"
 
     bool empty() const { return lights.empty() && ambient == glm::dvec3(0); }
 };

@@ -13,6 +13,7 @@ void add_find_visibility(graph::FrameGraph& frame, ReflectanceFrame& reflectance
     const VoxelMapIds& voxels = reflectance.voxels;
     pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
     pass.specialise("kVoxelChunks", reflectance.voxel_map.chunks());
+    pass.specialise("kGathers", reflectance.gathered_rays > 0 ? 1u : 0u);
     reflectance.state.status = pass.modify("Status", reflectance.state.status);
     reflectance.records.visibility = pass.modify("Visibility", reflectance.records.visibility);
     due.refine.list = pass.modify("Refine", due.refine.list);

@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "passes/reflectance/find_visibility.h"
+#include "passes/reflectance/gather_irradiance.h"
 #include "passes/reflectance/refine_albedo.h"
 
 namespace patina {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr uint32_t kLeastUpdates = 8;  // in which the window goes through all, however few records there are
 constexpr uint32_t kEverything = UINT32_MAX;
+constexpr uint32_t kRaysAtTheEnd = 16;  // times as many, where records have but one turn
 
 void check_budget(const char* name, uint32_t records) {
     if (records == 0) throw Error("reflectance.", name, " is 0, it must be at least 1");
@@ -48,8 +50,10 @@ RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels&
                                  models.lights.upload(frame),
                                  models.materials.import(frame),
                                  params,
-                                 {settings.first_marched_records, settings.marched_records}};
+                                 {settings.first_marched_records, settings.marched_records},
+                                 settings.gathered_rays};
     DueRecords due = add_find_due_records(frame, reflectance, changed);
+    if (settings.albedo && settings.gathered_rays > 0) add_gather_irradiance(frame, reflectance, due.march);
     add_find_visibility(frame, reflectance, due);
     if (settings.albedo) add_refine_albedo(frame, reflectance, due.refine);
     ReflectanceState::keep(frame, state);
@@ -79,6 +83,7 @@ RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const Re
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings) {
     ReflectanceSettings all = settings;
     all.first_marched_records = all.marched_records = all.refreshed_records = kEverything;
+    all.gathered_rays *= kRaysAtTheEnd;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
     return add_update(frame, models, voxels, records, none, access, make_params(models, all, gpu::kWindowSteps, 1),
                       all);

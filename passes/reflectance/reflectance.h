@@ -16,6 +16,9 @@ struct ReflectanceSettings {
     /// And others, looked at again in turn, about; where few records change (gpu::kBusyChanges), few of them are
     /// marched.
     uint32_t refreshed_records = 512;
+    /// Rays of each marched record, by which it gathers light from what is around it, not from lamps alone; 0: none, as
+    /// in the paper, so that the ambient term is all that there is beside the lamps.
+    uint32_t gathered_rays = 0;
 };
 
 /// The fastest on this device.
@@ -53,7 +56,7 @@ RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const Reflec
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings);
 
-/// The same for all records at once, as at the end of a reconstruction.
+/// The same for all records at once, as at the end of a reconstruction; they gather 16 times as many rays each.
 RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings);

@@ -34,6 +34,7 @@ struct ReflectanceFrame {
     graph::BufferId materials;   ///< SegmentMaterials::import
     gpu::ReflectanceParams params;
     MarchBudgets budgets;
+    uint32_t gathered_rays;  ///< of each marched record, by which it gathers light; 0: none does
 };
 
 }  // namespace patina

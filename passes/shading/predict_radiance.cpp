@@ -48,7 +48,8 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
     const uint32_t most_lights = inputs.most_lights <= gpu::kFewLights         ? gpu::kFewLights
                                  : inputs.most_lights <= gpu::kLightsOfOneWord ? gpu::kLightsOfOneWord
                                                                                : gpu::kMaxPointLights;
-    pass.specialise("kMostLights", most_lights);
+    pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
+    pass.read("Status", state.status);
     PredictedImages out;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});

@@ -6,13 +6,17 @@ ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap&
     : status_(device.create_buffer(
           {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
       windows_(
-          device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})) {}
+          device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})),
+      far_field_(
+          device.create_buffer({.name = "reflectance.far_field",
+                                .bytes = gpu::kFarFieldEdge * gpu::kFarFieldEdge * sizeof(gpu::FarFieldTexel)})) {}
 
 void ReflectanceState::reset(graph::FrameGraph& frame) {
     stamp_ = 0;
     ReflectanceStateIds ids = import(frame);
     ids.status = frame.fill(ids.status, 0);
     ids.windows = frame.fill(ids.windows, 0);
+    ids.far_field = frame.fill(ids.far_field, 0);
     keep(frame, ids);
 }
 
@@ -21,18 +25,20 @@ void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {
-    return {frame.import(status_), frame.import(windows_)};
+    return {frame.import(status_), frame.import(windows_), frame.import(far_field_)};
 }
 
 void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids) {
     frame.keep(ids.status);
     frame.keep(ids.windows);
+    frame.keep(ids.far_field);
 }
 
 void ReflectanceState::visit(graph::StateVisitor& visitor) {
     visitor.value("reflectance.stamp", stamp_);
     visitor.buffer(status_);
     visitor.buffer(windows_);
+    visitor.buffer(far_field_);
 }
 
 }  // namespace patina

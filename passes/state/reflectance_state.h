@@ -6,18 +6,21 @@
 #include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
 #include "passes/state/observation_map.h"
+#include "shared/reflectance/far_field.h"
 #include "shared/reflectance/reflectance.h"
 
 namespace patina {
 
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
-    graph::BufferId status;   ///< gpu::RecordStatus per record
-    graph::BufferId windows;  ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId status;     ///< gpu::RecordStatus per record
+    graph::BufferId windows;    ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId far_field;  ///< gpu::FarFieldTexel[gpu::kFarFieldEdge^2]
 };
 
-/// What the visibility and the albedo of an observation map's records were computed from, and which of them have their
-/// turn next: 24 bytes a record. Lives as long as the map.
+/// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
+/// next, and the light that reaches them from what is around, 32 bytes a record; and light from far away. Lives as long
+/// as the map.
 class ReflectanceState {
   public:
     /// Throws Error when memory runs out.
@@ -38,7 +41,7 @@ class ReflectanceState {
     uint32_t next_stamp() { return ++stamp_; }
 
   private:
-    vulkan::BufferRef status_, windows_;
+    vulkan::BufferRef status_, windows_, far_field_;
     uint32_t stamp_ = 0;
 };
 

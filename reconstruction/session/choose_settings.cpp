@@ -16,12 +16,14 @@ void choose_gains(ReconstructionSettings& settings, Gains gains, const SequenceI
     if ((drifts || gains == Gains::kOn) && !settings.gains) settings.gains.emplace();
 }
 
-void choose_reflectance(ReconstructionSettings& settings, const Illumination& light) {
+void choose_reflectance(ReconstructionSettings& settings, const Illumination& light, const SequenceInfo& info) {
     if (!shines(light)) {
         settings.reflectance.reset();
     } else if (!settings.reflectance) {
         settings.reflectance.emplace();
     }
+    const bool gathers = info.indirect_light && settings.fusion.color;
+    if (settings.reflectance && !gathers) settings.reflectance->refine.gathered_rays = 0;
 }
 
 void choose_labels(ReconstructionSettings& settings, Labels labels) {
@@ -51,7 +53,7 @@ ReconstructionSettings choose_settings(const SessionOptions& options, const Sequ
     ReconstructionSettings settings = Access::values(options.settings);
     if (options.seed) settings.seed = *options.seed;
     choose_gains(settings, options.gains, info);
-    choose_reflectance(settings, light);
+    choose_reflectance(settings, light, info);
     choose_labels(settings, options.labels);
     choose_poses(settings, options.poses, info);
     set_specular(settings, options, std::move(network));

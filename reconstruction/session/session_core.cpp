@@ -143,7 +143,8 @@ void SessionCore::take_light(SessionLight light) {
     if (!no_light_because_.empty()) {
         materials_missing_ = "no materials, only geometry and colours: " + no_light_because_;
     } else if (illumination_.lights.empty()) {
-        materials_missing_ = "materials hold a diffuse albedo alone: there is ambient light, but no lamp to show gloss";
+        materials_missing_ =
+            "materials hold a diffuse albedo alone: no lamp is known to show gloss; " + give_lights(options_);
     }
 }
 

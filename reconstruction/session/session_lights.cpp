@@ -3,6 +3,7 @@
 #include "engine/core/shader_light.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
+#include "reconstruction/session/surroundings.h"
 #include "scenes/files/scene_file.h"
 #include "sensor/open.h"
 #include "sensor/truth.h"
@@ -78,7 +79,9 @@ LightsSource lights_source(const SessionOptions& options) {
     if (std::holds_alternative<LightsFromMain>(choice)) return LightsSource::kMainSequence;
     const bool there_is_one = std::holds_alternative<LightsFromSequence>(choice) ||
                               (!options.sequence.empty() && has_lighting_sequence(options.sequence));
-    return there_is_one ? LightsSource::kLightingSequence : LightsSource::kNone;
+    if (there_is_one) return LightsSource::kLightingSequence;
+    const bool recorded = !options.sequence.empty() && !synthetic_scene(options);
+    return recorded ? LightsSource::kSurroundings : LightsSource::kNone;
 }
 
 namespace {
@@ -135,6 +138,11 @@ SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm
         light.none_because = std::holds_alternative<NoLights>(options.lighting)
                                  ? "no lights were asked for"
                                  : "no lights were given or found; " + give_lights(options);
+        return light;
+    }
+    if (source == LightsSource::kSurroundings) {
+        light.illumination = light_of_surroundings(options, world_offset_m);
+        if (!shines(light.illumination)) light.none_because = "the recording is black; " + give_lights(options);
         return light;
     }
     auto found = source == LightsSource::kMainSequence ? searched_in_main(device, options, world_offset_m, light)

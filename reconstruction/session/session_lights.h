@@ -29,7 +29,8 @@ enum class LightsSource {
     kNone,              ///< nowhere: geometry alone is reconstructed
     kGiven,             ///< the options hold them, or name their file
     kLightingSequence,  ///< the sequence that the user names, or the one that the main sequence has
-    kMainSequence       ///< what they light there
+    kMainSequence,      ///< what they light there
+    kSurroundings       ///< no lamp is known: what surfaces send each other, and the recording's brightness
 };
 
 /// Where the options and the sequence say that lights come from; no light has been looked for. Throws Error where a
@@ -37,10 +38,10 @@ enum class LightsSource {
 LightsSource lights_source(const SessionOptions& options);
 
 /// The lights of a session: those that the options hold, or found where they say, or in the lighting sequence that the
-/// main sequence has. Where a lighting sequence shows no lamp, lights are looked for in what they light in the main
-/// sequence; where there is no lamp either, the ambient light stands alone. A search that fails costs the light, not
-/// the run. Throws Error when the file that is given cannot be read, or the sequence that is named cannot be opened;
-/// Interrupted when the user stops it.
+/// main sequence has. Without that, the light of the surroundings (surroundings.h). Where a lighting sequence shows no
+/// lamp, lights are looked for in what they light in the main sequence; where there is no lamp either, the ambient
+/// light stands alone. A search that fails costs the light, not the run. Throws Error when the file that is given
+/// cannot be read, or the sequence that is named cannot be opened; Interrupted when the user stops it.
 SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m);
 
 /// For run.json: the lights, how they were found, and how sure that is.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "passes/observation/reclaim_records.h"
+#include "passes/reflectance/collect_far_field.h"
 #include "passes/shading/pack_records.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -112,6 +113,12 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
     ObservationMapIds records = observations_.import(graph);
     const CollectedRecords collected = add_collect_observations(
         graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
+    if (settings_.refine.gathered_rays > 0) {
+        ReflectanceStateIds state = state_.import(graph);
+        add_collect_far_field(
+            graph, state,
+            {inputs.position_m, inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
+    }
     add_refine_reflectance(graph, models(part_around(frame)), voxels, records, collected.changed, access_,
                            settings_.refine);
     ObservationMap::keep(graph, records);
@@ -150,6 +157,7 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     const ObservationMapIds records = observations_.import(graph);
     inputs.segments = add_average(graph, records);
     inputs.shadows = settings_.refine.shadows;
+    inputs.gathers = settings_.refine.gathered_rays > 0;
     inputs.access = access_.voxels;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
             inputs.segments};

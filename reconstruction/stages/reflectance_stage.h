@@ -29,7 +29,7 @@ struct ReflectanceStageSettings {
     uint32_t reclaim_every = 16;
     bool detail = true;  ///< pictures show detail that is restored from the fused colour
     ObservationSettings observe;
-    ReflectanceSettings refine;
+    ReflectanceSettings refine{.gathered_rays = 4};
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at first that of the segments
 };
 

@@ -81,6 +81,7 @@ SequenceFile read_sequence_file(const fs::path& file, const std::string& default
     }
     if (const auto gain = color.find("gain")) sequence.exposure.gain = gain->positive();
     if (const auto blur = color.find("motion_blur")) info.motion_blur = blur->boolean();
+    if (const auto indirect = root.find("indirect_light")) info.indirect_light = indirect->boolean();
     return sequence;
 }
 

@@ -27,5 +27,5 @@ void main() {
     count_away(record.block_key, record, albedo[id], true);
     // As of a record that was given back.
     records[id] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
-    status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u));
+    status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
 }

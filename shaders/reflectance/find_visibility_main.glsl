@@ -17,6 +17,8 @@ layout(std430, binding = 5) buffer Refine { uint refine[]; };
 layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
 layout(push_constant) uniform Push { ReflectanceParams params; };
 
+layout(constant_id = 1) const uint kGathers = 0u;  // 1: light is gathered for the same records, which changes albedos
+
 const float kLiftVox = 2.5;         // from where the march starts, above the surface
 const float kMostSkippedVox = 7.5;  // of the way, to get there
 const float kGrazeShare = 0.5;      // of a record's voxel
@@ -73,7 +75,7 @@ void main() {
     const vec3 normal = surface_normal(known);
     const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
     const Reached reached = find_lights(point_m, normal);
-    const bool same = is_marched(status[record].marched, header.position_version) &&
+    const bool same = kGathers == 0u && is_marched(status[record].marched, header.position_version) &&
                       visibility[record] == reached.open && status[record].uncertain == reached.uncertain;
     visibility[record] = reached.open;
     status[record].uncertain = reached.uncertain;

@@ -10,6 +10,7 @@
 #include "lib/map/voxel_chunks.glsl"
 #include "lib/math/mean.glsl"
 #include "lib/math/pi.glsl"
+#include "lib/records/gathered_light.glsl"
 #include "lib/records/reflectance.glsl"
 
 layout(local_size_x = kRecordGroup) in;
@@ -34,6 +35,10 @@ const float kClippedShare = 1e-3;      // the weight of what is only a lower bou
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
+const float kRayError = 0.5;  // of the mean of gathered rays, relative, times the square root of their number
+const float kReflectedSpreads = 1.5;
+const float kUsualKd = 0.3;         // a usual albedo
+const float kUnknownError = 0.3;    // of what arrives from unknown directions, relative
 const uint kAnyClipped = 7u << 26;  // of a direction word
 const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
 
@@ -47,6 +52,7 @@ struct Center {
 struct Irradiance {
     vec3 sum;
     vec3 uncertain;  // of it, what may not reach the voxel, or does though it is not in the sum
+    vec3 noise;      // the standard deviation of what was gathered
 };
 
 uint direction_word[kMaxObservations];
@@ -58,10 +64,17 @@ float brightness[kMaxObservations];   // of that
 float trust[kMaxObservations];        // its inverse variance, relative to one without a highlight; 0: no observation
 float whole_trust[kMaxObservations];  // less where a channel is clipped
 
-// Adds up all lights.
-Irradiance add_lights(uint count, vec3 point_m, vec3 normal, WardShape shape, bool specular, uvec2 reached,
-                      uvec2 uncertain) {
-    Irradiance irradiance = Irradiance(header.ambient.rgb, vec3(0.0));
+// What arrives from all around beside the lamps.
+Irradiance indirect_light(GatheredLight light) {
+    const vec3 sum = gathered_irradiance(light, header.ambient.rgb);
+    const float rays = light.met + light.missed;
+    const float doubt = rays > 0.0 ? kRayError * inversesqrt(rays) + kUnknownError * light.missed / rays : 0.0;
+    return Irradiance(sum, vec3(0.0), sum * min(doubt, 1.0));
+}
+
+// Adds up all lights to what there is.
+Irradiance add_lights(Irradiance irradiance, uint count, vec3 point_m, vec3 normal, WardShape shape, bool specular,
+                      uvec2 reached, uvec2 uncertain) {
     for (uint i = 0u; i < count; ++i) {
         const vec3 offset_m = lights[i].position_m.xyz - point_m;
         const float distance2 = max(dot(offset_m, offset_m), 1e-6);
@@ -150,6 +163,13 @@ Center find_center(Center center, float noise) {
     return center;
 }
 
+// What is not reflected surroundings, of which the material does not tell: they change with the view, and only add. So
+// where colours scatter by more than their noise, the diffuse part lies below their mean.
+float unreflected_share(Center center, float noise) {
+    const float excess = kReflectedSpreads * max(center.spread - noise, 0.0);
+    return clamp(1.0 - excess / max(center.brightness, 1e-6), 0.0, 1.0);
+}
+
 struct Estimate {
     vec3 diffuse;   // the mean
     vec3 variance;  // of it
@@ -178,9 +198,11 @@ Estimate robust_mean(Center center, float noise) {
 uvec2 packed_albedo(Estimate estimate, Irradiance irradiance) {
     const bvec3 lit = greaterThan(irradiance.sum, vec3(kLeastIrradiance));
     const vec3 inverse = 1.0 / max(irradiance.sum, kLeastIrradiance);
-    const vec3 kd = mix(vec3(0.0), max(estimate.diffuse * inverse, 0.0), lit);
+    const vec3 kd = mix(vec3(0.0), clamp(estimate.diffuse * inverse, 0.0, 1.0), lit);
     const vec3 doubt = kd * min(irradiance.uncertain * inverse, 1.0);
-    const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt;
+    // Of an albedo that is usual, not of kd: else dark records were surer than bright ones, and means too dark.
+    const vec3 noise = kUsualKd * min(irradiance.noise * inverse, 1.0);
+    const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise;
     const vec3 certainty = 1.0 / (1.0 + variance / (kKdDeviation * kKdDeviation));
     return uvec2(pack_shared_exponent(kd), pack_certainty(mix(vec3(0.0), certainty, lit)));
 }
@@ -203,13 +225,18 @@ void main() {
     unpack_directions(record, normal);
     // Were it the uniform alone, lavapipe would compile the loop anew in every frame: 6 ms.
     const uint light_count = count > 0u ? header.count : 0u;
-    const Irradiance irradiance = add_lights(light_count, point_m, normal, ward_shape(alpha), specular,
+    const GatheredLight gathered = unpack_gathered(status[record].gathered);
+    const Irradiance indirect = indirect_light(gathered);
+    const Irradiance irradiance = add_lights(indirect, light_count, point_m, normal, ward_shape(alpha), specular,
                                              visibility[record], status[record].uncertain);
     const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
     const Center guess = remove_highlights(record, count, ks * ward_scale(alpha));
     const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);
     set_trust(count, noise);
-    const Estimate estimate = robust_mean(find_center(guess, noise), noise);
+    const Center center = find_center(guess, noise);
+    Estimate estimate = robust_mean(center, noise);
+    estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
+    if (gathered.met > 0.0) estimate.diffuse *= unreflected_share(center, noise);
     albedo[record] = packed_albedo(estimate, irradiance);
     status[record].refined = refined_word(header.version, has_entry ? material.version : 0u);
 }

@@ -9,6 +9,7 @@
 #include "lib/camera/view_grid.glsl"
 #include "lib/math/pi.glsl"
 #include "lib/records/blend_records.glsl"
+#include "lib/records/gathered_light.glsl"
 #include "shared/shading/predict_radiance.h"
 
 layout(local_size_x = kPredictGroupX, local_size_y = kPredictGroupY) in;
@@ -29,9 +30,12 @@ layout(std430, binding = 14) readonly buffer Segments { SegmentAlbedo segments[]
 layout(binding = 13, rgba16f) uniform writeonly image2D rgb;  // linear pixel value; a = 1 where kd is known
 layout(binding = 15, rgba16f) uniform writeonly image2D
     light;  // irradiance / pi; a: the part that shadows leave, kNotMarched where it is not known
+layout(std430, binding = 16) readonly buffer Status { RecordStatus status[]; };
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
+
+layout(constant_id = 1) const uint kGathers = 0u;  // 1: records know what arrives from all around
 
 const float kLeastAlpha = 0.01;
 
@@ -131,6 +135,18 @@ void load_further_visibility() {
     [[unroll]] for (int i = 0; i < 8; ++i) visible_from[i].y = visibility[near_record[i]].y;
 }
 
+// What arrives from all around beside the lamps: irradiance over pi. Shares sum to 1.
+vec3 indirect_light(bool marched) {
+    if (kGathers == 0u || !marched) return header.ambient.rgb;
+    vec3 sum = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 8; ++i) {
+        const uvec2 gathered = status[near_record[i]].gathered;
+        sum += share_of[i] > 0.0 ? share_of[i] * gathered_irradiance(unpack_gathered(gathered), header.ambient.rgb)
+                                 : vec3(0.0);
+    }
+    return sum;
+}
+
 // What arrives of the lamps' light, and what of it the surface sends to the viewer, while it is summed up.
 struct LampLight {
     vec3 received;  // irradiance
@@ -159,7 +175,7 @@ struct Shade {
     float arrives;  // the part of the lamps' unshadowed light that arrives
 };
 
-Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss) {
+Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss, vec3 indirect) {
     LampLight sums = LampLight(vec3(0.0), vec3(0.0), 0.0, 0.0);
     const float alpha = max(gloss.w, kLeastAlpha);
     // Below the viewer's horizon an interpolated normal shows nothing of the lamps.
@@ -169,8 +185,10 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss) {
     } else {
         for (uint i = 0u; i < count; ++i) add_lamp(sums, i, true, point, point_m, alpha);
     }
-    const vec3 light = header.ambient.rgb + sums.received * (1.0 / kPi);
-    return Shade(kd * light + gloss.rgb * sums.glossy, light, sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
+    const vec3 light = indirect + sums.received * (1.0 / kPi);
+    const vec3 reflected = kGathers != 0u ? gloss.rgb * indirect : vec3(0.0);
+    return Shade(kd * light + gloss.rgb * sums.glossy + reflected, light,
+                 sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
 
 void main() {
@@ -193,7 +211,8 @@ void main() {
         if (kMostLights > kLightsOfOneWord) load_further_visibility();
         const bool marched = normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
-        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss);
+        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss,
+                                 indirect_light(marched));
         known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, marched ? seen.arrives : kNotMarched);

@@ -75,13 +75,13 @@ void main() {
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < kSegmentSamples; i += kDrawGroup) {
         uint rank = i;
-        FitVoxel chosen = FitVoxel(kNoRecord, 0.0);
+        FitVoxel chosen = FitVoxel(kNoRecord, 0.0, uvec2(0u));
         if (i < count) {
             rank = 0u;
             for (uint other = 0u; other < count; ++other) rank += is_before(places[other], places[i]) ? 1u : 0u;
             const uint record = kept[label * kSegmentSamples + i];
             if (record_label(records[record]) == label && is_lit(record))
-                chosen = FitVoxel(record, blur2_of(records[record]));
+                chosen = FitVoxel(record, blur2_of(records[record]), status[record].gathered);
         }
         voxels[segment * kSegmentSamples + rank] = chosen;
     }

@@ -5,6 +5,7 @@
 // of its voxels, then one adds up what all have, always in the same order. Clipped channels are left out.
 #include "lib/brdf/ward.glsl"
 #include "lib/map/voxel_chunks.glsl"
+#include "lib/records/gathered_light.glsl"
 #include "lib/records/reflectance.glsl"
 #include "shared/specular/ward_fit.h"
 
@@ -31,9 +32,9 @@ layout(push_constant) uniform Push { FitParams params; };
 shared vec3 diffuse_of[kFitGroup];
 shared vec3 light2_of[kFitGroup];
 
-// What the lights do to a voxel, over pi.
-vec3 irradiance(vec3 point_m, vec3 normal, uvec2 reached, uint count) {
-    vec3 sum = header.ambient.rgb;
+// What lights and all around do to a voxel, over pi.
+vec3 irradiance(GatheredLight gathered, vec3 point_m, vec3 normal, uvec2 reached, uint count) {
+    vec3 sum = gathered_irradiance(gathered, header.ambient.rgb);
     for (uint i = 0u; i < count; ++i) sum += fit_light(i, point_m, normal, reached).received;
     return sum;
 }
@@ -80,8 +81,9 @@ void main() {
             rest += channels * (color - glossy);
             weight_sum += channels;
         }
-        const vec3 light = irradiance(point_m, normal, reached, count);
-        diffuse += light * rest;
+        const GatheredLight gathered = unpack_gathered(voxel.gathered);
+        const vec3 light = irradiance(gathered, point_m, normal, reached, count);
+        diffuse += light * (rest - weight_sum * gathered_gloss(gathered, header.ambient.rgb, fit.ks_alpha.rgb));
         light2 += light * light * weight_sum;
     }
     diffuse_of[lane] = diffuse;

@@ -11,6 +11,7 @@
 
 const uint kMaxSteps = 1024u;
 const float kInsideVox = 0.5;       // a voxel this deep is inside, whatever the noise of a nearest voxel
+const float kMetVox = 0.5;          // so near is a surface met
 const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
 
 // A copy of the voxel map's, whose loads software devices do not hoist out of loops.
@@ -69,6 +70,26 @@ Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, 
     }
     const bool open = deepest > -kInsideVox;
     return Passage(open, grazed && deepest > -graze_vox);
+}
+
+// Where a ray first meets a surface on its way from `gone` to `reach`, from its start (voxels); -1 where it meets none.
+float find_hit(vec3 start, vec3 direction, float gone, float reach) {
+    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    bool met = false;
+    for (uint i = 0u; i < kMaxSteps && gone < reach && !met; ++i) {
+        const vec3 at = start + direction * gone;
+        const ivec3 voxel = ivec3(floor(at));
+        const uint block = find_block(grid, voxel >> 3);
+        const bool have = block != kNoBlock;
+        const uint loaded = load_voxel(have ? block : 0u, voxel);
+        const uint found = have ? loaded : 0u;
+        const bool seen = voxel_weight(found) > 0u;
+        const float here = voxel_sdf(found) * kSdfRangeVox;
+        met = seen && here < kMetVox;
+        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
+        gone += met ? 0.0 : have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
+    }
+    return met ? gone : -1.0;
 }
 
 #endif

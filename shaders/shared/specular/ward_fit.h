@@ -23,8 +23,9 @@ INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that ch
 
 // A voxel that is fitted.
 struct FitVoxel {
-    uint record;  // kNoRecord: a gap
-    float blur2;  // what blur adds to the alpha^2 of its highlights
+    uint record;     // kNoRecord: a gap
+    float blur2;     // what blur adds to the alpha^2 of its highlights
+    uvec2 gathered;  // RecordStatus::gathered
 };
 
 // For one alpha, sums over observations without the mean of their voxel, weighted.

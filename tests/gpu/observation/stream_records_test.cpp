@@ -102,7 +102,7 @@ class StreamRecordsTest : public GpuTest {
             albedo[i] = {odd() | odd() << 9 | odd() << 18 | 15u << 27, random_() & 0x3fffffff};
             visibility[i] = {random_(), random_()};
             const auto word = [&] { return static_cast<uint32_t>(random_()); };
-            status[i] = {word(), word(), word(), word(), {word(), word()}};
+            status[i] = {word(), word(), word(), word(), {word(), word()}, {word(), word()}};
         }
         graph::FrameGraph frame = runner().begin();
         ObservationMapIds ids = rig.observations.map().import(frame);

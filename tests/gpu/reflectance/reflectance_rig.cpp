@@ -99,6 +99,10 @@ std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
         record.certainty = unpack_certainty(albedo[i].y);
         record.visible = bits(visibility[i]);
         record.uncertain = bits(status[i].uncertain);
+        const glm::uvec2 gathered = status[i].gathered;
+        record.gathered = glm::dvec3(glm::unpackHalf2x16(gathered.x), glm::unpackHalf2x16(gathered.y).x);
+        record.rays_met = gathered.y >> 16 & 255;
+        record.rays_missed = gathered.y >> 24;
         records.push_back(record);
     }
     return records;

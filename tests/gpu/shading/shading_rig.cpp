@@ -121,7 +121,7 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
         const uint32_t kd = glm::packF3x9_E1x5(glm::vec3(painted.kd));
         stored.albedo.emplace_back(kd, pack_certainty(painted.certainty));
         stored.visibility.emplace_back(painted.reached & 0xffffffff, painted.reached >> 32);
-        stored.status.push_back({painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}});
+        stored.status.push_back({painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, {0, 0}});
         record.label = painted.label;
         painted.kd = glm::dvec3(glm::unpackF3x9_E1x5(kd));
         painted_[voxel] = painted;

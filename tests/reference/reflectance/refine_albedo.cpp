@@ -109,7 +109,7 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
             spread += robust * std::pow(rest.brightness() - center, 2);
         }
         const double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
-        result.kd[c] = std::max(sum / weights / irradiance[c], 0.0);
+        result.kd[c] = std::clamp(sum / weights / irradiance[c], 0.0, 1.0);
         const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
         result.certainty[c] = 1 / (1 + (variance / (irradiance[c] * irradiance[c]) + doubt * doubt) / (0.05 * 0.05));
     }

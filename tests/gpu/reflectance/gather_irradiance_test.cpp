@@ -1,0 +1,203 @@
+// Light that records gather in a room of known radiance.
+
+#include "tests/reference/reflectance/gather_irradiance.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
+
+#include "tests/gpu/gpu_test.h"
+#include "tests/gpu/observation/observation_rig.h"
+#include "tests/gpu/reflectance/reflectance_rig.h"
+
+namespace patina {
+namespace {
+
+const Intrinsics kCamera{{160, 160}, 72, 72, 79.5, 79.5, {}};  // 96 degrees: six views see all around
+constexpr double kHalf_m = 0.4;
+constexpr uint32_t kRaysAtTheEnd = 16, kRays = 4 * kRaysAtTheEnd;
+constexpr double kColorStep = 0.004;  // of a fused colour around 0.4: 10 bits of its square root, rounded by chance
+
+/// A cube seen from inside.
+double room(glm::dvec3 p) { return -reference::box({0, 0, 0}, glm::dvec3(kHalf_m))(p); }
+
+using Radiance = std::function<glm::dvec3(glm::dvec3)>;
+glm::dvec3 grey(glm::dvec3) { return glm::dvec3(0.4); }
+/// One wall is red, the rest is dim.
+glm::dvec3 one_red_wall(glm::dvec3 p) { return p.x < -0.98 * kHalf_m ? glm::dvec3(0.6, 0.1, 0.05) : glm::dvec3(0.1); }
+
+class GatherIrradianceTest : public GpuTest {
+  protected:
+    struct Model {
+        Model(vulkan::Device& device, graph::Runner& runner)
+            : observations(device, runner, {.voxel_m = 0.02f, .capacity_records = 131072}),
+              reflectance(device, runner, observations.fusion().map(), observations.map()) {}
+        ObservationRig observations;
+        ReflectanceRig reflectance;
+    };
+
+    /// The room from its middle, in the given directions.
+    std::unique_ptr<Model> fused(const Radiance& radiance, std::span<const glm::dvec3> directions) {
+        auto model = std::make_unique<Model>(device(), runner());
+        std::vector<RigFrame> frames;
+        for (const glm::dvec3 direction : directions) frames.push_back(view(radiance, direction));
+        for (const RigFrame& frame : frames) {
+            for (int i = 0; i < 4; ++i) {
+                model->observations.fusion().fuse(frame.camera, frame.world_from_camera, frame.depth_m, frame.color);
+            }
+        }
+        for (const RigFrame& frame : frames) model->observations.collect(frame);
+        return model;
+    }
+
+    static RigFrame view(const Radiance& radiance, glm::dvec3 direction) {
+        RigFrame frame;
+        frame.camera = kCamera;
+        // Never along the axis that look_at() takes for up.
+        frame.world_from_camera = reference::look_at({0, 0, 0}, direction + glm::dvec3(0.03, 0.02, 0.03));
+        frame.depth_m = reference::render_depth(room, kCamera, frame.world_from_camera, 4);
+        frame.color = {kCamera, frame.world_from_camera, Image<glm::vec4>(kCamera.extent, glm::vec4(0))};
+        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+                const double depth_m = double{frame.depth_m.at(x, y)};
+                const glm::dvec3 in_camera((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
+                const glm::dvec3 point_m(frame.world_from_camera * glm::dvec4(in_camera * depth_m, 1));
+                frame.color.linear.at(x, y) = glm::vec4(glm::vec3(radiance(point_m)), 1);
+            }
+        }
+        return frame;
+    }
+
+    static constexpr std::array<glm::dvec3, 6> kAll{glm::dvec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
+                                                    {0, -1, 0},          {0, 0, 1},  {0, 0, -1}};
+};
+
+/// In the middle of a wall, and looking away from it.
+bool on_wall(const RefinedRecord& record) {
+    const glm::dvec3 apart = glm::abs(glm::abs(record.point_m) - kHalf_m);
+    const int axis = apart.x < 0.01 ? 0 : apart.y < 0.01 ? 1 : 2;
+    const glm::dvec3 inwards = -glm::sign(record.point_m[axis]) * glm::dvec3(axis == 0, axis == 1, axis == 2);
+    return record.observations > 0 && apart[axis] < 0.01 && glm::dot(record.normal, inwards) > 0.98 &&
+           apart[(axis + 1) % 3] > 0.06 && apart[(axis + 2) % 3] > 0.06;
+}
+
+TEST_F(GatherIrradianceTest, AFurnaceSendsItsRadianceToEveryPoint) {
+    const auto model = fused(grey, kAll);
+    ReflectanceSettings settings;
+    settings.gathered_rays = kRays / kRaysAtTheEnd;
+    model->reflectance.update_all(settings);
+    uint32_t checked = 0, missed = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        if (!on_wall(record)) continue;
+        EXPECT_NEAR(record.gathered.r, 0.4, kColorStep);
+        EXPECT_EQ(record.rays_met + record.rays_missed, kRays);
+        missed += record.rays_missed;
+        // What a point sends out is what arrives: it is white.
+        EXPECT_NEAR(record.kd.r, 1, 0.02);
+        ++checked;
+    }
+    EXPECT_GT(checked, 2000u);
+    EXPECT_LT(missed, 0.03 * kRays * checked) << "the room is closed but for its seams";
+}
+
+TEST_F(GatherIrradianceTest, TheMeanIsThatOfTheReference) {
+    const auto model = fused(one_red_wall, kAll);
+    ReflectanceSettings settings;
+    settings.gathered_rays = kRays / kRaysAtTheEnd;
+    model->reflectance.update_all(settings);
+    const reference::Volume volume = model->observations.fusion().volume();
+    glm::dvec3 bias(0);
+    double squares = 0;
+    uint32_t compared = 0, walls = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        if (!on_wall(record) || walls++ % 16 != 0) continue;
+        const auto expected =
+            reference::gather_irradiance(volume, record.point_m, record.normal, 2.5 * volume.voxel_m, 2, 12);
+        const glm::dvec3 off = record.gathered - expected.mean;
+        bias += off;
+        squares += off.r * off.r;
+        ++compared;
+    }
+    ASSERT_GT(compared, 100u);
+    // A ray meets the red wall or not: 0.5 * sqrt(p (1 - p) / 64), p = 0.2, is 0.025; strata halve it.
+    EXPECT_LT(std::sqrt(squares / compared), 0.025);
+    EXPECT_LT(std::abs(bias.r) / compared, 0.004);
+    EXPECT_LT(std::abs(bias.b) / compared, 0.002);
+}
+
+TEST_F(GatherIrradianceTest, OppositeTheRedWallAFifthOfTheLightIsItsOwn) {
+    const auto model = fused(one_red_wall, kAll);
+    ReflectanceSettings settings;
+    settings.gathered_rays = kRays / kRaysAtTheEnd;
+    model->reflectance.update_all(settings);
+    double sum = 0;
+    uint32_t count = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        const glm::dvec3 apart = record.point_m - glm::dvec3(kHalf_m, 0, 0);
+        if (record.observations == 0 || glm::length(apart) > 0.06) continue;
+        sum += record.gathered.r;
+        ++count;
+    }
+    ASSERT_GT(count, 10u);
+    // From the middle of a wall the opposite one of a cube has a form factor of 0.239.
+    EXPECT_NEAR(sum / count, 0.1 + 0.239 * 0.5, 0.01);
+}
+
+TEST_F(GatherIrradianceTest, WhereNothingWasSeenTheAmbientLightArrives) {
+    const std::array<glm::dvec3, 1> one{glm::dvec3(1, 0, 0)};
+    const auto model = fused(grey, one);
+    model->reflectance.lights.set({}, glm::dvec3(0.8));
+    ReflectanceSettings settings;
+    settings.gathered_rays = kRays / kRaysAtTheEnd;
+    model->reflectance.update_all(settings);
+    uint32_t checked = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        if (!on_wall(record) || record.point_m.x < 0.38) continue;
+        const double missed = record.rays_missed / double{kRays};
+        EXPECT_GT(missed, 0.3);
+        EXPECT_NEAR(record.kd.g, 0.4 / (0.8 * missed + 0.4 * (1 - missed)), 0.02);
+        ++checked;
+    }
+    EXPECT_GT(checked, 100u);
+}
+
+TEST_F(GatherIrradianceTest, ALampSendsNothingASecondTime) {
+    const auto model = fused([](glm::dvec3 p) { return glm::dvec3(p.x < -0.98 * kHalf_m ? 1.0 : 0.2); }, kAll);
+    ReflectanceSettings settings;
+    settings.gathered_rays = kRays / kRaysAtTheEnd;
+    settings.shadows = false;
+    // As large as the bright wall, and too weak to matter.
+    model->reflectance.lights.set(
+        std::vector<Light>{{{-kHalf_m, 0, 0}, {1e-6f, 1e-6f, 1e-6f}, static_cast<float>(kHalf_m)}});
+    model->reflectance.update_all(settings);
+    double sum = 0;
+    uint32_t count = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        const glm::dvec3 apart = record.point_m - glm::dvec3(kHalf_m, 0, 0);
+        if (record.observations == 0 || glm::length(apart) > 0.06) continue;
+        sum += record.gathered.r;
+        ++count;
+    }
+    ASSERT_GT(count, 10u);
+    EXPECT_NEAR(sum / count, 0.2 * (1 - 0.239), 0.02);
+}
+
+TEST_F(GatherIrradianceTest, RaysAddUpToASlidingMean) {
+    const auto model = fused(grey, kAll);
+    ReflectanceSettings settings;
+    settings.gathered_rays = 1;
+    for (int i = 0; i < 20; ++i) model->reflectance.update_all(settings);
+    uint32_t checked = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        if (!on_wall(record)) continue;
+        EXPECT_LE(record.rays_met + record.rays_missed, 193u);
+        EXPECT_GE(record.rays_met + record.rays_missed, 190u);
+        EXPECT_NEAR(record.gathered.g, 0.4, kColorStep);
+        ++checked;
+    }
+    EXPECT_GT(checked, 2000u);
+}
+
+}  // namespace
+}  // namespace patina
