@@ -46,7 +46,7 @@ struct LightsOptions {
 
 /// The lights of a room, and how they were found.
 struct Illumination {
-    std::string found_by = "none";   ///< "file", "lighting sequence", "main sequence", "none"
+    std::string found_by = "none";   ///< "file", "lighting sequence", "main sequence", "surroundings", "none"
     std::vector<FoundLight> lights;  ///< brightest first; positions less world_offset_m
     glm::dvec3 world_offset_m{0};
     glm::dvec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value

@@ -10,6 +10,17 @@
 namespace patina {
 namespace {
 
+constexpr float kUsualRecord_m = 0.02f;
+
+/// With the records' size, where it was left open.
+ReflectanceStageSettings whole(const VoxelMap& map, ReflectanceStageSettings settings) {
+    const float half_block_m = map.settings().voxel_m * gpu::kBlockEdge / 2;
+    // The ratio decides: twice too large is as bad as half.
+    const bool too_large = half_block_m > std::sqrt(2.0f) * kUsualRecord_m;
+    if (settings.voxel_m == 0) settings.voxel_m = too_large ? half_block_m / 2 : half_block_m;
+    return settings;
+}
+
 ObservationMapSettings observations_of(const VoxelMap& map, const ReflectanceStageSettings& settings) {
     ObservationMapSettings observations;
     observations.voxel_m = settings.voxel_m;
@@ -33,8 +44,8 @@ RefinedPart part_around(const FrameContext& frame) {
 ReflectanceStage::ReflectanceStage(vulkan::Device& device, const VoxelMap& map,
                                    const ReflectanceStageSettings& settings)
     : map_(map),
-      settings_(settings),
-      observations_(device, observations_of(map, settings)),
+      settings_(whole(map, settings)),
+      observations_(device, observations_of(map, settings_)),
       materials_(device, settings.capacity_labels),
       state_(device, observations_),
       away_(device, settings.capacity_labels),

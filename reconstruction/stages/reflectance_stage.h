@@ -18,7 +18,9 @@ namespace patina {
 
 /// Size and settings of the reflectance beside the geometry.
 struct ReflectanceStageSettings {
-    float voxel_m = 0.02f;               ///< of observations: half or a quarter of a voxel block
+    /// Of observations: half or a quarter of a voxel block. 0: whichever is nearer to 2 cm, which is what settings() of
+    /// the stage then says.
+    float voxel_m = 0;
     uint32_t capacity_blocks = 65536;    ///< at first
     uint32_t capacity_records = 262144;  ///< at first
     uint32_t limit_blocks = 0;           ///< beyond which the pool does not grow; 0: as far as buffers and memory allow

@@ -138,7 +138,8 @@ TEST_F(BadInput, SynthOfWhatIsNotThere) {
 }
 
 TEST_F(BadInput, ReflectanceWithoutLights) {
-    EXPECT_THAT(expect_failure(patina({"run", sequence(), "--materials", "truth", "--out", out(), "--quiet"})),
+    EXPECT_THAT(expect_failure(patina(
+                    {"run", sequence(), "--materials", "truth", "--lighting", "none", "--out", out(), "--quiet"})),
                 AllOf(HasSubstr("reflectance needs lights: give lights "), HasSubstr("(--lights FILE, ")));
 }
 

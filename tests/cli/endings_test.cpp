@@ -57,8 +57,19 @@ class Endings : public RunFolderTest {
 TEST_F(Endings, WithoutLightsTheSummarySaysWhatToGive) {
     const Outcome outcome = run(sequence());
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("no materials"), HasSubstr("(--lights FILE, ")));
-    EXPECT_THAT(summary_of(out()).value("materials_missing", ""), HasSubstr("--lighting self"));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("a diffuse albedo alone"), HasSubstr("(--lights FILE, ")));
+    const nlohmann::json summary = summary_of(out());
+    EXPECT_THAT(summary.value("materials_missing", ""), HasSubstr("--lighting self"));
+    EXPECT_EQ(summary["lights"]["found_by"], "surroundings");
+    EXPECT_TRUE(fs::exists(out() / "materials.json"));
+    EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("a diffuse albedo alone"));
+}
+
+TEST_F(Endings, WithLightsSwitchedOffThereAreNoMaterials) {
+    const Outcome outcome = run(sequence(), {"--lighting", "none"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("no materials"));
+    EXPECT_FALSE(fs::exists(out() / "materials.json"));
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no materials"));
 }
 

@@ -131,7 +131,7 @@ TEST_F(FromSceneToScores, GeometryIsReconstructed) {
                                   "--no-lighting", "--quiet", "--out", recording});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
     // At this size, pixels are farther apart than the voxels would be by default.
-    run_quietly(recording, {"--dump-every", "1", "--set", "map.voxel_m=0.03"});
+    run_quietly(recording, {"--lighting", "none", "--dump-every", "1", "--set", "map.voxel_m=0.03"});
     EXPECT_THAT(patina({"eval", recording, out()}).out, HasSubstr("No surface was seen in at least 5 frames"));
     const Outcome outcome = patina({"eval", recording, out(), "--seen", "2"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

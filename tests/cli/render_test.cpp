@@ -126,13 +126,13 @@ TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
     EXPECT_THAT(complaint({"--out", views, "--extent", "0x3"}, 2), HasSubstr("WIDTHxHEIGHT"));
     EXPECT_THAT(complaint({"--out", views, "--exposure", "-1"}, 2), HasSubstr("--exposure"));
     EXPECT_THAT(complaint({"--out", views, "--show", "beauty"}, 2), HasSubstr("beauty"));
-    EXPECT_THAT(complaint({"--out", views, "--show", "kd"}),
+    EXPECT_THAT(complaint({"--out", views, "--show", "kd", "--lighting", "none"}),
                 AllOf(HasSubstr("--show kd needs lights: give lights "), HasSubstr("(--lights FILE, ")));
     EXPECT_THAT(expect_failure(patina({"render", beside("nowhere"), "--out", views, "--show", "kd"})),
                 HasSubstr("nowhere does not exist"))
         << "not that lights are missing";
-    EXPECT_THAT(complaint({"--out", views, "--relight", lights(1)}), HasSubstr("--relight needs lights: give"));
-    EXPECT_THAT(complaint({"--out", views, "--show", "kd", "--lighting", "none"}), HasSubstr("--show kd needs lights"));
+    EXPECT_THAT(complaint({"--out", views, "--relight", lights(1), "--lighting", "none"}),
+                HasSubstr("--relight needs lights: give"));
     EXPECT_THAT(complaint({"--out", views, "--show", "labels", "--labels", "off"}), HasSubstr("--labels is off"));
     EXPECT_THAT(complaint({"--out", views, "--poses", beside("none.txt")}), HasSubstr("none.txt"));
     write_text(beside("poses.txt"), "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n");
