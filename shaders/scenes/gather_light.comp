@@ -143,7 +143,8 @@ void add_light(Vertex vertices[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], uint in
             else
                 ways[k] = way_to_any_lamp(vertices[k], u.xyz);
             rays[k] = Ray(vertices[k].surface.lifted_m, ways[k].end_m - vertices[k].surface.lifted_m);
-            blocked[k] = ways[k].light == vec3(0.0);
+            // What has ended is no surface: its own reflectance may be no number.
+            blocked[k] = ended(vertices[k]) || ways[k].light == vec3(0.0);
         }
         if (kShadows != 0u || i == lamp_ways) find_occluded(rays, blocked);
         EACH_RAY sums[k] += blocked[k] ? vec3(0.0) : ways[k].light;
@@ -161,7 +162,7 @@ void go_on(inout Vertex vertices[BUNDLE_RAYS], uvec2 streams[BUNDLE_RAYS], uint 
         rays[k] = Ray(vertices[k].surface.lifted_m, draw_bounce(vertices[k], u.xy));
         densities[k] = bounce_density(vertices[k], rays[k].direction);
         const vec3 throughput = reflected(vertices[k], rays[k].direction) / densities[k];
-        vertices[k].throughput = densities[k] > 0.0 ? throughput : vec3(0.0);
+        vertices[k].throughput = densities[k] > 0.0 && !ended(vertices[k]) ? throughput : vec3(0.0);
         hits[k] = Hit(ended(vertices[k]) ? 0.0 : kMiss, kNothingHit);  // at distance 0 nothing is looked for
     }
     traverse(rays, false, hits);

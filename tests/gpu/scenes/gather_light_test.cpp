@@ -111,6 +111,23 @@ TEST_F(GatherLightTest, ConvexDiffuseObjectUnderAUniformSkyShowsKdTimesIt) {
     }
 }
 
+// A lamp reflects nothing: it shows what it emits, before whatever sky, and with whatever paths its neighbours take.
+TEST_F(GatherLightTest, LampsShowWhatTheyEmitBeforeASky) {
+    const double intensity = 2, radius_m = 0.3, emitted = intensity / (pi * radius_m * radius_m);
+    SyntheticScene scene = plane(diffuse(0.5), 0);
+    scene.environment = environment_of(Image<glm::vec3>({8, 4}, glm::vec3(0.8f)));
+    scene.lights = {{{0, 0, 1.5}, glm::dvec3(intensity), radius_m}};
+    const Traced got =
+        trace(scene, camera_of({32, 24}), RigidTransform(1.0), {.area_lights = true, .bounces = 2, .samples = 16});
+    int lamp = 0;
+    for (size_t i = 0; i < got.object_id.pixels().size(); ++i) {
+        if (got.object_id.pixels()[i] != 0 || !got.hit(i)) continue;
+        ASSERT_NEAR(got.radiance.pixels()[i].g, emitted, 1e-5 * emitted) << "pixel " << i;
+        ++lamp;
+    }
+    EXPECT_GT(lamp, 20);
+}
+
 // Within an enclosure that reflects everything, open to a uniform sky through one side, light has one radiance only:
 // what is missing after n bounces is what has not left yet.
 TEST_F(GatherLightTest, ManyBouncesMakeAWhiteBowlVanishBeforeAUniformSky) {
