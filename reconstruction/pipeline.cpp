@@ -98,11 +98,14 @@ void Pipeline::refine_all() {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     fuse_waiting();
     const double block_m = double{stages_.reflectance->observations().settings().block_m};
+    // Asking twice gives the same: more rays of the same map would change all a little.
+    const bool gathers = gathered_after_ != fusion_.frames();
+    gathered_after_ = fusion_.frames();
     for (const MapTile& tile : tiles_of_records(streaming_.observed_blocks(), block_m, settings().around_m)) {
         streaming_.require_blocks(tile.around);
         streaming_.require_records(tile.cube);
         graph::FrameGraph graph = runner_.begin();
-        stages_.reflectance->refine_all(graph, map().import(graph), tile.part);
+        stages_.reflectance->refine_all(graph, map().import(graph), gathers, tile.part);
         runner_.submit(std::move(graph));
     }
 }

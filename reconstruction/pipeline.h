@@ -133,6 +133,7 @@ class Pipeline {
     Streaming streaming_;
     PosedFusion fusion_;
     std::optional<TrackedFusion> tracked_;  ///< empty where poses are given
+    uint32_t gathered_after_ = 0;           ///< frames, when refine_all() gathered light last
 };
 
 }  // namespace patina

@@ -306,7 +306,7 @@ constexpr std::array kRows = {
     number<&Refine::gathered_rays>(
         "reflectance.gathered_rays", "rays", 0, 12,
         "Rays of each observed voxel whose shadows are found, by which it gathers the light "
-        "that walls and things around it send it, 16 times as many at the end; 0: lamps and the "
+        "that walls and things around it send it, 8 times as many at the end; 0: lamps and the "
         "ambient term are all."),
     number<&Refl::capacity_blocks>("reflectance.initial_blocks", "blocks", 1, kAnyCount,
                                    "Observed blocks that the pool has room for at first; it grows when needed."),

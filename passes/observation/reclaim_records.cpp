@@ -27,6 +27,7 @@ void add_reclaim_records(graph::FrameGraph& frame, const ObservationMap& map, Ob
     ids.free_blocks = reclaim.modify("FreeBlocks", ids.free_blocks);
     ids.free_records = reclaim.modify("FreeRecords", ids.free_records);
     state.status = reclaim.modify("Status", state.status);
+    state.gathered = reclaim.modify("Gathered", state.gathered);
     reclaim.dispatch_indirect(ids.block_arguments);
 
     add_refill_table(frame, {ids.keys, ids.blocks, ids.block_keys, ids.block_counters, ids.block_arguments},

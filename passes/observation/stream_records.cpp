@@ -76,6 +76,7 @@ LeavingRecords add_leave_records(graph::FrameGraph& frame, StreamedMap streamed,
     pack.push(gpu::CopyRecordsParams{map.grid().chunk_shift, most, 0, 0});
     ids.records = pack.modify("Records", ids.records);
     streamed.state.status = pack.modify("Status", streamed.state.status);
+    streamed.state.gathered = pack.modify("Gathered", streamed.state.gathered);
     streamed.away = pack.modify("Away", streamed.away);
     leaving.records = pack.create("Packed", most * sizeof(gpu::StreamedRecord));
     pack.dispatch_covering(most);

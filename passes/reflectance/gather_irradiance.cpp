@@ -16,7 +16,7 @@ void add_gather_irradiance(graph::FrameGraph& frame, ReflectanceFrame& reflectan
     pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf).read("Color", voxels.color);
     pass.specialise("kVoxelChunks", reflectance.voxel_map.chunks()).specialise("kRays", reflectance.gathered_rays);
     pass.push(reflectance.params);
-    reflectance.state.status = pass.modify("Status", reflectance.state.status);
+    reflectance.state.gathered = pass.modify("Gathered", reflectance.state.gathered);
     pass.dispatch_indirect(march.arguments);
 }
 

@@ -6,6 +6,7 @@
 #include "passes/reflectance/find_visibility.h"
 #include "passes/reflectance/gather_irradiance.h"
 #include "passes/reflectance/refine_albedo.h"
+#include "passes/reflectance/smooth_irradiance.h"
 
 namespace patina {
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr uint32_t kLeastUpdates = 8;  // in which the window goes through all, however few records there are
 constexpr uint32_t kEverything = UINT32_MAX;
-constexpr uint32_t kRaysAtTheEnd = 16;  // times as many, where records have but one turn
+constexpr uint32_t kRaysAtTheEnd = 8;  // times as many, where records have but one turn
 
 void check_budget(const char* name, uint32_t records) {
     if (records == 0) throw Error("reflectance.", name, " is 0, it must be at least 1");
@@ -53,7 +54,10 @@ RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels&
                                  {settings.first_marched_records, settings.marched_records},
                                  settings.gathered_rays};
     DueRecords due = add_find_due_records(frame, reflectance, changed);
-    if (settings.albedo && settings.gathered_rays > 0) add_gather_irradiance(frame, reflectance, due.march);
+    if (settings.albedo && settings.gathered_rays > 0) {
+        add_gather_irradiance(frame, reflectance, due.march);
+        add_smooth_irradiance(frame, reflectance, due.march);
+    }
     add_find_visibility(frame, reflectance, due);
     if (settings.albedo) add_refine_albedo(frame, reflectance, due.refine);
     ReflectanceState::keep(frame, state);

@@ -56,7 +56,7 @@ RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const Reflec
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings);
 
-/// The same for all records at once, as at the end of a reconstruction; they gather 16 times as many rays each.
+/// The same for all records at once, as at the end of a reconstruction; they gather 8 times as many rays each.
 RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings);

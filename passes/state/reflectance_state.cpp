@@ -5,6 +5,8 @@ namespace patina {
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
     : status_(device.create_buffer(
           {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
+      gathered_(
+          device.create_buffer({.name = "reflectance.gathered", .bytes = map.capacity_records() * sizeof(glm::uvec2)})),
       windows_(
           device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})),
       far_field_(
@@ -15,6 +17,7 @@ void ReflectanceState::reset(graph::FrameGraph& frame) {
     stamp_ = 0;
     ReflectanceStateIds ids = import(frame);
     ids.status = frame.fill(ids.status, 0);
+    ids.gathered = frame.fill(ids.gathered, 0);
     ids.windows = frame.fill(ids.windows, 0);
     ids.far_field = frame.fill(ids.far_field, 0);
     keep(frame, ids);
@@ -22,14 +25,16 @@ void ReflectanceState::reset(graph::FrameGraph& frame) {
 
 void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {
     enlargement.add(status_, records * sizeof(gpu::RecordStatus), {.fill = 0});
+    enlargement.add(gathered_, records * sizeof(glm::uvec2), {.fill = 0});
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {
-    return {frame.import(status_), frame.import(windows_), frame.import(far_field_)};
+    return {frame.import(status_), frame.import(gathered_), frame.import(windows_), frame.import(far_field_)};
 }
 
 void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids) {
     frame.keep(ids.status);
+    frame.keep(ids.gathered);
     frame.keep(ids.windows);
     frame.keep(ids.far_field);
 }
@@ -37,6 +42,7 @@ void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds&
 void ReflectanceState::visit(graph::StateVisitor& visitor) {
     visitor.value("reflectance.stamp", stamp_);
     visitor.buffer(status_);
+    visitor.buffer(gathered_);
     visitor.buffer(windows_);
     visitor.buffer(far_field_);
 }

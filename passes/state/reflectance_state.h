@@ -14,12 +14,13 @@ namespace patina {
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
     graph::BufferId status;     ///< gpu::RecordStatus per record
+    graph::BufferId gathered;   ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
     graph::BufferId windows;    ///< gpu::RefreshWindow[gpu::kWindows]
     graph::BufferId far_field;  ///< gpu::FarFieldTexel[gpu::kFarFieldEdge^2]
 };
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
-/// next, and the light that reaches them from what is around, 32 bytes a record; and light from far away. Lives as long
+/// next, and the light that reaches them from what is around, 40 bytes a record; and light from far away. Lives as long
 /// as the map.
 class ReflectanceState {
   public:
@@ -41,7 +42,7 @@ class ReflectanceState {
     uint32_t next_stamp() { return ++stamp_; }
 
   private:
-    vulkan::BufferRef status_, windows_, far_field_;
+    vulkan::BufferRef status_, gathered_, windows_, far_field_;
     uint32_t stamp_ = 0;
 };
 

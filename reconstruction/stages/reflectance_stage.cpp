@@ -143,15 +143,19 @@ SpecularInputs ReflectanceStage::add_specular_inputs(graph::FrameGraph& graph) {
             materials_.capacity()};
 }
 
-void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, const RefinedPart& part) {
+void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, bool gathers,
+                                  const RefinedPart& part) {
     ObservationMapIds records = observations_.import(graph);
-    add_refine_all_reflectance(graph, models(part), voxels, records, access_, settings_.refine);
+    ReflectanceSettings refine = settings_.refine;
+    if (!gathers) refine.gathered_rays = 0;
+    add_refine_all_reflectance(graph, models(part), voxels, records, access_, refine);
     ObservationMap::keep(graph, records);
 }
 
 void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient) {
     lights_.set(lights, ambient);
     settings_.refine.albedo = false;
+    settings_.refine.gathered_rays = 0;
 }
 
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,

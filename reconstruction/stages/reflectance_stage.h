@@ -104,11 +104,12 @@ class ReflectanceStage {
     /// What the frame's records and materials are so far.
     SpecularInputs add_specular_inputs(graph::FrameGraph& graph);
 
-    /// Brings every record of a part up to date.
-    void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, const RefinedPart& part = {});
+    /// Brings every record of a part up to date. `gathers`: they gather light once more, too, where settings say so.
+    void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, bool gathers, const RefinedPart& part = {});
 
     /// Puts the model under other lights than those it was observed under: refine_all() finds their visibility, and kd
-    /// stays. Nothing may be added after that.
+    /// stays. The light that records gathered is that of the former lamps, and counts no longer. Nothing may be added
+    /// after that.
     void relight(std::span<const Light> lights, glm::dvec3 ambient);
 
     /// What a camera sees that was cast into the model.

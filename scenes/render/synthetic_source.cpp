@@ -24,7 +24,7 @@ SequenceInfo info_of(const SyntheticScene& scene, uint32_t frames) {
     info.max_metres = scene.max_metres;
     info.has_poses = info.exposure_known = true;
     info.motion_blur = false;
-    info.indirect_light = scene.recording.render.bounces > 0 || scene.environment;
+    info.indirect_light = scene.recording.render.bounces > 0;
     return info;
 }
 

@@ -14,6 +14,7 @@ layout(std430, binding = 5) readonly buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 6) readonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 7) buffer Status { RecordStatus status[]; };
 layout(std430, binding = 8) buffer Away { SegmentAlbedo away[]; };
+layout(std430, binding = 10) writeonly buffer Gathered { uvec2 gathered[]; };
 layout(std430, binding = 9) writeonly buffer Packed { StreamedRecord packed_records[]; };
 layout(push_constant) uniform Push { CopyRecordsParams params; };
 #include "lib/records/away_albedo.glsl"
@@ -28,4 +29,5 @@ void main() {
     // As of a record that was given back.
     records[id] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
     status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
+    gathered[id] = uvec2(0u);
 }

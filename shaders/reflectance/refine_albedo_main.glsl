@@ -225,7 +225,7 @@ void main() {
     unpack_directions(record, normal);
     // Were it the uniform alone, lavapipe would compile the loop anew in every frame: 6 ms.
     const uint light_count = count > 0u ? header.count : 0u;
-    const GatheredLight gathered = unpack_gathered(status[record].gathered);
+    const GatheredLight gathered = unpack_gathered(status[record].incident);
     const Irradiance indirect = indirect_light(gathered);
     const Irradiance irradiance = add_lights(indirect, light_count, point_m, normal, ward_shape(alpha), specular,
                                              visibility[record], status[record].uncertain);

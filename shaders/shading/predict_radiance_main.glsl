@@ -140,8 +140,8 @@ vec3 indirect_light(bool marched) {
     if (kGathers == 0u || !marched) return header.ambient.rgb;
     vec3 sum = vec3(0.0);
     [[unroll]] for (int i = 0; i < 8; ++i) {
-        const uvec2 gathered = status[near_record[i]].gathered;
-        sum += share_of[i] > 0.0 ? share_of[i] * gathered_irradiance(unpack_gathered(gathered), header.ambient.rgb)
+        const uvec2 incident = status[near_record[i]].incident;
+        sum += share_of[i] > 0.0 ? share_of[i] * gathered_irradiance(unpack_gathered(incident), header.ambient.rgb)
                                  : vec3(0.0);
     }
     return sum;

@@ -81,7 +81,7 @@ void main() {
             for (uint other = 0u; other < count; ++other) rank += is_before(places[other], places[i]) ? 1u : 0u;
             const uint record = kept[label * kSegmentSamples + i];
             if (record_label(records[record]) == label && is_lit(record))
-                chosen = FitVoxel(record, blur2_of(records[record]), status[record].gathered);
+                chosen = FitVoxel(record, blur2_of(records[record]), status[record].incident);
         }
         voxels[segment * kSegmentSamples + rank] = chosen;
     }

@@ -81,7 +81,7 @@ void main() {
             rest += channels * (color - glossy);
             weight_sum += channels;
         }
-        const GatheredLight gathered = unpack_gathered(voxel.gathered);
+        const GatheredLight gathered = unpack_gathered(voxel.incident);
         const vec3 light = irradiance(gathered, point_m, normal, reached, count);
         diffuse += light * (rest - weight_sum * gathered_gloss(gathered, header.ambient.rgb, fit.ks_alpha.rgb));
         light2 += light * light * weight_sum;

@@ -36,7 +36,7 @@ struct RecordStatus {
     uint march_stamp;   // the update that listed it last for marching
     uint refine_stamp;  // for refinement
     uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
-    uvec2 gathered;     // light from what is around: lib/records/gathered_light.glsl; 0: none was gathered
+    uvec2 incident;     // light from what is around: lib/records/gathered_light.glsl; 0: none was gathered
 };
 
 // Which records had their turn in one update: those of blocks whose keys' hashes lie in a window of kWindowSteps steps.

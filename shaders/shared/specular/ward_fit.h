@@ -25,7 +25,7 @@ INTEROP_CONST uint kChooseSegmentsGroup = 128u;  // of the one workgroup that ch
 struct FitVoxel {
     uint record;     // kNoRecord: a gap
     float blur2;     // what blur adds to the alpha^2 of its highlights
-    uvec2 gathered;  // RecordStatus::gathered
+    uvec2 incident;  // RecordStatus::incident
 };
 
 // For one alpha, sums over observations without the mean of their voxel, weighted.

@@ -109,6 +109,7 @@ ReconstructionSettings small_settings_with_reflectance() {
     settings.fusion.truncation_m = 0.03f;
     settings.reflectance.emplace();
     settings.reflectance->voxel_m = 0.04f;
+    settings.reflectance->refine.gathered_rays = 0;  // walls do not light each other in what is rendered here
     settings.reflectance->capacity_blocks = 16384;
     settings.reflectance->capacity_records = 65536;
     settings.segmentation.emplace();

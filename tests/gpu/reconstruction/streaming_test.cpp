@@ -95,7 +95,8 @@ class StreamingTest : public GpuTest {
     static constexpr uint32_t kTightRecords = 11000;  // frames need about as many
 
     /// Of a camera that sees 1.6 m far. `resident`: voxel blocks, and observed voxels, that are to stay; 0: all.
-    static ReconstructionSettings settings(uint32_t resident) {
+    /// What records gather depends on their turns, and what is away has none.
+    static ReconstructionSettings settings(uint32_t resident, uint32_t gathered_rays = 0) {
         ReconstructionSettings settings;
         settings.map.voxel_m = 0.02f;
         settings.map.capacity_blocks = 512;
@@ -108,6 +109,7 @@ class StreamingTest : public GpuTest {
         settings.segmentation->sample_every = 8;
         settings.reflectance.emplace();
         settings.reflectance->voxel_m = 0.04f;
+        settings.reflectance->refine.gathered_rays = gathered_rays;
         settings.reflectance->resident_records = resident;
         settings.reflectance->capacity_blocks = 64;
         settings.reflectance->capacity_records = 512;
@@ -194,7 +196,7 @@ std::vector<std::array<Corner, 3>> corners_of(const Mesh& mesh, const MeshReflec
 TEST_F(StreamingTest, CellsAreTogetherTheWholeSurface) {
     std::vector<Mesh> kept;
     for (const uint32_t resident_blocks : {0u, 1u}) {
-        Pipeline pipeline(device(), settings(resident_blocks));
+        Pipeline pipeline(device(), settings(resident_blocks, 1));
         pipeline.set_lights(tour_.lights);
         add(pipeline, 0, tour_.frames.size());
         const std::vector<SegmentReflectance> segments = pipeline.segments();

@@ -37,6 +37,11 @@ glm::dvec3 unpack_certainty(uint32_t word) {
     return glm::dvec3(word & 1023, word >> 10 & 1023, word >> 20 & 1023) / 1023.0;
 }
 
+reference::GatheredRays unpack_rays(glm::uvec2 words) {
+    return {glm::dvec3(glm::unpackHalf2x16(words.x), glm::unpackHalf2x16(words.y).x), words.y >> 16 & 255,
+            words.y >> 24};
+}
+
 }  // namespace
 
 ReflectanceRig::ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
@@ -84,12 +89,14 @@ std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
     const ObservationMapIds ids = observation_map_.import(frame);
     const graph::Readback records_read = frame.read_back(ids.records), albedo_read = frame.read_back(ids.albedo),
                           visibility_read = frame.read_back(ids.visibility),
-                          status_read = frame.read_back(state_.import(frame).status);
+                          status_read = frame.read_back(state_.import(frame).status),
+                          gathered_read = frame.read_back(state_.import(frame).gathered);
     runner_.submit(std::move(frame));
     runner_.wait();
     const auto stored = records_read.as<gpu::VoxelRecord>();
     const auto albedo = albedo_read.as<glm::uvec2>(), visibility = visibility_read.as<glm::uvec2>();
     const auto status = status_read.as<gpu::RecordStatus>();
+    const auto gathered = gathered_read.as<glm::uvec2>();
     const auto bits = [](glm::uvec2 words) { return words.x | uint64_t{words.y} << 32; };
     std::vector<RefinedRecord> records;
     for (uint32_t i = 0; i < count; ++i) {
@@ -99,10 +106,8 @@ std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
         record.certainty = unpack_certainty(albedo[i].y);
         record.visible = bits(visibility[i]);
         record.uncertain = bits(status[i].uncertain);
-        const glm::uvec2 gathered = status[i].gathered;
-        record.gathered = glm::dvec3(glm::unpackHalf2x16(gathered.x), glm::unpackHalf2x16(gathered.y).x);
-        record.rays_met = gathered.y >> 16 & 255;
-        record.rays_missed = gathered.y >> 24;
+        record.gathered = unpack_rays(gathered[i]);
+        record.incident = unpack_rays(status[i].incident);
         records.push_back(record);
     }
     return records;

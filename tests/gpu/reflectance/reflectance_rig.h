@@ -5,6 +5,7 @@
 
 #include "engine/graph/runner.h"
 #include "passes/reflectance/reflectance.h"
+#include "tests/reference/reflectance/smooth_irradiance.h"
 
 namespace patina {
 
@@ -16,8 +17,8 @@ struct RefinedRecord {
     glm::dvec3 kd{0}, certainty{0};
     uint64_t visible = 0, uncertain = 0;  ///< a bit per light
     glm::uvec2 albedo{0};                 ///< as stored
-    glm::dvec3 gathered{0};               ///< mean radiance that its rays met
-    uint32_t rays_met = 0, rays_missed = 0;
+    reference::GatheredRays gathered;     ///< its own rays
+    reference::GatheredRays incident;     ///< and of the records beside it
 };
 
 /// Lights, materials and the refinement for maps that another rig fills, for tests.

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "passes/reflectance/find_due_records.h"
+
+namespace patina {
+
+/// Gives the records of `march` the light that refinement, the fit of gloss and re-rendering count with,
+/// RecordStatus::incident: the mean over what a record and those beside it gathered (gather_irradiance.h), up to 9 of
+/// one surface, weighted by their rays. Irradiance changes slowly over a surface, and the noise of few rays does not.
+void add_smooth_irradiance(graph::FrameGraph& frame, ReflectanceFrame& reflectance, const RecordList& march);
+
+}  // namespace patina
