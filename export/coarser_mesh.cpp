@@ -9,23 +9,25 @@
 
 namespace patina {
 
-CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, double part) {
+CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, const Coarseness& coarseness) {
     CoarserMesh result;
     if (mesh.triangles.empty()) return result;
     const size_t count = 3 * mesh.triangles.size(), vertices = mesh.positions_m.size();
     // A step of the shade becomes one of the surface.
     std::vector<glm::vec3> raised(vertices);
     for (size_t i = 0; i < vertices; ++i)
-        raised[i] = mesh.positions_m[i] + kShade_m * std::clamp(shades[i], 0.0f, 1.0f) * mesh.normals[i];
+        raised[i] = mesh.positions_m[i] + coarseness.white_m * std::clamp(shades[i], 0.0f, 1.0f) * mesh.normals[i];
     const float* positions = &raised.front().x;
     std::vector<std::array<uint32_t, 3>> triangles(mesh.triangles.size());
-    constexpr float kAnyError = 1;  // of the mesh's extent
+    const double scale_m = double{meshopt_simplifyScale(positions, vertices, sizeof(glm::vec3))};
+    const auto most_error = static_cast<float>(std::min(coarseness.error_m / std::max(scale_m, 1e-9), 1.0));
     float error = 0;
-    const size_t kept = meshopt_simplify(
-        triangles.front().data(), mesh.triangles.front().data(), count, positions, vertices, sizeof(glm::vec3),
-        static_cast<size_t>(static_cast<double>(count) * part), kAnyError, meshopt_SimplifyLockBorder, &error);
+    const size_t kept =
+        meshopt_simplify(triangles.front().data(), mesh.triangles.front().data(), count, positions, vertices,
+                         sizeof(glm::vec3), static_cast<size_t>(static_cast<double>(count) * coarseness.part),
+                         most_error, meshopt_SimplifyLockBorder, &error);
     triangles.resize(kept / 3);
-    result.error_m = double{error} * double{meshopt_simplifyScale(positions, vertices, sizeof(glm::vec3))};
+    result.error_m = double{error} * scale_m;
 
     result.vertices = number_used(triangles, vertices);
     for (const uint32_t vertex : result.vertices) {

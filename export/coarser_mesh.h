@@ -15,10 +15,16 @@ struct CoarserMesh {
     double error_m = 0;
 };
 
-/// Collapses edges, down to some part of the triangles at best (meshoptimizer). Vertices are some of those there were;
-/// those at open borders stay, so that meshes which meet there still do. `shades`, by vertex, 0 to 1, are kept as shape
-/// is: what they miss counts as kShade_m of height, in error_m too.
-inline constexpr float kShade_m = 0.1f;
-CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, double part);
+/// Where collapsing ends.
+struct Coarseness {
+    double part = 0;       ///< of the triangles that there were; fewer are not asked for
+    double error_m = 1e9;  ///< distance from the finer mesh, about
+    float white_m = 0.1f;  ///< what a step of the shade from 0 to 1 counts as height
+};
+
+/// Collapses edges until one of the limits is met, or nothing can go (meshoptimizer). Vertices are some of those there
+/// were; those at open borders stay, so that meshes which meet there still do. `shades`, by vertex, 0 to 1, are kept as
+/// shape is: what they miss counts as height, in error_m too.
+CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, const Coarseness& coarseness);
 
 }  // namespace patina

@@ -1,6 +1,10 @@
 #include "export/scene_files.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/core/version.h"
+#include "export/drawable_mesh.h"
 #include "export/materials.h"
 #include "export/photometric.h"
 #include "export/segment_names.h"
@@ -60,13 +64,36 @@ WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene
                            const SceneFileOptions& options, const std::string& version) {
     GlbWriter writer(file, options.glb);
     SurfaceSurvey survey;
-    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) {
-        writer.add(mesh, &reflectance);
-        survey.add(mesh, reflectance.labels);
-    });
     WrittenGlb written;
+    const auto write = [&](const TidyPiece& piece) { writer.add(piece.mesh, &piece.reflectance); };
+    std::vector<TidyPiece> held;
+    uint64_t triangles = 0, loose = 0, collapsed = 0;
+    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) {
+        check_mesh(file, mesh);
+        survey.add(mesh, reflectance.labels);
+        TidyPiece piece = tidied(mesh, reflectance, options.tidy);
+        loose += piece.loose_triangles;
+        collapsed += piece.collapsed_triangles;
+        triangles += piece.mesh.triangles.size();
+        if (options.tidy.most_triangles == 0) return write(piece);
+        held.push_back(std::move(piece));
+    });
+    const double part =
+        static_cast<double>(options.tidy.most_triangles) / static_cast<double>(std::max<uint64_t>(triangles, 1));
+    for (TidyPiece& piece : held) {
+        if (part >= 1) {
+            write(piece);
+            continue;
+        }
+        const TidyPiece fewer = reduced(piece.mesh, piece.reflectance, part);
+        collapsed += fewer.collapsed_triangles;
+        write(fewer);
+        piece = {};
+    }
     written.info = glb_info(scene, survey, options, version);
     written.summary = writer.finish(written.info);
+    written.summary.loose_triangles = loose;
+    written.summary.collapsed_triangles = collapsed;
     return written;
 }
 

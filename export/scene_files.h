@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "export/surface_survey.h"
+#include "export/tidy_surface.h"
 #include "export/write_glb.h"
 #include "patina/scene.h"
 
@@ -22,6 +23,7 @@ Lighting in_recorded_world(const Scene& scene);
 /// What a user may say about a scene's files.
 struct SceneFileOptions {
     GlbOptions glb{};
+    TidyOptions tidy{};              ///< of scene.glb; tiles have all that was reconstructed
     std::optional<glm::dvec3> up{};  ///< direction in the world, of any length but 0; empty: it is found
 };
 
@@ -40,8 +42,8 @@ struct WrittenGlb {
     GlbInfo info;
 };
 
-/// Writes scene.glb, with the surface in pieces in place of the scene's; `version`: of Patina. Throws Error as
-/// GlbWriter does.
+/// Writes scene.glb, with the surface in pieces in place of the scene's, tidied piece by piece; `version`: of Patina.
+/// With a limit of triangles, memory holds the tidied surface. Throws Error as GlbWriter does.
 WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
                            const SceneFileOptions& options, const std::string& version);
 

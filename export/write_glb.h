@@ -42,6 +42,8 @@ struct GlbSummary {
     uint64_t vertices = 0;              ///< written; those between segments or pieces once for each
     uint64_t triangles = 0;             ///< written
     uint64_t degenerate_triangles = 0;  ///< left out: a repeated vertex, or no area
+    uint64_t loose_triangles = 0;       ///< left out before, with stray parts (tidy_surface.h)
+    uint64_t collapsed_triangles = 0;   ///< gone before, where fewer show the same
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
 };

@@ -77,7 +77,7 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
     CoarserMesh coarse;
     const std::vector<float> shades = shades_of(mesh, reflectance);
     for (uint32_t level = 0; level < kLevels; ++level) {
-        if (level > 0) coarse = coarser(mesh, shades, std::pow(kPartOfLevel, level));
+        if (level > 0) coarse = coarser(mesh, shades, {.part = std::pow(kPartOfLevel, level)});
         levels[level] = {fmt::format("{}/{:06}.glb", level, cells_),
                          level > 0 ? std::max(coarse.error_m, levels[level - 1].error_m) : 0};
         write_(levels[level].name, [&](const std::filesystem::path& path) {

@@ -112,6 +112,23 @@ TEST_F(Endings, OptionsOfTheSceneReachIt) {
     };
     EXPECT_THAT(scene_with({}), Not(HasSubstr("_KD")));
     EXPECT_THAT(scene_with({"--raw-attributes", "--gltf-fresnel", "constant"}), HasSubstr("_KD"));
+    const auto triangles = [&](std::vector<std::string> more) {
+        scene_with(std::move(more));
+        return summary_of(out())["totals"];
+    };
+    const nlohmann::json all = triangles({"--surface-error", "0"}), usual = triangles({});
+    const auto sum = [](const nlohmann::json& totals) {
+        int sum = 0;
+        for (const char* name :
+             {"triangles", "degenerate triangles left out", "triangles of stray parts left out", "triangles collapsed"})
+            sum += totals.at(name).get<int>();
+        return sum;
+    };
+    EXPECT_EQ(sum(all), sum(usual)) << "none without a word";
+    EXPECT_EQ(all["triangles collapsed"], 0);
+    EXPECT_LT(usual["triangles"], all["triangles"].get<int>() / 2);
+    EXPECT_LT(triangles({"--surface-error", "20"})["triangles"], usual["triangles"]);
+    EXPECT_LT(triangles({"--triangles", "300"})["triangles"], usual["triangles"]);
 }
 
 TEST_F(Endings, AmbientLightFromAFileIsLight) {

@@ -55,6 +55,8 @@ class Golden : public RunFolderTest {
                                            "--out",
                                            out().string(),
                                            "--quiet",
+                                           "--surface-error",
+                                           "0",
                                            "--dump-every",
                                            std::to_string(std::stoi(run.shown_frame))};
         arguments.insert(arguments.end(), run.settings.begin(), run.settings.end());

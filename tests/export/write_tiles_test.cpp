@@ -28,7 +28,7 @@ using Points = std::set<glm::vec3, Less>;
 
 TEST(CoarserMesh, HasFewerTrianglesAndTheBordersOfBefore) {
     const Mesh fine = wavy_sheet(60, 50);
-    const CoarserMesh coarse = coarser(fine, std::vector<float>(fine.positions_m.size(), 0.3f), 0.125);
+    const CoarserMesh coarse = coarser(fine, std::vector<float>(fine.positions_m.size(), 0.3f), {.part = 0.125});
     const size_t borders = 2 * (59 + 49);
     EXPECT_LT(coarse.mesh.triangles.size(), fine.triangles.size() / 8 + borders);
     EXPECT_GT(coarse.mesh.triangles.size(), borders);
@@ -51,9 +51,9 @@ TEST(CoarserMesh, HasFewerTrianglesAndTheBordersOfBefore) {
 }
 
 TEST(CoarserMesh, OfNothingIsNothing) {
-    EXPECT_TRUE(coarser(Mesh{}, {}, 0.5).mesh.positions_m.empty());
+    EXPECT_TRUE(coarser(Mesh{}, {}, {.part = 0.5}).mesh.positions_m.empty());
     const Mesh one = wavy_sheet(2, 2);
-    EXPECT_EQ(coarser(one, std::vector<float>(4), 0.01).mesh.triangles.size(), 2u) << "all is border";
+    EXPECT_EQ(coarser(one, std::vector<float>(4), {.part = 0.01}).mesh.triangles.size(), 2u) << "all is border";
 }
 
 /// A flat sheet with a pattern has no shape to keep but that of its shades.
@@ -65,9 +65,9 @@ TEST(CoarserMesh, KeepsShadesAsShape) {
         flat.normals[i] = {0, 0, 1};
         checked.push_back((i % 60 / 15 + i / 60 / 15) % 2 == 0 ? 0.1f : 0.9f);
     }
-    EXPECT_LT(coarser(flat, plain, 1.0 / 64).error_m, 1e-6);
-    EXPECT_GT(coarser(flat, checked, 1.0 / 64).error_m, 0.001);
-    const CoarserMesh coarse = coarser(flat, checked, 1.0 / 8);
+    EXPECT_LT(coarser(flat, plain, {.part = 1.0 / 64}).error_m, 1e-6);
+    EXPECT_GT(coarser(flat, checked, {.part = 1.0 / 64}).error_m, 0.001);
+    const CoarserMesh coarse = coarser(flat, checked, {.part = 1.0 / 8});
     // Triangles that mix the shades are few: those along the edges of the pattern.
     size_t mixed = 0;
     float mixed_m2 = 0, all_m2 = 0;
@@ -95,7 +95,7 @@ TEST(CoarserMesh, MeshesThatMeetStillDo) {
         std::vector<float> shades;
         for (const glm::vec3& color : half.colors) shades.push_back(color.r);
         Points border;
-        for (const glm::vec3& position : coarser(half, shades, 1.0 / 64).mesh.positions_m) {
+        for (const glm::vec3& position : coarser(half, shades, {.part = 1.0 / 64}).mesh.positions_m) {
             if (position.x == whole.positions_m[20].x) border.insert(position);
         }
         return border;

@@ -67,6 +67,19 @@ void declare(CLI::App& command, RunArguments& arguments) {
     command.add_flag(
         "--raw-attributes", run.files.glb.raw_attributes,
         "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, _WARD_ALPHA");
+    command.add_option("--triangles", run.files.tidy.most_triangles,
+                       "Most triangles of scene.glb, about; by default as many as its shape and its patterns take");
+    command
+        .add_option_function<double>(
+            "--surface-error",
+            [&run](double error_mm) {
+                run.files.tidy.error_m = error_mm / 1000;
+                if (error_mm == 0) run.files.tidy.least_part_m = 0;
+            },
+            "About how far scene.glb's surface may be from what was reconstructed, in millimetres: 1 by default; 0 "
+            "keeps all triangles, those of stray parts too")
+        ->option_text("MM")
+        ->check(CLI::Range(0.0, 1000.0));
     command.add_option("--hold-out", run.hold_out,
                        "Keep every so many-th frame out of the model, and compare its colours in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");

@@ -127,6 +127,8 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
     summary.totals = {{"vertices", scene.vertices},
                       {"triangles", scene.triangles},
                       {"degenerate triangles left out", scene.degenerate_triangles},
+                      {"triangles of stray parts left out", scene.loose_triangles},
+                      {"triangles collapsed", scene.collapsed_triangles},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
     add_stream_totals(summary, pipeline);
