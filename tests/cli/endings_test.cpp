@@ -118,11 +118,11 @@ TEST_F(Endings, OptionsOfTheSceneReachIt) {
     };
     const nlohmann::json all = triangles({"--surface-error", "0"}), usual = triangles({});
     const auto sum = [](const nlohmann::json& totals) {
-        int sum = 0;
+        int triangles_in_all = 0;
         for (const char* name :
              {"triangles", "degenerate triangles left out", "triangles of stray parts left out", "triangles collapsed"})
-            sum += totals.at(name).get<int>();
-        return sum;
+            triangles_in_all += totals.at(name).get<int>();
+        return triangles_in_all;
     };
     EXPECT_EQ(sum(all), sum(usual)) << "none without a word";
     EXPECT_EQ(all["triangles collapsed"], 0);
