@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -148,7 +149,8 @@ TEST_F(MapFileTest, RefusesWhatIsNoMap) {
     EXPECT_THAT([&] { MapFile map(other); }, ThrowsMessage<Error>(HasSubstr("is no map of Patina's")));
     const std::filesystem::path newer = folder_ / "newer.sqlite";
     MapFile(newer).database().run("PRAGMA user_version = 99");
-    EXPECT_THAT([&] { MapFile map(newer); }, ThrowsMessage<Error>(HasSubstr("schema 99, this program reads " + std::to_string(MapFile::kSchema))));
+    EXPECT_THAT([&] { MapFile map(newer); },
+                ThrowsMessage<Error>(HasSubstr("schema 99, this program reads " + std::to_string(MapFile::kSchema))));
     EXPECT_THAT([&] { MapFile map(folder_ / "missing" / "map.sqlite"); },
                 ThrowsMessage<Error>(HasSubstr("it cannot be opened")));
 }
