@@ -5,9 +5,19 @@
 
 #include <meshoptimizer.h>
 
+#include "engine/core/luminance.h"
 #include "engine/core/used_vertices.h"
 
 namespace patina {
+
+std::vector<float> shades_of(const Mesh& mesh, const MeshReflectance& reflectance) {
+    std::vector<float> shades;
+    for (size_t i = 0; i < mesh.colors.size(); ++i) {
+        const bool known = !reflectance.kd.empty() && reflectance.kd[i].a > 0;
+        shades.push_back(luminance(known ? glm::vec3(reflectance.kd[i]) : mesh.colors[i]));
+    }
+    return shades;
+}
 
 CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, const Coarseness& coarseness) {
     CoarserMesh result;

@@ -22,6 +22,9 @@ struct Coarseness {
     float white_m = 0.1f;  ///< what a step of the shade from 0 to 1 counts as height
 };
 
+/// How bright a mesh's vertices look under light of one brightness: by their albedo, where it is known.
+std::vector<float> shades_of(const Mesh& mesh, const MeshReflectance& reflectance);
+
 /// Collapses edges until one of the limits is met, or nothing can go (meshoptimizer). Vertices are some of those there
 /// were; those at open borders stay, so that meshes which meet there still do. `shades`, by vertex, 0 to 1, are kept as
 /// shape is: what they miss counts as height, in error_m too.

@@ -14,6 +14,15 @@ struct MeshPart {
     std::vector<std::array<uint32_t, 3>> triangles;  ///< of the numbers within `vertices`
 };
 
+/// A part's vertices out of an array of the whole mesh.
+template <class Element>
+std::vector<Element> gathered(const std::vector<Element>& all, const MeshPart& part) {
+    std::vector<Element> elements;
+    elements.reserve(part.vertices.size());
+    for (const uint32_t vertex : part.vertices) elements.push_back(all[vertex]);
+    return elements;
+}
+
 /// The segment of a triangle: the label (by vertex) that two of its vertices agree on, else that of its first one.
 uint32_t label_of(const std::array<uint32_t, 3>& triangle, std::span<const uint32_t> labels);
 

@@ -70,6 +70,7 @@ WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene
     uint64_t triangles = 0, loose = 0, collapsed = 0;
     pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) {
         check_mesh(file, mesh);
+        if (!reflectance.kd.empty()) check_reflectance(file, mesh, reflectance);
         survey.add(mesh, reflectance.labels);
         TidyPiece piece = tidied(mesh, reflectance, options.tidy);
         loose += piece.loose_triangles;

@@ -6,7 +6,6 @@
 #include <span>
 #include <utility>
 
-#include "engine/core/luminance.h"
 #include "export/coarser_mesh.h"
 #include "export/mesh_parts.h"
 
@@ -90,28 +89,6 @@ std::vector<Triangle> firm_triangles(const Mesh& mesh, double least_part_m) {
     return firm;
 }
 
-/// A part as a mesh of its own, with its vertices' places in the whole.
-Mesh mesh_of(const Mesh& whole, const MeshPart& part) {
-    Mesh mesh;
-    for (const uint32_t vertex : part.vertices) {
-        mesh.positions_m.push_back(whole.positions_m[vertex]);
-        mesh.normals.push_back(whole.normals[vertex]);
-        mesh.colors.push_back(whole.colors[vertex]);
-    }
-    mesh.triangles = part.triangles;
-    return mesh;
-}
-
-/// How bright vertices look under light of one brightness: by their albedo, where it is known.
-std::vector<float> shades_of(const Mesh& whole, const MeshReflectance& reflectance, const MeshPart& part) {
-    std::vector<float> shades;
-    for (const uint32_t vertex : part.vertices) {
-        const bool known = !reflectance.kd.empty() && reflectance.kd[vertex].a > 0;
-        shades.push_back(luminance(known ? glm::vec3(reflectance.kd[vertex]) : whole.colors[vertex]));
-    }
-    return shades;
-}
-
 void append(TidyPiece& piece, CoarserMesh&& part, const MeshPart& of, const MeshReflectance& reflectance) {
     const auto first = static_cast<uint32_t>(piece.mesh.positions_m.size());
     const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -127,35 +104,40 @@ void append(TidyPiece& piece, CoarserMesh&& part, const MeshPart& of, const Mesh
     }
 }
 
-TidyPiece by_segments(const Mesh& mesh, const MeshReflectance& reflectance, const Coarseness& coarseness) {
+/// Of the given triangles of a mesh.
+TidyPiece by_segments(const Mesh& mesh, std::span<const Triangle> triangles, const MeshReflectance& reflectance,
+                      const Coarseness& coarseness) {
     TidyPiece piece;
     piece.reflectance.segments = reflectance.segments;
+    const std::vector<float> shades = shades_of(mesh, reflectance);
     for (const MeshPart& part :
-         parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), mesh.triangles, reflectance.labels))
-        append(piece, coarser(mesh_of(mesh, part), shades_of(mesh, reflectance, part), coarseness), part, reflectance);
-    piece.collapsed_triangles = mesh.triangles.size() - piece.mesh.triangles.size();
+         parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), triangles, reflectance.labels)) {
+        const Mesh alone{gathered(mesh.positions_m, part), gathered(mesh.normals, part), gathered(mesh.colors, part),
+                         part.triangles};
+        append(piece, coarser(alone, gathered(shades, part), coarseness), part, reflectance);
+    }
+    piece.collapsed_triangles = triangles.size() - piece.mesh.triangles.size();
     return piece;
 }
 
 }  // namespace
 
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options) {
-    Mesh firm = mesh;
-    firm.triangles = firm_triangles(mesh, options.least_part_m);
-    const uint64_t loose = mesh.triangles.size() - firm.triangles.size();
+    std::vector<Triangle> firm = firm_triangles(mesh, options.least_part_m);
+    const uint64_t loose = mesh.triangles.size() - firm.size();
     TidyPiece piece;
     if (options.error_m > 0) {
-        piece = by_segments(firm, reflectance, {.part = 0, .error_m = options.error_m, .white_m = kHeightOfWhite_m});
+        piece = by_segments(mesh, firm, reflectance, {.error_m = options.error_m, .white_m = kHeightOfWhite_m});
     } else {
-        piece.mesh = std::move(firm);
-        piece.reflectance = reflectance;
+        piece = {mesh, reflectance};
+        piece.mesh.triangles = std::move(firm);
     }
     piece.loose_triangles = loose;
     return piece;
 }
 
 TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part) {
-    return by_segments(mesh, reflectance, {.part = part, .white_m = kHeightOfWhite_m});
+    return by_segments(mesh, mesh.triangles, reflectance, {.part = part, .white_m = kHeightOfWhite_m});
 }
 
 }  // namespace patina

@@ -56,15 +56,6 @@ Value photometric_extras(double candela_per_intensity) {
     return Value(Value::Object{{"photometric", Value(std::move(photometric))}});
 }
 
-/// A part's vertices out of an array of the whole mesh.
-template <class Element>
-std::vector<Element> gathered(const std::vector<Element>& all, const MeshPart& part) {
-    std::vector<Element> elements;
-    elements.reserve(part.vertices.size());
-    for (const uint32_t vertex : part.vertices) elements.push_back(all[vertex]);
-    return elements;
-}
-
 /// A mesh with what it reflects, and its normals.
 struct Piece {
     const Mesh& mesh;

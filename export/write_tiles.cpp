@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/core/luminance.h"
 #include "export/coarser_mesh.h"
 #include "sensor/files/text_file.h"
 
@@ -40,17 +39,6 @@ Box box_of(const Mesh& mesh, const Upright& upright) {
 nlohmann::ordered_json volume_of(const Box& box) {
     const glm::dvec3 center = (box.low + box.high) / 2.0, half = (box.high - box.low) / 2.0;
     return {{"box", {center.x, center.y, center.z, half.x, 0, 0, 0, half.y, 0, 0, 0, half.z}}};
-}
-
-/// How bright vertices look under light of one brightness: by their albedo, where it is known.
-std::vector<float> shades_of(const Mesh& mesh, const MeshReflectance& reflectance) {
-    std::vector<float> shades;
-    for (size_t i = 0; i < mesh.colors.size(); ++i) {
-        const bool known = !reflectance.kd.empty() && reflectance.kd[i].a > 0;
-        const glm::vec3 color = known ? glm::vec3(reflectance.kd[i]) : mesh.colors[i];
-        shades.push_back(luminance(color));
-    }
-    return shades;
 }
 
 MeshReflectance of_vertices(const MeshReflectance& reflectance, const std::vector<uint32_t>& vertices) {

@@ -1,6 +1,7 @@
 #include "export/tidy_surface.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <tuple>
@@ -39,6 +40,17 @@ double area_m2(const Mesh& mesh) {
         area += 0.5 * glm::length(glm::cross(b - a, c - a));
     }
     return area;
+}
+
+/// Two segments of one albedo: label 1 left of `border` (a column, by row) and label 2 right of it.
+MeshReflectance two_segments(const Mesh& sheet, uint32_t width, const std::function<uint32_t(uint32_t)>& border) {
+    MeshReflectance reflectance;
+    reflectance.segments.resize(3);
+    for (uint32_t i = 0; i < sheet.positions_m.size(); ++i) {
+        reflectance.kd.emplace_back(0.3f, 0.3f, 0.3f, 1.0f);
+        reflectance.labels.push_back(i % width < border(i / width) ? 1u : 2u);
+    }
+    return reflectance;
 }
 
 TEST(TidySurface, AFlatSheetKeepsItsBorderAndItsArea) {
@@ -122,12 +134,7 @@ struct Less {
 
 TEST(TidySurface, SegmentsMeetWithoutGapsAndKeepTheirLabels) {
     const Mesh sheet = wavy_sheet(60, 40);
-    MeshReflectance reflectance;
-    reflectance.segments.resize(3);
-    for (size_t i = 0; i < sheet.positions_m.size(); ++i) {
-        reflectance.kd.emplace_back(0.3f, 0.3f, 0.3f, 1.0f);
-        reflectance.labels.push_back(i % 60 < 25 + i / 60 % 5 ? 1u : 2u);
-    }
+    const MeshReflectance reflectance = two_segments(sheet, 60, [](uint32_t row) { return 25 + row % 5; });
     TidyOptions options;
     options.error_m = 0.005;
     const TidyPiece piece = tidied(sheet, reflectance, options);
@@ -158,12 +165,7 @@ TEST(TidySurface, SegmentsMeetWithoutGapsAndKeepTheirLabels) {
 
 TEST(TidySurface, ALimitOfTrianglesIsMetByAllSegmentsAlike) {
     const Mesh sheet = wavy_sheet(200, 200);
-    MeshReflectance reflectance;
-    reflectance.segments.resize(3);
-    for (size_t i = 0; i < sheet.positions_m.size(); ++i) {
-        reflectance.kd.emplace_back(0.3f, 0.3f, 0.3f, 1.0f);
-        reflectance.labels.push_back(i % 200 < 100 ? 1u : 2u);
-    }
+    const MeshReflectance reflectance = two_segments(sheet, 200, [](uint32_t) { return 100u; });
     const TidyPiece piece = reduced(sheet, reflectance, 0.1);
     EXPECT_LT(piece.mesh.triangles.size(), sheet.triangles.size() / 10 + 10);
     EXPECT_GT(piece.mesh.triangles.size(), sheet.triangles.size() / 12);

@@ -22,9 +22,7 @@ vec4 surface_color(vec3 at_vox, vec3 direction) {
         const ivec3 voxel = ivec3(floor(at_vox + step_vox * direction));
         const uint block = find_block(grid, voxel >> 3);
         if (block == kNoBlock) continue;
-        const ivec3 within = voxel & 7;
-        const uint index =
-            index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+        const uint index = index_of_voxel(block, voxel);
         uint color;
 #define LOAD_COLOR(C) color = COLOR(C, index)
         WITH_CHUNK(grid.chunk_shift, block, LOAD_COLOR)

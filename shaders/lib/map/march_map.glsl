@@ -17,11 +17,15 @@ const float kUnknownStepVox = 2.0;  // through unseen voxels of a block
 // A copy of the voxel map's, whose loads software devices do not hoist out of loops.
 VoxelGrid grid;
 
-// The voxel at voxel coordinates; `block` is its block.
-uint load_voxel(uint block, ivec3 coordinates) {
+// The place within its chunk of the voxel at voxel coordinates; `block` is its block.
+uint index_of_voxel(uint block, ivec3 coordinates) {
     const ivec3 within = coordinates & 7;
-    const uint index =
-        index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+    return index_in_chunk(grid.chunk_shift, block) * kBlockVoxels + uint(within.z << 6 | within.y << 3 | within.x);
+}
+
+// The voxel there.
+uint load_voxel(uint block, ivec3 coordinates) {
+    const uint index = index_of_voxel(block, coordinates);
     uint voxel;
 #define LOAD_VOXEL(C) voxel = VOXEL(C, index)
     WITH_CHUNK(grid.chunk_shift, block, LOAD_VOXEL)
@@ -43,6 +47,26 @@ float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
     return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
 }
 
+vec3 inverse_of(vec3 direction) { return 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))); }
+
+// What a ray finds at a point of its way.
+struct Look {
+    float here_vox;  // how far the surface is; 1e6 in a voxel that was not observed
+    float step_vox;  // how far on nothing can be missed
+};
+
+Look look_at(vec3 at, vec3 inverse_direction) {
+    const ivec3 voxel = ivec3(floor(at));
+    const uint block = find_block(grid, voxel >> 3);
+    const bool have = block != kNoBlock;
+    const uint loaded = load_voxel(have ? block : 0u, voxel);
+    const uint found = have ? loaded : 0u;
+    const bool seen = voxel_weight(found) > 0u;
+    const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
+    const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
+    return Look(here, have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction));
+}
+
 struct Passage {
     bool open;
     bool uncertain;  // it passes a surface, on either side, so near that another point of the voxel may see otherwise
@@ -50,23 +74,15 @@ struct Passage {
 
 // Along a ray from `gone` to `reach` (voxels), which begins `lift` above a surface and leaves it with `slope`.
 Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, float lift, float graze_vox) {
-    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    const vec3 inverse_direction = inverse_of(direction);
     float deepest = 1e6;
     bool grazed = false;
     for (uint i = 0u; i < kMaxSteps && gone < reach && deepest > -graze_vox; ++i) {
-        const vec3 at = start + direction * gone;
-        const ivec3 voxel = ivec3(floor(at));
-        const uint block = find_block(grid, voxel >> 3);
-        const bool have = block != kNoBlock;
-        const uint loaded = load_voxel(have ? block : 0u, voxel);
-        const uint found = have ? loaded : 0u;
-        const bool seen = voxel_weight(found) > 0u;
-        const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
-        deepest = min(deepest, here);
+        const Look look = look_at(start + direction * gone, inverse_direction);
+        deepest = min(deepest, look.here_vox);
         // The surface itself is this far.
-        grazed = grazed || here < min(graze_vox, 0.5 * (lift + gone * slope));
-        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
-        gone += have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
+        grazed = grazed || look.here_vox < min(graze_vox, 0.5 * (lift + gone * slope));
+        gone += look.step_vox;
     }
     const bool open = deepest > -kInsideVox;
     return Passage(open, grazed && deepest > -graze_vox);
@@ -74,20 +90,12 @@ Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, 
 
 // Where a ray first meets a surface on its way from `gone` to `reach`, from its start (voxels); -1 where it meets none.
 float find_hit(vec3 start, vec3 direction, float gone, float reach) {
-    const vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
+    const vec3 inverse_direction = inverse_of(direction);
     bool met = false;
     for (uint i = 0u; i < kMaxSteps && gone < reach && !met; ++i) {
-        const vec3 at = start + direction * gone;
-        const ivec3 voxel = ivec3(floor(at));
-        const uint block = find_block(grid, voxel >> 3);
-        const bool have = block != kNoBlock;
-        const uint loaded = load_voxel(have ? block : 0u, voxel);
-        const uint found = have ? loaded : 0u;
-        const bool seen = voxel_weight(found) > 0u;
-        const float here = voxel_sdf(found) * kSdfRangeVox;
-        met = seen && here < kMetVox;
-        const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
-        gone += met ? 0.0 : have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction);
+        const Look look = look_at(start + direction * gone, inverse_direction);
+        met = look.here_vox < kMetVox;
+        gone += met ? 0.0 : look.step_vox;
     }
     return met ? gone : -1.0;
 }

@@ -82,6 +82,20 @@ bool on_wall(const RefinedRecord& record) {
            apart[(axis + 1) % 3] > 0.06 && apart[(axis + 2) % 3] > 0.06;
 }
 
+/// What records in the middle of the wall x = kHalf_m gathered, on average.
+double red_opposite(const std::vector<RefinedRecord>& records) {
+    double sum = 0;
+    uint32_t count = 0;
+    for (const RefinedRecord& record : records) {
+        const glm::dvec3 apart = record.point_m - glm::dvec3(kHalf_m, 0, 0);
+        if (record.observations == 0 || glm::length(apart) > 0.06) continue;
+        sum += record.gathered.mean.r;
+        ++count;
+    }
+    EXPECT_GT(count, 10u);
+    return sum / count;
+}
+
 TEST_F(GatherIrradianceTest, AFurnaceSendsItsRadianceToEveryPoint) {
     const auto model = fused(grey, kAll);
     ReflectanceSettings settings;
@@ -162,17 +176,8 @@ TEST_F(GatherIrradianceTest, OppositeTheRedWallAFifthOfTheLightIsItsOwn) {
     ReflectanceSettings settings;
     settings.gathered_rays = kRays / kRaysAtTheEnd;
     model->reflectance.update_all(settings);
-    double sum = 0;
-    uint32_t count = 0;
-    for (const RefinedRecord& record : model->reflectance.records()) {
-        const glm::dvec3 apart = record.point_m - glm::dvec3(kHalf_m, 0, 0);
-        if (record.observations == 0 || glm::length(apart) > 0.06) continue;
-        sum += record.gathered.mean.r;
-        ++count;
-    }
-    ASSERT_GT(count, 10u);
     // From the middle of a wall the opposite one of a cube has a form factor of 0.239.
-    EXPECT_NEAR(sum / count, 0.1 + 0.239 * 0.5, 0.01);
+    EXPECT_NEAR(red_opposite(model->reflectance.records()), 0.1 + 0.239 * 0.5, 0.01);
 }
 
 TEST_F(GatherIrradianceTest, WhereNothingWasSeenTheAmbientLightArrives) {
@@ -202,16 +207,7 @@ TEST_F(GatherIrradianceTest, ALampSendsNothingASecondTime) {
     model->reflectance.lights.set(
         std::vector<Light>{{{-kHalf_m, 0, 0}, {1e-6f, 1e-6f, 1e-6f}, static_cast<float>(kHalf_m)}});
     model->reflectance.update_all(settings);
-    double sum = 0;
-    uint32_t count = 0;
-    for (const RefinedRecord& record : model->reflectance.records()) {
-        const glm::dvec3 apart = record.point_m - glm::dvec3(kHalf_m, 0, 0);
-        if (record.observations == 0 || glm::length(apart) > 0.06) continue;
-        sum += record.gathered.mean.r;
-        ++count;
-    }
-    ASSERT_GT(count, 10u);
-    EXPECT_NEAR(sum / count, 0.2 * (1 - 0.239), 0.02);
+    EXPECT_NEAR(red_opposite(model->reflectance.records()), 0.2 * (1 - 0.239), 0.02);
 }
 
 TEST_F(GatherIrradianceTest, RaysAddUpToASlidingMean) {

@@ -2,6 +2,7 @@
 
 #include "tests/reference/reflectance/refine_albedo.h"
 
+#include <numbers>
 #include <random>
 
 #include <glm/gtc/packing.hpp>
@@ -85,13 +86,15 @@ class RefineAlbedoTest : public GpuTest {
     RefinedRecord refine(const FilledRecord& record) { return refine(std::vector{record}).front(); }
 
     /// What the reference makes of a record, whose colours it takes as they are stored.
-    reference::RefinedAlbedo expected(const FilledRecord& record, const Ward& material) const {
+    reference::RefinedAlbedo expected(const FilledRecord& record, const Ward& material,
+                                      const reference::GatheredRays& gathered = {}) const {
         std::vector<reference::SeenColor> observations;
         for (const FilledObservation& seen : record.observations) {
             observations.push_back({glm::dvec3(seen.to_viewer),
                                     glm::dvec3(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(seen.rgb))), seen.clipped});
         }
-        return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material);
+        return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material,
+                                        gathered);
     }
 
     std::mt19937 random_{1};
@@ -191,6 +194,90 @@ TEST_F(RefineAlbedoTest, WhatReceivesNoLightIsUnknown) {
     EXPECT_GT(refined.certainty.r, 0.5);
     EXPECT_EQ(refined.certainty.g, 0);
     EXPECT_EQ(refined.certainty.b, 0);
+}
+
+// Light from all around takes the ambient term's place where rays met something, and adds to the lamps'.
+TEST_F(RefineAlbedoTest, GatheredLightCountsBesideTheLamps) {
+    const Ward material{{0.4, 0.3, 0.2}, {}, 1};
+    const glm::dvec3 around(0.5, 0.25, 0.125), ambient = ambient_;
+    for (const uint32_t missed : {0u, 32u, 64u}) {
+        const double known = (64 - missed) / 64.0;
+        ambient_ = known * around + (1 - known) * ambient;
+        FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+        observe(record, material);
+        rig_.set_incident(1, {around, 64 - missed, missed});
+        EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 1.5 * kPacking) << missed;
+    }
+}
+
+TEST_F(RefineAlbedoTest, WhereNoAmbientLightIsKnownUnknownDirectionsAreAsBrightAsTheRest) {
+    const Ward material{{0.4, 0.3, 0.2}, {}, 1};
+    ambient_ = glm::dvec3(0.5, 0.25, 0.125);
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material);
+    rig_.lights.set(kLights, glm::dvec3(0));
+    rig_.set_incident(1, {ambient_, 40, 24});
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 1.5 * kPacking);
+}
+
+// A gloss reflects ks of what arrives from all around, as much to every viewer.
+TEST_F(RefineAlbedoTest, ReflectedSurroundingsAreNotDiffuse) {
+    const Ward material{{0.2, 0.3, 0.4}, {0.3, 0.2, 0.1}, 0.3};
+    const glm::dvec3 around(0.5, 0.25, 0.25);
+    ambient_ = around;
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 5, {}};
+    observe(record, material);
+    for (FilledObservation& seen : record.observations) seen.rgb += glm::vec3(material.ks * around);
+    rig_.materials.set(5, glm::vec3(material.ks), static_cast<float>(material.alpha));
+    rig_.set_incident(1, {around, 64, 0});
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking);
+}
+
+// Colours that scatter by more than their noise, 0.002 and 2 %, have 1.5 times the rest of their scatter reflected.
+TEST_F(RefineAlbedoTest, WhatScattersWithTheViewIsReflectedWhereLightWasGathered) {
+    const Ward material{glm::dvec3(0.4), {}, 1};
+    ambient_ = glm::dvec3(0.5);
+    rig_.lights.set({}, ambient_);
+    for (const double scatter : {0.01, 0.2, 0.4}) {
+        FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+        for (int k = 0; k < 20; ++k) {
+            // All from one angle, so that all count alike.
+            const double turn = 2 * std::numbers::pi * k / 20, bright = k % 2 == 0 ? 1 + scatter : 1 - scatter;
+            const glm::vec3 direction(0.6 * std::cos(turn), -0.8, 0.6 * std::sin(turn));
+            record.observations.push_back({direction, glm::vec3(0.2 * bright), {}});
+        }
+        rig_.set_incident(1, {});
+        EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking)
+            << "the mean, without gathered light";
+        rig_.set_incident(1, {ambient_, 64, 0});
+        const double reflected = 1.5 * std::max(scatter - 0.02 - 0.002 / 0.2, 0.0);
+        EXPECT_LT(max_of(glm::abs(refine(record).kd - (1 - reflected) * material.kd)), 2 * kPacking) << scatter;
+    }
+}
+
+TEST_F(RefineAlbedoTest, GatheredLightAgreesWithTheReference) {
+    std::uniform_real_distribution<float> share(0, 1);
+    const Ward material{{0.3, 0.4, 0.2}, {0.2, 0.1, 0.15}, 0.3};
+    rig_.materials.set(5, glm::vec3(material.ks), static_cast<float>(material.alpha));
+    const reference::GatheredRays around{glm::dvec3(0.25, 0.5, 0.125), 45, 19};
+    std::vector<FilledRecord> records;
+    for (int i = 0; i < 200; ++i) {
+        records.push_back(random_record(5));
+        observe(records.back(), material);
+        for (FilledObservation& seen : records.back().observations) seen.rgb *= 0.8f + 0.4f * share(random_);
+    }
+    rig_.set_incident(200, around);
+    const std::vector<RefinedRecord> refined = refine(records);
+    int diffuse = 0;
+    for (size_t i = 0; i < records.size(); ++i) {
+        const reference::RefinedAlbedo expected = this->expected(records[i], material, around);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(refined[i].kd[c], expected.kd[c], kPacking + 0.01 * expected.kd[c]) << i << ' ' << c;
+            ASSERT_NEAR(refined[i].certainty[c], expected.certainty[c], 0.02) << i << ' ' << c;
+        }
+        diffuse += max_of(expected.kd) > 0.05;
+    }
+    EXPECT_GT(diffuse, 100);
 }
 
 TEST_F(RefineAlbedoTest, OneObservationIsEnough) {

@@ -57,6 +57,23 @@ ReflectanceRig::ReflectanceRig(vulkan::Device& device, graph::Runner& runner, co
     runner_.submit(std::move(frame));
 }
 
+glm::uvec2 pack_rays(const reference::GatheredRays& rays) {
+    const glm::vec3 mean(rays.mean);
+    return {glm::packHalf2x16({mean.r, mean.g}), glm::packHalf2x16({mean.b, 0}) | rays.met << 16 | rays.missed << 24};
+}
+
+void ReflectanceRig::set_incident(uint32_t count, const reference::GatheredRays& rays) {
+    gpu::RecordStatus lit{};
+    lit.incident = pack_rays(rays);
+    const std::vector<gpu::RecordStatus> status(count, lit);
+    graph::FrameGraph frame = runner_.begin();
+    ReflectanceStateIds state = state_.import(frame);
+    state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
+    ReflectanceState::keep(frame, state);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+}
+
 ReflectanceRig::Counts ReflectanceRig::submit(graph::FrameGraph frame, const ObservationMapIds& ids,
                                               const RefinedReflectance& refined) {
     ObservationMap::keep(frame, ids);

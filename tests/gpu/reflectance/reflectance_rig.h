@@ -21,11 +21,17 @@ struct RefinedRecord {
     reference::GatheredRays incident;     ///< and of the records beside it
 };
 
+/// As RecordStatus::incident holds them.
+glm::uvec2 pack_rays(const reference::GatheredRays& rays);
+
 /// Lights, materials and the refinement for maps that another rig fills, for tests.
 class ReflectanceRig {
   public:
     ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
                    const ObservationMap& observation_map);
+
+    /// Gives the first `count` records this light from all around, and nothing else.
+    void set_incident(uint32_t count, const reference::GatheredRays& rays);
 
     struct Counts {
         uint32_t marched = 0, refined = 0;

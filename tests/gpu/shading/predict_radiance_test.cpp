@@ -98,6 +98,24 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
     }
 }
 
+// What records gathered takes the ambient term's place, and a gloss reflects ks of it.
+TEST_F(PredictRadiance, GatheredLightIsReceivedAndReflected) {
+    ShadingRig rig = this->rig(wall_, 0.02f);
+    rig.lights.set({}, kAmbient);
+    const Ward gloss{{0.5, 0.25, 0.125}, glm::dvec3(0.125), 0.25};
+    rig.materials.set(3, glm::vec3(gloss.ks), static_cast<float>(gloss.alpha));
+    const glm::dvec3 around(0.5, 0.25, 0.75);
+    rig.incident = reference::GatheredRays{around, 48, 16};
+    rig.paint([&](const RecordPlace&) { return painted(gloss.kd, 3); });
+    const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+    const glm::dvec3 received = 0.75 * around + 0.25 * kAmbient, expected = (gloss.kd + gloss.ks) * received;
+    const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+        ASSERT_LT(off(view.rgb.at(x, y), expected), kHalf * max_of(expected)) << x << ' ' << y;
+        ASSERT_LT(off(view.light.at(x, y), received), kHalf * max_of(received));
+    });
+    EXPECT_GT(hits, 0u);
+}
+
 TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {
     const auto ramp = [](glm::dvec3 p) {
         return glm::dvec3(0.5 + 0.5 * p.x, 0.4 - 0.4 * p.y, 0.5 + 0.3 * (p.x + p.y));

@@ -7,6 +7,7 @@
 #include "passes/shading/pack_records.h"
 #include "passes/shading/predict_radiance.h"
 #include "passes/shading/sample_reflectance.h"
+#include "tests/gpu/reflectance/reflectance_rig.h"
 
 namespace patina {
 
@@ -121,7 +122,8 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
         const uint32_t kd = glm::packF3x9_E1x5(glm::vec3(painted.kd));
         stored.albedo.emplace_back(kd, pack_certainty(painted.certainty));
         stored.visibility.emplace_back(painted.reached & 0xffffffff, painted.reached >> 32);
-        stored.status.push_back({painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, {0, 0}});
+        stored.status.push_back(
+            {painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, incident ? pack_rays(*incident) : glm::uvec2(0)});
         record.label = painted.label;
         painted.kd = glm::dvec3(glm::unpackF3x9_E1x5(kd));
         painted_[voxel] = painted;
@@ -147,7 +149,8 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         materials.capacity(),
         static_cast<uint32_t>(lights.point_lights().size()),
         shadows,
-        preferred_map_access(runner_.device().caps(), map)};
+        preferred_map_access(runner_.device().caps(), map),
+        incident.has_value()};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),

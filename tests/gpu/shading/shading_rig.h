@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "passes/state/lights.h"
@@ -9,6 +10,7 @@
 #include "shared/reflectance/reflectance.h"
 #include "shared/shading/sample_reflectance.h"
 #include "tests/gpu/observation/observation_rig.h"
+#include "tests/reference/reflectance/smooth_irradiance.h"
 #include "tests/reference/shading/predict_radiance.h"
 
 namespace patina {
@@ -55,6 +57,7 @@ class ShadingRig {
 
     Lights lights;
     SegmentMaterials materials;
+    std::optional<reference::GatheredRays> incident;  ///< light from all around of every record that is painted
 
   private:
     struct Stored {

@@ -23,8 +23,13 @@ struct Rest {
     double whole() const { return std::min({share.r, share.g, share.b}); }
 };
 
+/// Where brightnesses lie, and their weighted mean distance from there.
+struct Middle {
+    double mean = 0, spread = 0;
+};
+
 /// Reweights three times, at first about the plain mean with a scale from the plain mean size.
-void reweight(std::vector<Rest>& rests, double noise) {
+Middle reweight(std::vector<Rest>& rests, double noise) {
     double mean = 0, scale = 0;
     for (const Rest& rest : rests) {
         mean += rest.brightness() / static_cast<double>(rests.size());
@@ -45,6 +50,7 @@ void reweight(std::vector<Rest>& rests, double noise) {
         scale = 1.5 * spread / weights;
     }
     for (Rest& rest : rests) rest.robust = share(rest);
+    return {mean, scale / 1.5};
 }
 
 }  // namespace
@@ -63,7 +69,8 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
 }
 
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
-                            const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material) {
+                            const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
+                            const GatheredRays& gathered) {
     const Ward gloss{glm::dvec3(0), material.ks, material.alpha}, white{glm::dvec3(1), glm::dvec3(0), 1};
     double brightness = 0;
     std::vector<Rest> rests;
@@ -80,7 +87,7 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         const double doubt = 0.5 * mean_of(highlights[k]) / noise;
         rests[k].trust = glm::dot(observations[k].to_viewer, point.normal) / (1 + doubt * doubt);
     }
-    reweight(rests, noise);
+    const Middle middle = reweight(rests, noise);
     double center = 0, center_weight = 0;
     for (const Rest& rest : rests) {
         center += rest.trust * rest.robust * rest.whole() * rest.brightness();
@@ -88,7 +95,17 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     }
     center /= center_weight;
 
-    const glm::dvec3 irradiance = shade(white, point, lights, ambient, point.normal);
+    const double rays = gathered.met + gathered.missed;
+    glm::dvec3 around = ambient, around_error(0);
+    double unreflected = 1;
+    if (rays > 0) {
+        around = (double(gathered.met) * gathered.mean + double(gathered.missed) * ambient) / rays;
+        around_error = around * std::min(0.5 / std::sqrt(rays) + 0.3 * gathered.missed / rays, 1.0);
+        if (gathered.met > 0)
+            unreflected = std::clamp(1 - 1.5 * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0);
+    }
+    const glm::dvec3 gloss_of_all = rays > 0 ? material.ks * around : glm::dvec3(0);
+    const glm::dvec3 irradiance = shade(white, point, lights, around, point.normal);
     std::vector<ReceivedLight> doubtful;
     for (ReceivedLight light : lights) {
         if (!light.uncertain) continue;
@@ -109,9 +126,11 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
             spread += robust * std::pow(rest.brightness() - center, 2);
         }
         const double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
-        result.kd[c] = std::clamp(sum / weights / irradiance[c], 0.0, 1.0);
+        result.kd[c] = std::clamp(unreflected * (sum / weights - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
         const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
-        result.certainty[c] = 1 / (1 + (variance / (irradiance[c] * irradiance[c]) + doubt * doubt) / (0.05 * 0.05));
+        const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
+        const double all = variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error;
+        result.certainty[c] = 1 / (1 + all / (0.05 * 0.05));
     }
     return result;
 }

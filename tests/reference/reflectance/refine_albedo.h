@@ -5,6 +5,7 @@
 
 #include <glm/glm.hpp>
 
+#include "tests/reference/reflectance/smooth_irradiance.h"
 #include "tests/reference/shading/ward.h"
 
 namespace patina::reference {
@@ -39,8 +40,10 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
                  glm::dvec3 ambient, glm::dvec3 to_viewer);
 
 /// The diffuse albedo of a surface point from its observations (paper, Eq. 7), the robust mean of
-/// passes/reflectance/refine_albedo.h; `material`'s kd is not used.
+/// passes/reflectance/refine_albedo.h; `material`'s kd is not used. With rays that were gathered, what they met takes
+/// the ambient term's place, in the share of those that met something.
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
-                            const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material);
+                            const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
+                            const GatheredRays& gathered = {});
 
 }  // namespace patina::reference
