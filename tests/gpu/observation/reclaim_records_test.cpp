@@ -299,6 +299,7 @@ TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {
     run(std::move(first));
     graph::FrameGraph second = runner().begin();
     second.keep(second.fill(state.import(second).status, 7));
+    second.keep(second.fill(state.import(second).gathered, 7));
     run(std::move(second));
     replace(rig, wall_frame());
 
@@ -311,8 +312,11 @@ TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {
                             turn);
     ObservationMap::keep(frame, ids);
     ReflectanceState::keep(frame, status);
-    const graph::Readback read = frame.read_back(status.status);
+    const graph::Readback read = frame.read_back(status.status), gathered_read = frame.read_back(status.gathered);
     run(std::move(frame));
+    const auto gathered = gathered_read.as<uint32_t>();
+    EXPECT_EQ(static_cast<size_t>(std::count(gathered.begin(), gathered.end(), 0u)) * sizeof(uint32_t),
+              (before - rig.content().size()) * sizeof(glm::uvec2));
     const auto words = read.as<uint32_t>();
     const size_t zeros = static_cast<size_t>(std::count(words.begin(), words.end(), 0u));
     EXPECT_EQ(zeros * sizeof(uint32_t), (before - rig.content().size()) * sizeof(gpu::RecordStatus));

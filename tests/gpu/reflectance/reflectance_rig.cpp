@@ -63,9 +63,12 @@ glm::uvec2 pack_rays(const reference::GatheredRays& rays) {
 }
 
 void ReflectanceRig::set_incident(uint32_t count, const reference::GatheredRays& rays) {
-    gpu::RecordStatus lit{};
-    lit.incident = pack_rays(rays);
-    const std::vector<gpu::RecordStatus> status(count, lit);
+    graph::FrameGraph before = runner_.begin();
+    const graph::Readback read = before.read_back(state_.import(before).status);
+    runner_.submit(std::move(before));
+    runner_.wait();
+    auto status = read.as<gpu::RecordStatus>();
+    for (uint32_t i = 0; i < count; ++i) status[i].incident = pack_rays(rays);
     graph::FrameGraph frame = runner_.begin();
     ReflectanceStateIds state = state_.import(frame);
     state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);

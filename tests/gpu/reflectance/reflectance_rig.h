@@ -30,7 +30,7 @@ class ReflectanceRig {
     ReflectanceRig(vulkan::Device& device, graph::Runner& runner, const VoxelMap& voxel_map,
                    const ObservationMap& observation_map);
 
-    /// Gives the first `count` records this light from all around, and nothing else.
+    /// Gives the first `count` records this light from all around; what else they have stays.
     void set_incident(uint32_t count, const reference::GatheredRays& rays);
 
     struct Counts {

@@ -71,6 +71,22 @@ TEST_F(FitWardTest, TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlight
     EXPECT_FALSE(kd_of(fit({5})[5])) << "nothing is known of it";
 }
 
+// What voxels gathered takes the ambient term's place, and a gloss reflects ks of it.
+TEST_F(FitWardTest, ASegmentsAlbedoCountsTheLightFromAllAround) {
+    const Ward material{{0.3, 0.2, 0.1}, glm::dvec3(0.2), 0.2};
+    const glm::dvec3 around(0.5, 0.25, 0.125);
+    std::vector<FilledRecord> records = sphere(2, material, kVoxels, 0.3f);
+    for (FilledRecord& record : records) {
+        const reference::SurfacePoint point{glm::dvec3(kept_point_m(map_, record)), glm::dvec3(record.normal)};
+        for (FilledObservation& seen : record.observations)
+            seen.rgb = glm::vec3(reference::shade(material, point, received(), around, glm::dvec3(seen.to_viewer)) +
+                                 material.ks * around);
+    }
+    fill(records);
+    rig_.set_incident(static_cast<uint32_t>(records.size()), {around, 64, 0});
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(kd_of(fit({2}, 3)[2]).value()) - material.kd)), 4e-3);
+}
+
 TEST_F(FitWardTest, HighlightsOfBentSurfacesAreTakenForBlurred) {
     // Voxels of a ball, many side by side, each seen with the mean over normals that spread as its blur says.
     const Ward truth{{}, glm::dvec3(0.05), 0.07};
