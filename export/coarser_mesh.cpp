@@ -31,11 +31,11 @@ CoarserMesh coarser(const Mesh& mesh, std::span<const float> shades, const Coars
     std::vector<std::array<uint32_t, 3>> triangles(mesh.triangles.size());
     const double scale_m = double{meshopt_simplifyScale(positions, vertices, sizeof(glm::vec3))};
     const auto most_error = static_cast<float>(std::min(coarseness.error_m / std::max(scale_m, 1e-9), 1.0));
+    const unsigned options = coarseness.locks_border ? static_cast<unsigned>(meshopt_SimplifyLockBorder) : 0;
     float error = 0;
-    const size_t kept =
-        meshopt_simplify(triangles.front().data(), mesh.triangles.front().data(), count, positions, vertices,
-                         sizeof(glm::vec3), static_cast<size_t>(static_cast<double>(count) * coarseness.part),
-                         most_error, meshopt_SimplifyLockBorder, &error);
+    const size_t kept = meshopt_simplify(
+        triangles.front().data(), mesh.triangles.front().data(), count, positions, vertices, sizeof(glm::vec3),
+        static_cast<size_t>(static_cast<double>(count) * coarseness.part), most_error, options, &error);
     triangles.resize(kept / 3);
     result.error_m = double{error} * scale_m;
 

@@ -28,17 +28,21 @@ struct GltfArrays::Format {
     }
 };
 
-int GltfArrays::add(const char* name, std::span<const std::byte> bytes, size_t count, const Format& format) {
+int GltfArrays::add_bytes(const char* name, std::span<const std::byte> bytes) {
     tinygltf::BufferView view;
     view.name = name;
     view.buffer = 0;
     view.byteOffset = file_.append(bytes);
     view.byteLength = bytes.size();
-    view.target = format.target;
     model_.bufferViews.push_back(std::move(view));
+    return static_cast<int>(model_.bufferViews.size()) - 1;
+}
+
+int GltfArrays::add(const char* name, std::span<const std::byte> bytes, size_t count, const Format& format) {
     tinygltf::Accessor accessor;
     accessor.name = name;
-    accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+    accessor.bufferView = add_bytes(name, bytes);
+    model_.bufferViews.back().target = format.target;
     accessor.componentType = format.component;
     accessor.type = format.type;
     accessor.count = count;
@@ -50,6 +54,11 @@ int GltfArrays::add(const char* name, std::span<const std::byte> bytes, size_t c
 int GltfArrays::add_vertices(const char* name, const std::vector<glm::vec3>& vectors) {
     return add(name, bytes_of(vectors), vectors.size(),
                Format::vertices(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3));
+}
+
+int GltfArrays::add_vertices(const char* name, const std::vector<glm::vec2>& vectors) {
+    return add(name, bytes_of(vectors), vectors.size(),
+               Format::vertices(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2));
 }
 
 int GltfArrays::add_vertices(const char* name, const std::vector<float>& values) {

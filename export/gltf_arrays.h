@@ -27,6 +27,7 @@ class GltfArrays {
     GltfArrays(tinygltf::Model& model, GlbFile& file) : model_(model), file_(file) {}
 
     int add_vertices(const char* name, const std::vector<glm::vec3>& vectors);
+    int add_vertices(const char* name, const std::vector<glm::vec2>& vectors);
     int add_vertices(const char* name, const std::vector<float>& values);
     int add_vertices(const char* name, const std::vector<GltfColor>& colors);
 
@@ -35,6 +36,9 @@ class GltfArrays {
 
     /// Indices as short as the count of vertices allows.
     int add_indices(std::span<const std::array<uint32_t, 3>> triangles, uint64_t vertices);
+
+    /// Bytes that are no array, such as a picture's. Returns their view.
+    int add_bytes(const char* name, std::span<const std::byte> bytes);
 
   private:
     struct Format;

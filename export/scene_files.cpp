@@ -60,41 +60,103 @@ GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFil
         .candela_per_intensity = candela_per_intensity(lights, survey.patches())};
 }
 
-WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
-                           const SceneFileOptions& options, const std::string& version) {
-    GlbWriter writer(file, options.glb);
-    SurfaceSurvey survey;
-    WrittenGlb written;
-    const auto write = [&](const TidyPiece& piece) { writer.add(piece.mesh, &piece.reflectance); };
-    std::vector<TidyPiece> held;
-    uint64_t triangles = 0, loose = 0, collapsed = 0;
-    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) {
-        check_mesh(file, mesh);
-        if (!reflectance.kd.empty()) check_reflectance(file, mesh, reflectance);
+namespace {
+
+/// Takes a surface piece by piece, tidied, and writes each at once, where nothing is asked for that needs all of it.
+class TidiedSurface {
+  public:
+    TidiedSurface(std::filesystem::path file, GlbWriter& writer, const TidyOptions& options, bool hold)
+        : file_(std::move(file)), writer_(writer), options_(options), hold_(hold || most_triangles() > 0) {}
+
+    void add(const Mesh& mesh, const MeshReflectance& reflectance) {
+        check_mesh(file_, mesh);
+        if (!reflectance.kd.empty()) check_reflectance(file_, mesh, reflectance);
         survey.add(mesh, reflectance.labels);
-        TidyPiece piece = tidied(mesh, reflectance, options.tidy);
-        loose += piece.loose_triangles;
-        collapsed += piece.collapsed_triangles;
-        triangles += piece.mesh.triangles.size();
-        if (options.tidy.most_triangles == 0) return write(piece);
-        held.push_back(std::move(piece));
-    });
-    const double part =
-        static_cast<double>(options.tidy.most_triangles) / static_cast<double>(std::max<uint64_t>(triangles, 1));
-    for (TidyPiece& piece : held) {
-        if (part >= 1) {
-            write(piece);
-            continue;
+        TidyPiece piece = tidied(mesh, reflectance, options_);
+        loose_ += piece.loose_triangles;
+        collapsed_ += piece.collapsed_triangles;
+        triangles_ += piece.mesh.triangles.size();
+        if (hold_) {
+            held.push_back(std::move(piece));
+        } else {
+            writer_.add(piece.mesh, &piece.reflectance);
         }
-        const TidyPiece fewer = reduced(piece.mesh, piece.reflectance, part);
-        collapsed += fewer.collapsed_triangles;
-        write(fewer);
-        piece = {};
     }
-    written.info = glb_info(scene, survey, options, version);
+
+    /// Brings what is held to the number of triangles that is asked for, and leaves out what that cut off.
+    void reduce() {
+        const uint64_t most = most_triangles();
+        const double part = static_cast<double>(most) / static_cast<double>(std::max<uint64_t>(triangles_, 1));
+        options_.in_pieces = held.size() > 1;
+        for (TidyPiece& piece : held) {
+            piece.loose_triangles = 0;
+            if (most > 0 && part < 1) {
+                const double most_error_m = options_.most_triangles ? kAnyError_m : kMostError_m;
+                piece = reduced(piece.mesh, piece.reflectance, part, options_, most_error_m);
+                collapsed_ += piece.collapsed_triangles;
+            }
+            leave_out_stray_parts(piece, options_);
+            loose_ += piece.loose_triangles;
+        }
+    }
+
+    uint64_t triangles_held() const {
+        uint64_t triangles = 0;
+        for (const TidyPiece& piece : held) triangles += piece.mesh.triangles.size();
+        return triangles;
+    }
+
+    void count(GlbSummary& summary) const {
+        summary.loose_triangles = loose_;
+        summary.collapsed_triangles = collapsed_;
+    }
+
+    SurfaceSurvey survey;
+    std::vector<TidyPiece> held;
+
+  private:
+    static constexpr uint64_t kMostTriangles = 100'000;
+    static constexpr double kMostError_m = 5e-3, kAnyError_m = 1e9;
+
+    uint64_t most_triangles() const {
+        return options_.most_triangles.value_or(options_.error_m > 0 ? kMostTriangles : 0);
+    }
+
+    std::filesystem::path file_;
+    GlbWriter& writer_;
+    TidyOptions options_;
+    bool hold_;
+    uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0;
+};
+
+}  // namespace
+
+WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
+                           const SceneFileOptions& options, const std::string& version, const BakeTexture& bake) {
+    GlbWriter writer(file, options.glb);
+    const bool textured = options.texture && bake;
+    TidyOptions tidy = options.tidy;
+    if (textured) tidy.white_m = 0;
+    TidiedSurface surface(file, writer, tidy, textured);
+    pieces([&](const Mesh& mesh, const MeshReflectance& reflectance) { surface.add(mesh, reflectance); });
+    surface.reduce();
+    uint64_t without_area = 0;  // has no place in a texture
+    if (textured) {
+        without_area = surface.triangles_held();
+        const TextureLayout layout = lay_out_texture(std::move(surface.held), *options.texture);
+        for (const TexturedSurface& piece : layout.pieces) without_area -= piece.mesh.triangles.size();
+        writer.add_textured(layout, bake(layout));
+    } else {
+        for (TidyPiece& piece : surface.held) {
+            writer.add(piece.mesh, &piece.reflectance);
+            piece = {};
+        }
+    }
+    WrittenGlb written;
+    written.info = glb_info(scene, surface.survey, options, version);
     written.summary = writer.finish(written.info);
-    written.summary.loose_triangles = loose;
-    written.summary.collapsed_triangles = collapsed;
+    surface.count(written.summary);
+    written.summary.degenerate_triangles += without_area;
     return written;
 }
 

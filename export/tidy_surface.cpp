@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "export/coarser_mesh.h"
@@ -14,8 +15,6 @@ namespace patina {
 namespace {
 
 using Triangle = std::array<uint32_t, 3>;
-
-constexpr float kHeightOfWhite_m = 0.02f;
 
 struct Box {
     glm::vec3 low{1e9f}, high{-1e9f};
@@ -29,8 +28,18 @@ struct Box {
 /// Which vertices hang together.
 class ConnectedVertices {
   public:
-    ConnectedVertices(size_t vertices, std::span<const Triangle> triangles) : parent_(vertices) {
+    /// Vertices of one position are one.
+    ConnectedVertices(std::span<const glm::vec3> positions_m, std::span<const Triangle> triangles)
+        : parent_(positions_m.size()) {
         std::iota(parent_.begin(), parent_.end(), 0u);
+        std::vector<uint32_t> order(parent_);
+        const auto key = [&](uint32_t vertex) {
+            const glm::vec3 p = positions_m[vertex];
+            return std::tuple(p.x, p.y, p.z);
+        };
+        std::ranges::sort(order, {}, key);
+        for (size_t i = 1; i < order.size(); ++i)
+            if (positions_m[order[i]] == positions_m[order[i - 1]]) join(order[i], order[i - 1]);
         for (const Triangle& triangle : triangles) {
             join(triangle[0], triangle[1]);
             join(triangle[1], triangle[2]);
@@ -58,14 +67,16 @@ bool is_cut_off(const std::array<uint32_t, 6>& at_sides) {
 }
 
 /// The triangles of parts that are large enough, or may be, and of the largest one.
-std::vector<Triangle> firm_triangles(const Mesh& mesh, double least_part_m) {
-    if (least_part_m <= 0 || mesh.triangles.empty()) return mesh.triangles;
+std::vector<Triangle> firm_triangles(const Mesh& mesh, const TidyOptions& options) {
+    if (options.least_part_m <= 0 || mesh.triangles.empty()) return mesh.triangles;
     const size_t vertices = mesh.positions_m.size();
-    ConnectedVertices connected(vertices, mesh.triangles);
+    ConnectedVertices connected(mesh.positions_m, mesh.triangles);
     std::vector<Box> boxes(vertices);
     std::vector<std::array<uint32_t, 6>> at_sides(vertices);
     Box whole;
     for (const glm::vec3& position : mesh.positions_m) whole.add(position);
+    const double least_part_m =
+        std::max(options.least_part_m, options.least_part_share * double{glm::distance(whole.low, whole.high)});
     for (uint32_t i = 0; i < vertices; ++i) {
         const uint32_t part = connected.part_of(i);
         const glm::vec3 position = mesh.positions_m[i];
@@ -84,50 +95,72 @@ std::vector<Triangle> firm_triangles(const Mesh& mesh, double least_part_m) {
         const uint32_t part = connected.part_of(triangle[0]);
         const Box& box = boxes[part];
         const bool large = double{glm::distance(box.low, box.high)} >= least_part_m;
-        if (large || part == largest || is_cut_off(at_sides[part])) firm.push_back(triangle);
+        if (large || part == largest || (options.in_pieces && is_cut_off(at_sides[part]))) firm.push_back(triangle);
     }
     return firm;
 }
 
-void append(TidyPiece& piece, CoarserMesh&& part, const MeshPart& of, const MeshReflectance& reflectance) {
-    const auto first = static_cast<uint32_t>(piece.mesh.positions_m.size());
-    const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    add(piece.mesh.positions_m, part.mesh.positions_m);
-    add(piece.mesh.normals, part.mesh.normals);
-    add(piece.mesh.colors, part.mesh.colors);
-    for (const Triangle& t : part.mesh.triangles)
-        piece.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    if (reflectance.kd.empty()) return;
-    for (const uint32_t vertex : part.vertices) {
-        piece.reflectance.kd.push_back(reflectance.kd[of.vertices[vertex]]);
-        piece.reflectance.labels.push_back(of.label);
+/// The mesh of some triangles in which each segment has its own vertices: where two meet, collapsing takes the vertices
+/// of both along their common border.
+struct DividedMesh {
+    Mesh mesh;
+    std::vector<uint32_t> vertices;  ///< of the mesh it was made from
+    std::vector<uint32_t> labels;    ///< by vertex; empty without
+};
+
+DividedMesh divided(const Mesh& mesh, std::span<const Triangle> triangles, const MeshReflectance& reflectance) {
+    DividedMesh all;
+    for (const MeshPart& part :
+         parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), triangles, reflectance.labels)) {
+        const auto first = static_cast<uint32_t>(all.vertices.size());
+        all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+        if (!reflectance.labels.empty()) all.labels.resize(all.vertices.size(), part.label);
+        for (const Triangle& t : part.triangles)
+            all.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
+    for (const uint32_t vertex : all.vertices) {
+        all.mesh.positions_m.push_back(mesh.positions_m[vertex]);
+        all.mesh.normals.push_back(mesh.normals[vertex]);
+        all.mesh.colors.push_back(mesh.colors[vertex]);
+    }
+    return all;
 }
 
 /// Of the given triangles of a mesh.
-TidyPiece by_segments(const Mesh& mesh, std::span<const Triangle> triangles, const MeshReflectance& reflectance,
-                      const Coarseness& coarseness) {
+TidyPiece collapsed(const Mesh& mesh, std::span<const Triangle> triangles, const MeshReflectance& reflectance,
+                    const Coarseness& coarseness) {
+    const DividedMesh all = divided(mesh, triangles, reflectance);
+    const std::vector<float> of_mesh = shades_of(mesh, reflectance);
+    std::vector<float> shades;
+    for (const uint32_t vertex : all.vertices) shades.push_back(of_mesh[vertex]);
+    CoarserMesh fewer = coarser(all.mesh, shades, coarseness);
     TidyPiece piece;
+    piece.mesh = std::move(fewer.mesh);
     piece.reflectance.segments = reflectance.segments;
-    const std::vector<float> shades = shades_of(mesh, reflectance);
-    for (const MeshPart& part :
-         parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), triangles, reflectance.labels)) {
-        const Mesh alone{gathered(mesh.positions_m, part), gathered(mesh.normals, part), gathered(mesh.colors, part),
-                         part.triangles};
-        append(piece, coarser(alone, gathered(shades, part), coarseness), part, reflectance);
-    }
     piece.collapsed_triangles = triangles.size() - piece.mesh.triangles.size();
+    if (reflectance.kd.empty()) return piece;
+    for (const uint32_t vertex : fewer.vertices) {
+        piece.reflectance.kd.push_back(reflectance.kd[all.vertices[vertex]]);
+        piece.reflectance.labels.push_back(all.labels[vertex]);
+    }
     return piece;
 }
 
 }  // namespace
 
+void leave_out_stray_parts(TidyPiece& piece, const TidyOptions& options) {
+    std::vector<Triangle> firm = firm_triangles(piece.mesh, options);
+    piece.loose_triangles += piece.mesh.triangles.size() - firm.size();
+    piece.mesh.triangles = std::move(firm);
+}
+
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options) {
-    std::vector<Triangle> firm = firm_triangles(mesh, options.least_part_m);
+    std::vector<Triangle> firm = firm_triangles(mesh, options);
     const uint64_t loose = mesh.triangles.size() - firm.size();
     TidyPiece piece;
     if (options.error_m > 0) {
-        piece = by_segments(mesh, firm, reflectance, {.error_m = options.error_m, .white_m = kHeightOfWhite_m});
+        piece = collapsed(mesh, firm, reflectance,
+                          {.error_m = options.error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
     } else {
         piece = {mesh, reflectance};
         piece.mesh.triangles = std::move(firm);
@@ -136,8 +169,11 @@ TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const Tid
     return piece;
 }
 
-TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part) {
-    return by_segments(mesh, mesh.triangles, reflectance, {.part = part, .white_m = kHeightOfWhite_m});
+TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part, const TidyOptions& options,
+                  double most_error_m) {
+    return collapsed(
+        mesh, mesh.triangles, reflectance,
+        {.part = part, .error_m = most_error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
 }
 
 }  // namespace patina

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "patina/scene.h"
@@ -9,13 +10,18 @@ namespace patina {
 
 /// How a surface becomes one that is easy to edit and quick to load.
 struct TidyOptions {
-    /// Loose parts whose box has a shorter diagonal are left out: stray readings. 0: none are.
-    double least_part_m = 0.05;
-    /// Edges are collapsed while the surface stays within about this distance of what it was. Brightness counts as
-    /// height, 2 cm from black to white, so that patterns stay. 0: none are.
+    /// Loose parts whose box has a shorter diagonal than this, or than so large a share of the whole's, are left out:
+    /// stray readings, and backs of things that were hardly seen. 0: none are.
+    double least_part_m = 0.05, least_part_share = 0.03;
+    /// Edges are collapsed while the surface stays within about this distance of what it was. 0: none are.
     double error_m = 1e-3;
-    /// Triangles of the whole surface, about, whatever the distance is; 0: as many as error_m leaves.
-    uint64_t most_triangles = 0;
+    /// What brightness from black to white counts as height there, so that patterns stay; 0: a texture holds them.
+    float white_m = 0.02f;
+    /// Whether what is tidied may be a piece of a surface that others go on from: open borders then stay as they are.
+    bool in_pieces = true;
+    /// Triangles of the whole surface, about, whatever the distance is; 0: as many as error_m leaves. Empty: 100 000,
+    /// or more where the surface would be farther than 5 mm from what it was; where error_m is 0, all.
+    std::optional<uint64_t> most_triangles{};
 };
 
 /// A piece of a surface with what it reflects, and what became of the piece that it was made from.
@@ -27,11 +33,17 @@ struct TidyPiece {
 };
 
 /// A piece without its stray parts, and with as few triangles as options.error_m asks for. Vertices are some of those
-/// there were; those at open borders and between segments stay, so that pieces and segments meet without gaps. Where
-/// segments meet, each has its own vertices. A part that a piece's end cuts off may go on in the next piece, and stays.
+/// there were. Segments still meet without gaps, each with its own vertices. A part that a piece's end cuts off may go
+/// on in the next piece, and stays.
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options);
 
-/// Leaves so large a part of the triangles, of each segment alike, whatever the distance is.
-TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part);
+/// Takes out the triangles of stray parts, such as those that collapsing cut off.
+void leave_out_stray_parts(TidyPiece& piece, const TidyOptions& options);
+
+/// Leaves so large a part of the triangles, those that bend least first, whatever the distance is.
+/// Of options what is said of brightness and borders counts.
+/// `most_error_m`: distance beyond which none is collapsed.
+TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part, const TidyOptions& options = {},
+                  double most_error_m = 1e9);
 
 }  // namespace patina

@@ -14,6 +14,7 @@
 #include "export/gltf_arrays.h"
 #include "export/gltf_material.h"
 #include "export/mesh_parts.h"
+#include "export/page_picture.h"
 
 namespace patina {
 namespace {
@@ -61,6 +62,9 @@ struct Piece {
     const Mesh& mesh;
     const MeshReflectance* reflectance;  ///< null: it has colours alone
     std::vector<glm::vec3> normals;      ///< unit length
+    // Where it lies in a texture; null: in none.
+    const std::vector<glm::vec2>* places_px = nullptr;  ///< by vertex
+    const std::vector<Extent2D>* pages = nullptr;
 
     const SegmentReflectance& segment(uint32_t label) const {
         static const SegmentReflectance kNone;
@@ -71,15 +75,21 @@ struct Piece {
 }  // namespace
 
 struct GlbWriter::State {
-    /// What becomes a node with a mesh and a material.
+    static constexpr uint32_t kNoPage = UINT32_MAX;
+
+    /// What becomes a node with a mesh and materials: one for each page of the texture that it lies in.
     struct Segment {
         tinygltf::Material material;
-        std::vector<tinygltf::Primitive> primitives;
+        float base_over_kd = 1;
+        std::map<uint32_t, std::vector<tinygltf::Primitive>> primitives;  ///< by page; kNoPage: in none
     };
 
     State(const std::filesystem::path& at, const GlbOptions& how) : path(at), options(how), file(at) {}
 
-    void add(const Piece& piece, const MeshPart& part);
+    /// `page`: of the texture; kNoPage: the piece lies in none.
+    void add(const Piece& piece, const MeshPart& part, uint32_t page);
+    void add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents);
+    void add_page(const TextureLayout& layout, const TexturePage& page, uint32_t number);
     GlbSummary finish(const GlbInfo& info);
 
     std::filesystem::path path;
@@ -129,17 +139,32 @@ struct GlbWriter::State {
         if (std::ranges::find(used, name) == used.end()) used.emplace_back(name);
     }
 
+    /// The number of the segment's material for a page.
+    int add_material(const std::string& name, const tinygltf::Material& material, uint32_t page) {
+        tinygltf::Material& own = model.materials.emplace_back(material);
+        own.name = page == kNoPage || page == 0 ? name : name + ", page " + std::to_string(page + 1);
+        if (page != kNoPage) own.pbrMetallicRoughness.baseColorTexture.index = static_cast<int>(page);
+        return static_cast<int>(model.materials.size()) - 1;
+    }
+
     void add_segment(uint32_t label, const std::string& name, Segment&& segment) {
-        const int material = static_cast<int>(model.materials.size());
-        for (tinygltf::Primitive& primitive : segment.primitives) primitive.material = material;
-        segment.material.name = name;
-        model.materials.push_back(std::move(segment.material));
         tinygltf::Node& node = add_node(name);
         node.mesh = static_cast<int>(model.meshes.size());
         if (label > 0) node.extras = Value(Value::Object{{"segment", Value(static_cast<int>(label))}});
         tinygltf::Mesh& mesh = model.meshes.emplace_back();
         mesh.name = name;
-        mesh.primitives = std::move(segment.primitives);
+        for (auto& [page, primitives] : segment.primitives) {
+            const int material = add_material(name, segment.material, page);
+            for (tinygltf::Primitive& primitive : primitives) {
+                primitive.material = material;
+                mesh.primitives.push_back(std::move(primitive));
+            }
+        }
+    }
+
+    void set_look(const Piece& piece, uint32_t label, Segment& segment) {
+        segment.material = material_of(piece, label);
+        if (piece.reflectance) segment.base_over_kd = base_color_of(look_of(piece.segment(label)), glm::vec3(1)).r;
     }
 
     tinygltf::Material material_of(const Piece& piece, uint32_t label) {
@@ -179,11 +204,18 @@ struct GlbWriter::State {
         return albedo;
     }
 
+    void add_places(const Piece& piece, const MeshPart& part, uint32_t page, tinygltf::Primitive& primitive) {
+        const Extent2D extent = piece.pages->at(page);
+        std::vector<glm::vec2> places = gathered(*piece.places_px, part);
+        for (glm::vec2& place : places) place /= glm::vec2(extent.width, extent.height);
+        primitive.attributes["TEXCOORD_0"] = arrays.add_vertices("TEXCOORD_0", places);
+    }
+
     void add_reflectance(const Piece& piece, const MeshPart& part, tinygltf::Primitive& primitive) {
         const SegmentReflectance& own = piece.segment(part.label);
         const std::vector<glm::vec3> albedo = albedo_of(piece, part);
         const GltfMaterial shown = look_of(own);
-        if (!shown.metal) {
+        if (!shown.metal && !piece.places_px) {
             std::vector<glm::vec3> base(albedo.size());
             std::ranges::transform(albedo, base.begin(), [&](glm::vec3 kd) { return base_color_of(shown, kd); });
             add_colors(primitive, base);
@@ -237,23 +269,68 @@ struct GlbWriter::State {
     }
 };
 
-void GlbWriter::State::add(const Piece& piece, const MeshPart& part) {
+void GlbWriter::State::add(const Piece& piece, const MeshPart& part, uint32_t page) {
+    const auto [segment, is_new] = segments.try_emplace(part.label);
+    if (is_new) set_look(piece, part.label, segment->second);
+    const bool metal = segment->second.material.pbrMetallicRoughness.metallicFactor == 1;
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.attributes["POSITION"] = arrays.add_positions(gathered(piece.mesh.positions_m, part));
     primitive.attributes["NORMAL"] = arrays.add_vertices("NORMAL", gathered(piece.normals, part));
+    if (metal) page = kNoPage;  // it has one colour
+    if (page != kNoPage) add_places(piece, part, page, primitive);
     if (piece.reflectance) {
         add_reflectance(piece, part, primitive);
-    } else {
+    } else if (page == kNoPage) {
         add_colors(primitive, gathered(piece.mesh.colors, part));
     }
     primitive.indices = arrays.add_indices(part.triangles, part.vertices.size());
-
-    const auto [segment, is_new] = segments.try_emplace(part.label);
-    if (is_new) segment->second.material = material_of(piece, part.label);
-    segment->second.primitives.push_back(std::move(primitive));
+    segment->second.primitives[page].push_back(std::move(primitive));
     summary.vertices += part.vertices.size();
     summary.triangles += part.triangles.size();
+}
+
+void GlbWriter::State::add_page(const TextureLayout& layout, const TexturePage& page, uint32_t number) {
+    const auto factor_of = [this](uint32_t label) {
+        const auto segment = segments.find(label);
+        return segment == segments.end() ? 1.0f : segment->second.base_over_kd;
+    };
+    const EncodedPicture picture = encoded(page_picture(page, layout.boxes, number, factor_of));
+    const auto seen = static_cast<uint64_t>(std::ranges::count(page.states.pixels(), TexelState::kSeen));
+    const auto filled = static_cast<uint64_t>(std::ranges::count(page.states.pixels(), TexelState::kFilled));
+    tinygltf::Image image;
+    image.name = "base color, page " + std::to_string(number + 1);
+    image.mimeType = picture.mime_type;
+    image.bufferView = arrays.add_bytes(image.name.c_str(), std::as_bytes(std::span(picture.bytes)));
+    const double share = static_cast<double>(seen) / static_cast<double>(std::max<uint64_t>(seen + filled, 1));
+    image.extras = Value(Value::Object{{"texel_m", Value(layout.texel_m)}, {"seen", Value(share)}});
+    tinygltf::Texture texture;
+    texture.source = static_cast<int>(model.images.size());
+    texture.sampler = 0;
+    model.images.push_back(std::move(image));
+    model.textures.push_back(std::move(texture));
+    summary.seen_texels += seen;
+    summary.filled_texels += filled;
+}
+
+/// A triangle's vertices are of one segment and in one page.
+void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents) {
+    const MeshReflectance* reflectance = surface.reflectance.kd.empty() ? nullptr : &surface.reflectance;
+    check_mesh(path, surface.mesh);
+    if (reflectance) check_reflectance(path, surface.mesh, *reflectance);
+    const std::vector<Triangle> triangles = drawable_triangles(surface.mesh);
+    summary.degenerate_triangles += surface.mesh.triangles.size() - triangles.size();
+    if (triangles.empty()) return;
+    const Piece piece{surface.mesh, reflectance, unit_normals(surface.mesh, triangles), &surface.place_px, &extents};
+    const auto count = static_cast<uint32_t>(extents.size());
+    std::vector<uint32_t> places;
+    for (size_t i = 0; i < surface.pages.size(); ++i)
+        places.push_back((reflectance ? reflectance->labels[i] : 0) * count + surface.pages[i]);
+    for (MeshPart& part : parts_by_label(static_cast<uint32_t>(places.size()), triangles, places)) {
+        const uint32_t page = part.label % count;
+        part.label /= count;
+        add(piece, part, page);
+    }
 }
 
 GlbSummary GlbWriter::State::finish(const GlbInfo& info) {
@@ -281,7 +358,19 @@ void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance) {
     const std::span<const uint32_t> labels =
         reflectance ? std::span<const uint32_t>(reflectance->labels) : std::span<const uint32_t>();
     for (const MeshPart& part : parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), triangles, labels))
-        state_->add(piece, part);
+        state_->add(piece, part, State::kNoPage);
+}
+
+void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<TexturePage>& pages) {
+    for (const TexturedSurface& surface : layout.pieces) state_->add_textured(surface, layout.pages);
+    tinygltf::Sampler sampler;
+    sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+    sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    state_->model.samplers.push_back(std::move(sampler));
+    for (uint32_t number = 0; number < pages.size(); ++number) state_->add_page(layout, pages[number], number);
+    state_->summary.texture_pages = pages.size();
+    state_->summary.texel_m = layout.texel_m;
 }
 
 GlbSummary GlbWriter::finish(const GlbInfo& info) { return state_->finish(info); }

@@ -9,6 +9,7 @@
 #include "export/gltf_material.h"
 #include "export/upright.h"
 #include "patina/scene.h"
+#include "patina/texture.h"
 #include "sensor/truth.h"
 
 namespace patina {
@@ -46,6 +47,10 @@ struct GlbSummary {
     uint64_t collapsed_triangles = 0;   ///< gone before, where fewer show the same
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
+    uint64_t texture_pages = 0;
+    double texel_m = 0;          ///< edge of a texel on the surface; 0 without a texture
+    uint64_t seen_texels = 0;    ///< that a picture showed
+    uint64_t filled_texels = 0;  ///< that none showed: what the vertices around know
 };
 
 /// Writes a binary glTF 2.0: a root node that turns and moves the world upright, below it the surface and the lights.
@@ -60,6 +65,11 @@ struct GlbSummary {
 /// they were observed. A metal has a base colour instead of COLOR_0. Where a vertex's albedo is not known it is the
 /// segment's mean, without one the fused colour, up to 1. On request _KD (float32 x 3) is the diffuse albedo;
 /// segments with a specular material then have _KS (float32 x 3) and _WARD_ALPHA (float32), too.
+///
+/// A surface that lies in a texture has TEXCOORD_0 in place of COLOR_0, and its base colour is that of the texture's
+/// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a
+/// page's picture have the edge of a texel, "texel_m", and the share of its texels that a picture of the recording
+/// showed, "seen".
 ///
 /// Lights are point lights (KHR_lights_punctual) in candela. Extras of the scene, "photometric", have the factor from
 /// linear pixel values times square metres. Extras of a light say that it is not calibrated, and the lamp's radius
@@ -82,6 +92,9 @@ class GlbWriter {
     /// same in all pieces. Throws Error for a value that is not finite, an index beyond the vertices, more than a GLB
     /// holds (4 GiB), or a disk that refuses.
     void add(const Mesh& mesh, const MeshReflectance* reflectance);
+
+    /// Adds a surface that lies in a texture, and the texture; once, with all that lies in it. Throws Error as add().
+    void add_textured(const TextureLayout& layout, const std::vector<TexturePage>& pages);
 
     /// Writes the file; nothing may follow. Throws Error as add().
     GlbSummary finish(const GlbInfo& info);

@@ -94,6 +94,17 @@ void Pipeline::give_surface(const std::vector<SegmentReflectance>& segments, con
     }
 }
 
+std::vector<TexturePage> Pipeline::bake_texture(const TextureLayout& layout,
+                                                const std::function<void(const TakePicture&)>& give) {
+    refine_all();
+    TextureBake bake(runner_, stages_, layout);
+    give([&](const TexturePicture& picture) {
+        fusion_.require(picture.color.camera, picture.world_from_camera);
+        bake.add(picture);
+    });
+    return bake.finish();
+}
+
 void Pipeline::refine_all() {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     fuse_waiting();

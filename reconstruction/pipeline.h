@@ -16,6 +16,7 @@
 #include "reconstruction/reconstruction_settings.h"
 #include "reconstruction/stages/stages.h"
 #include "reconstruction/streaming/streaming.h"
+#include "reconstruction/texture/bake_texture.h"
 #include "reconstruction/tracked_fusion.h"
 #include "reconstruction/view_readback.h"
 
@@ -87,6 +88,12 @@ class Pipeline {
     /// What a mesh of the surface and all segments reflect, brought up to date before; waits. Empty without
     /// reflectance.
     MeshReflectance sample_reflectance(const Mesh& mesh);
+
+    /// Bakes a texture for a surface of this map (export/atlas/lay_out_texture.h lays it out) from what `give` gives
+    /// one after the other, best all keyframes of the frames that were fused; waits. Throws Error as TextureBake does.
+    using TakePicture = std::function<void(const TexturePicture&)>;
+    std::vector<TexturePage> bake_texture(const TextureLayout& layout,
+                                          const std::function<void(const TakePicture&)>& give);
 
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();

@@ -57,7 +57,7 @@ def f0_of(description):
 def set_material(material, description):
     """Lambert's diffuse reflection plus a GGX lobe without Fresnel's effect, as Ward's model has none."""
     principled = node_of(material, "ShaderNodeBsdfPrincipled")
-    color = node_of(material, "ShaderNodeVertexColor")
+    color = node_of(material, "ShaderNodeTexImage") or node_of(material, "ShaderNodeVertexColor")
     if not principled or not color:
         return  # a metal, which the importer sets right
     new, link = material.node_tree.nodes.new, material.node_tree.links.new

@@ -129,6 +129,12 @@ TEST_F(Endings, OptionsOfTheSceneReachIt) {
     EXPECT_LT(usual["triangles"], all["triangles"].get<int>() / 2);
     EXPECT_LT(triangles({"--surface-error", "20"})["triangles"], usual["triangles"]);
     EXPECT_LT(triangles({"--triangles", "300"})["triangles"], usual["triangles"]);
+    EXPECT_THAT(scene_with({}), HasSubstr("TEXCOORD_0"));
+    EXPECT_THAT(scene_with({"--texture", "off"}), AllOf(HasSubstr("COLOR_0"), Not(HasSubstr("TEXCOORD_0"))));
+    EXPECT_THAT(scene_with({"--texture", "3"}), HasSubstr("\"texel_m\":0.003"));
+    const Outcome wrong = run(sequence(), {"--texture", "fine"});
+    EXPECT_NE(wrong.exit_code, 0);
+    EXPECT_THAT(wrong.err, HasSubstr("'fine' is neither auto nor off nor a size of 0.1 to 100 millimetres"));
 }
 
 TEST_F(Endings, AmbientLightFromAFileIsLight) {

@@ -57,6 +57,8 @@ class Golden : public RunFolderTest {
                                            "--quiet",
                                            "--surface-error",
                                            "0",
+                                           "--texture",
+                                           "off",
                                            "--dump-every",
                                            std::to_string(std::stoi(run.shown_frame))};
         arguments.insert(arguments.end(), run.settings.begin(), run.settings.end());

@@ -17,6 +17,17 @@ namespace {
 /// More segments than a frame of a room shows; the network's activations of so many take 77 MB.
 constexpr uint32_t kPaperSegments = 128;
 
+/// The value of --texture.
+void set_texture(RunOptions& run, const std::string& text) {
+    double texel_mm = 0;
+    run.texture = text != "off";
+    if (text == "off" || text == "auto") return;
+    if (!parse(text, texel_mm) || !(texel_mm >= 0.1 && texel_mm <= 100))
+        throw CLI::ValidationError(
+            "--texture", patina::text("'", text, "' is neither auto nor off nor a size of 0.1 to 100 millimetres"));
+    run.texel_m = texel_mm / 1000;
+}
+
 }  // namespace
 
 void declare(CLI::App& command, RunArguments& arguments) {
@@ -67,8 +78,16 @@ void declare(CLI::App& command, RunArguments& arguments) {
     command.add_flag(
         "--raw-attributes", run.files.glb.raw_attributes,
         "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, _WARD_ALPHA");
-    command.add_option("--triangles", run.files.tidy.most_triangles,
-                       "Most triangles of scene.glb, about; by default as many as its shape and its patterns take");
+    command
+        .add_option_function<std::string>(
+            "--texture", [&run](const std::string& text) { set_texture(run, text); },
+            "Texture of scene.glb: as fine as the pictures, from 0.5 to 2 mm a texel (auto); with texels of so many "
+            "millimetres; or none, and colours at vertices in its place (off)")
+        ->option_text("auto|off|MM");
+    command.add_option(
+        "--triangles", run.files.tidy.most_triangles,
+        "Most triangles of scene.glb, about: by default 100000, or more where it would be off by more than 5 mm; "
+        "0: as many as --surface-error leaves");
     command
         .add_option_function<double>(
             "--surface-error",

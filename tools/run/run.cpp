@@ -15,6 +15,7 @@
 #include "engine/graph/plan/plan.h"
 #include "export/trajectory.h"
 #include "reconstruction/api/access.h"
+#include "reconstruction/session/kept_pictures.h"
 #include "reconstruction/session/session_core.h"
 #include "reconstruction/session/shortfalls.h"
 #include "sensor/files/text_file.h"
@@ -37,6 +38,8 @@ namespace patina::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kFinestTexel_m = 0.0005;  // finer ones show the lens, not the surface
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -153,6 +156,7 @@ class Run {
     void visit(graph::StateVisitor& visitor) {
         dumps_.visit(visitor);
         held_out_.visit(visitor);
+        pictures_.visit(visitor);
     }
 
     void keep(graph::StateVisitor& visitor, MapFile& map) {
@@ -174,6 +178,7 @@ class Run {
             graph_json_ = graph::to_json(compiled.description, compiled.plan);
         }
         dumps_.after(pipeline_, session_.info(), frame);
+        if (options_.texture) pictures_.add(session_.info(), frame, pipeline_.frames() - 1);
         if (session_.ledger().used() == 1) {
             pipeline_.wait();
             times_s_.emplace_back("first_fused_frame", seconds_since(start_));
@@ -233,16 +238,51 @@ class Run {
         }
     }
 
-    /// Without what it reflects where that fails.
+    /// Without a texture where that fails, and without what it reflects where that does.
     void write_glb() {
+        if (options_.texture && pictures_.size() > 0) {
+            scene_->set_texture(texture_options());
+            try {
+                return write_glb(scene_->segments());
+            } catch (const std::exception& error) {
+                scene_->set_texture(std::nullopt);
+                folder_.discard_staged();
+                problems_.push_back(fmt::format("scene.glb has no texture: {}", reason_of(error)));
+            }
+        }
         try {
-            glb_ = scene_->write_glb(folder_, surface(scene_->segments()), kVersion);
+            write_glb(scene_->segments());
         } catch (const std::exception& error) {
             if (scene_->segments().empty()) throw;
             folder_.discard_staged();
-            glb_ = scene_->write_glb(folder_, surface({}), kVersion);
+            write_glb({});
             problems_.push_back(fmt::format("what the surface reflects could not be written: {}", reason_of(error)));
         }
+    }
+
+    void write_glb(const std::vector<SegmentReflectance>& segments) {
+        glb_ = scene_->write_glb(folder_, surface(segments), kVersion,
+                                 [this](const TextureLayout& layout) { return bake(layout); });
+    }
+
+    TextureOptions texture_options() const {
+        TextureOptions texture;
+        const double finest_m = pictures_.finest_pixel_m();
+        if (options_.texel_m > 0) {
+            texture.texel_m = options_.texel_m;
+        } else if (finest_m > 0) {
+            texture.texel_m = std::clamp(finest_m, kFinestTexel_m, texture.texel_m);
+        }
+        return texture;
+    }
+
+    std::vector<TexturePage> bake(const TextureLayout& layout) {
+        const auto start = Clock::now();
+        const auto pages = pipeline_.bake_texture(layout, [this](const Pipeline::TakePicture& take) {
+            pictures_.give(session_.info(), pipeline_.gains(), take);
+        });
+        times_s_.emplace_back("texture", seconds_since(start));
+        return pages;
     }
 
     /// The surface in pieces, with what it reflects where there are segments.
@@ -332,6 +372,7 @@ class Run {
     std::optional<SceneFiles> scene_;  ///< empty where the surface could not be extracted or written
     std::optional<GlbSummary> glb_;    ///< of scene.glb, or of tiles/ in its place; empty where there is neither
     HeldOut held_out_;
+    KeptPictures pictures_;
     std::optional<HeldOutSummary> held_out_summary_;
     std::vector<std::pair<std::string, double>> times_s_;
     std::string graph_dot_, graph_json_;

@@ -18,7 +18,9 @@ struct RunOptions : SequenceOptions {
     std::vector<std::string> arguments;
     std::filesystem::path started_in;
     bool tiles = false;        ///< writes tiles/, too
-    SceneFileOptions files{};  ///< of scene.glb and tiles/
+    SceneFileOptions files{};  ///< of scene.glb and tiles/; but for `texture`
+    bool texture = true;       ///< scene.glb has one
+    double texel_m = 0;        ///< its texels' edge; 0: as fine as the pictures, from 0.5 to 2 mm
     uint32_t dump_every = 0;   ///< frames/NNNNNN.exr of every so many frames; 0 writes none
     std::filesystem::path
         dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none

@@ -16,8 +16,9 @@ void SceneFiles::write_lists(OutputFolder& folder) const {
     }
 }
 
-GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version) {
-    const WrittenGlb written = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, options_, version);
+GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version,
+                                 const BakeTexture& bake) {
+    const WrittenGlb written = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, options_, version, bake);
     folder.publish("scene.glb");
     info_ = written.info;
     return written.summary;

@@ -130,6 +130,9 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"triangles of stray parts left out", scene.loose_triangles},
                       {"triangles collapsed", scene.collapsed_triangles},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
+                      {"pages of the texture", scene.texture_pages},
+                      {"texels that a picture showed", scene.seen_texels},
+                      {"texels that no picture showed", scene.filled_texels},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
     add_stream_totals(summary, pipeline);
     if (pipeline.segmentation()) add_segment_totals(summary, counters);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "patina/image.h"
+#include "patina/scene.h"
+
+namespace patina {
+
+/// A surface, or a piece of one, whose triangles lie in the pages of a texture. The three vertices of a triangle lie in
+/// one page. Where charts meet, each has its own vertices.
+struct TexturedSurface {
+    Mesh mesh;
+    MeshReflectance reflectance;      ///< of the vertices; without kd: the mesh has colours alone
+    std::vector<glm::vec2> place_px;  ///< by vertex: in its page; the top left texel's centre is (0.5, 0.5)
+    std::vector<uint32_t> pages;      ///< by vertex
+};
+
+/// A part of a page that belongs to one segment.
+struct TextureBox {
+    uint32_t page = 0;
+    glm::uvec2 low{0}, high{0};  ///< texels; `high` is outside
+    uint32_t label = 0;          ///< 0: none
+};
+
+/// Where a surface lies in a texture.
+struct TextureLayout {
+    double texel_m = 0;  ///< edge of a texel on the surface
+    std::vector<Extent2D> pages;
+    std::vector<TexturedSurface> pieces;
+    std::vector<TextureBox> boxes;  ///< that do not overlap, and hold all of the surface
+};
+
+/// What is known of a texel.
+enum class TexelState : uint8_t {
+    kEmpty,   ///< no surface lies there
+    kFilled,  ///< no picture shows it: the value is what the vertices around know
+    kSeen
+};
+
+/// A page of a texture. Both images have its extent.
+struct TexturePage {
+    Image<glm::vec3> kd;  ///< diffuse albedo, or linear colour where a surface has colours alone; 0 to 1
+    Image<TexelState> states;
+};
+
+}  // namespace patina

@@ -1,0 +1,116 @@
+#include "reconstruction/texture/bake_texture.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "passes/input/convert_color.h"
+#include "passes/texture/balance_texels.h"
+#include "passes/texture/blend_picture.h"
+#include "passes/texture/finish_texels.h"
+#include "passes/texture/place_texels.h"
+#include "reconstruction/texture/texture_triangles.h"
+
+namespace patina {
+namespace {
+
+// Light, shadows and highlights change slowly: the model is cast into views of no more pixels than this along a side.
+constexpr uint32_t kMostCast_px = 640;
+
+Extent2D cast_extent(Extent2D picture) {
+    const uint32_t longest = std::max(picture.width, picture.height);
+    if (longest <= kMostCast_px) return picture;
+    return {picture.width * kMostCast_px / longest, picture.height * kMostCast_px / longest};
+}
+
+void copy_rows(const TextureBand& band, std::span<const uint32_t> words, TexturePage& page) {
+    const size_t first = size_t{band.first_row()} * band.extent().width;
+    for (size_t i = 0; i < words.size(); ++i) {
+        page.kd.pixels()[first + i] = unpack_albedo(words[i]);
+        page.states.pixels()[first + i] = static_cast<TexelState>(state_of(words[i]));
+    }
+}
+
+}  // namespace
+
+TextureBake::TextureBake(graph::Runner& runner, Stages& stages, const TextureLayout& layout)
+    : runner_(runner), stages_(stages), pages_(layout.pages), texel_m_(layout.texel_m) {
+    for (uint32_t page = 0; page < pages_.size(); ++page) {
+        const Extent2D extent = pages_[page];
+        const uint32_t most = TextureBand::most_rows(extent.width);
+        for (uint32_t row = 0; row < extent.height; row += most) {
+            const Extent2D rows{extent.width, std::min(most, extent.height - row)};
+            bands_.emplace_back(runner.device(), page, row, rows);
+        }
+    }
+    place(layout);
+}
+
+void TextureBake::place(const TextureLayout& layout) {
+    const TextureTriangles triangles = texture_triangles(layout);
+    if (triangles.pages.empty()) return;
+    for (const TextureBand& band : bands_) {
+        const TileLists lists = list_tiles(triangles, band.page(), band.first_row(), band.extent());
+        graph::FrameGraph graph = runner_.begin();
+        PlaceTexelsInputs inputs;
+        inputs.vertices = graph.upload("texture vertices", std::span(triangles.vertices));
+        inputs.triangles = graph.upload("texture triangles", std::span(triangles.indices));
+        inputs.tiles = graph.upload("texture tiles", std::span(lists.tiles));
+        inputs.lists = graph.upload("texture lists", std::span(lists.lists));
+        TextureBand::keep(graph, add_place_texels(graph, band, inputs));
+        runner_.submit(std::move(graph));
+    }
+    runner_.wait();
+}
+
+void TextureBake::add(const TexturePicture& picture) {
+    graph::FrameGraph graph = runner_.begin();
+    BlendPictureInputs inputs;
+    inputs.color = add_convert_color(graph, picture.color);
+    inputs.gain = picture.gain;
+    inputs.voxel_m = stages_.settings.map.voxel_m;
+    const PosedCamera camera = make_posed_camera(picture.color.camera, picture.world_from_camera);
+    inputs.camera = camera.gpu;
+    const PosedCamera cast = resized(camera, cast_extent(picture.color.camera.extent));
+    const GeometryStage& geometry = stages_.geometry;
+    const VoxelMapIds voxels = geometry.map().import(graph);
+    const VisibleBlocks visible = geometry.add_visible_to_view(graph, voxels, cast);
+    const RaycastImages model =
+        geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), cast.intrinsics);
+    inputs.position_m = model.position_m;
+    if (stages_.reflectance) {
+        const PredictedImages seen = stages_.reflectance->add_predict(graph, voxels, visible, model).images;
+        inputs.reflected = {seen.kd, seen.rgb, seen.light};
+    }
+    for (const TextureBand& band : bands_)
+        TextureBand::keep(graph, add_blend_picture(graph, band, band.import(graph), inputs));
+    runner_.submit(std::move(graph));
+}
+
+std::vector<TexturePage> TextureBake::finish() {
+    std::vector<TexturePage> pages;
+    for (uint32_t number = 0; number < pages_.size(); ++number) pages.push_back(finish_page(number));
+    return pages;
+}
+
+TexturePage TextureBake::finish_page(uint32_t number) {
+    const Extent2D extent = pages_[number];
+    const glm::uvec2 count = blocks_of(extent);
+    TexturePage page{Image<glm::vec3>(extent), Image<TexelState>(extent, TexelState::kEmpty)};
+    graph::FrameGraph graph = runner_.begin();
+    graph::BufferId blocks =
+        graph.fill(graph.create_buffer("texture blocks", uint64_t{count.x} * count.y * sizeof(gpu::TextureBlock)), 0);
+    for (const TextureBand& band : bands_)
+        if (band.page() == number) blocks = add_average_texels(graph, band, band.import(graph), blocks, extent);
+    const TextureBalance balance = add_balance_blocks(graph, blocks, extent, texel_m_);
+    std::vector<std::pair<const TextureBand*, graph::Readback>> reads;
+    for (const TextureBand& band : bands_) {
+        if (band.page() != number) continue;
+        reads.emplace_back(&band, graph.read_back(add_finish_texels(graph, band, band.import(graph), balance, extent)));
+    }
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    for (const auto& [band, read] : reads) copy_rows(*band, read.as<uint32_t>(), page);
+    return page;
+}
+
+}  // namespace patina

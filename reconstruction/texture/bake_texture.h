@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/graph/runner.h"
+#include "passes/state/texture_band.h"
+#include "patina/frame.h"
+#include "patina/texture.h"
+#include "reconstruction/stages/stages.h"
+
+namespace patina {
+
+/// A colour picture of what was reconstructed.
+struct TexturePicture {
+    ColorInput color;
+    RigidTransform world_from_camera{1.0};
+    glm::vec3 gain{1};  ///< of its colours over those of the first frame
+};
+
+/// Bakes a texture from pictures: each in turn is looked at by all texels that it shows.
+class TextureBake {
+  public:
+    /// Places the surface in its pages. Throws Error when memory runs out. Runner and stages must outlive this.
+    TextureBake(graph::Runner& runner, Stages& stages, const TextureLayout& layout);
+
+    /// What the picture's camera sees of the model must be on the device. Throws Error as add_convert_color does.
+    void add(const TexturePicture& picture);
+
+    /// Waits for the device. Nothing may be added after it.
+    std::vector<TexturePage> finish();
+
+  private:
+    void place(const TextureLayout& layout);
+    TexturePage finish_page(uint32_t number);
+
+    graph::Runner& runner_;
+    Stages& stages_;
+    std::vector<Extent2D> pages_;
+    double texel_m_;
+    std::vector<TextureBand> bands_;
+};
+
+}  // namespace patina

@@ -1,0 +1,192 @@
+// A surface that lies in a texture, in a scene.glb.
+
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <tiny_gltf.h>
+
+#include "engine/core/srgb.h"
+#include "export/gltf_material.h"
+#include "export/page_picture.h"
+#include "export/write_glb.h"
+#include "tests/export/temporary_folder.h"
+
+namespace patina {
+namespace {
+
+using test::TemporaryFolder;
+
+/// Segments 1 and 2: a quad each, one in each of two pages; 3 has next to no diffuse albedo and is a metal.
+TextureLayout three_quads() {
+    TextureLayout layout{0.002, {{64, 32}, {16, 16}}, {}, {}};
+    TexturedSurface& piece = layout.pieces.emplace_back();
+    piece.reflectance.segments.resize(4);
+    piece.reflectance.segments[1].kd = glm::vec3(0.5f, 0.25f, 0.125f);
+    piece.reflectance.segments[2].kd = glm::vec3(0.2f);
+    piece.reflectance.segments[2].gloss = WardGloss{glm::vec3(0.1f), 0.1f, 0.9f};
+    piece.reflectance.segments[3].kd = glm::vec3(0.01f);
+    piece.reflectance.segments[3].gloss = WardGloss{glm::vec3(0.9f), 0.1f, 0.9f};
+    for (uint32_t label = 1; label <= 3; ++label) {
+        const auto first = static_cast<uint32_t>(piece.place_px.size());
+        const uint32_t page = label == 2 ? 1 : 0;
+        const glm::vec2 corner(label == 3 ? 40.0f : 4.0f, 4.0f);
+        for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1), glm::vec2(1, 1)}) {
+            piece.mesh.positions_m.emplace_back(at, static_cast<float>(label));
+            piece.mesh.normals.emplace_back(0, 0, 1);
+            piece.mesh.colors.emplace_back(0.5f);
+            piece.reflectance.kd.emplace_back(0.3f, 0.3f, 0.3f, 1.0f);
+            piece.reflectance.labels.push_back(label);
+            piece.place_px.push_back(corner + 8.0f * at);
+            piece.pages.push_back(page);
+        }
+        piece.mesh.triangles.push_back({first, first + 1, first + 2});
+        piece.mesh.triangles.push_back({first + 1, first + 3, first + 2});
+        const glm::uvec2 low(corner - 3.0f);
+        layout.boxes.push_back({page, low, low + 14u, label});
+    }
+    return layout;
+}
+
+std::vector<TexturePage> painted(const TextureLayout& layout, glm::vec3 kd) {
+    std::vector<TexturePage> pages;
+    for (const Extent2D extent : layout.pages) {
+        TexturePage page{Image<glm::vec3>(extent), Image<TexelState>(extent, TexelState::kEmpty)};
+        for (uint32_t y = 4; y < 12; ++y) {
+            for (uint32_t x = 4; x < 12; ++x) {
+                page.kd.at(x, y) = kd;
+                page.states.at(x, y) = x < 10 ? TexelState::kSeen : TexelState::kFilled;
+            }
+        }
+        pages.push_back(std::move(page));
+    }
+    return pages;
+}
+
+struct Written {
+    GlbSummary summary;
+    tinygltf::Model model;
+};
+
+Written written_and_read(const TextureLayout& layout, const std::vector<TexturePage>& pages) {
+    const TemporaryFolder folder;
+    Written written;
+    GlbWriter writer(folder / "a.glb");
+    writer.add_textured(layout, pages);
+    written.summary = writer.finish({.version = "1.2.3", .name = "kitchen"});
+    std::string error, warning;
+    EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&written.model, &error, &warning, folder / "a.glb")) << error;
+    EXPECT_EQ(error + warning, "");
+    return written;
+}
+
+const tinygltf::Mesh& mesh_of(const tinygltf::Model& model, const std::string& name) {
+    for (const tinygltf::Mesh& mesh : model.meshes)
+        if (mesh.name == name) return mesh;
+    throw std::runtime_error("there is no mesh " + name);
+}
+
+const tinygltf::Material& material_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+    return model.materials.at(static_cast<size_t>(primitive.material));
+}
+
+const tinygltf::Image& image_of(const tinygltf::Model& model, const tinygltf::Material& material) {
+    const int texture = material.pbrMetallicRoughness.baseColorTexture.index;
+    return model.images.at(static_cast<size_t>(model.textures.at(static_cast<size_t>(texture)).source));
+}
+
+TEST(GlbTexture, EachSegmentShowsItsPage) {
+    const TextureLayout layout = three_quads();
+    const Written written = written_and_read(layout, painted(layout, glm::vec3(0.2f, 0.4f, 0.1f)));
+    EXPECT_EQ(written.summary.triangles, 6u);
+    EXPECT_EQ(written.summary.texture_pages, 2u);
+    EXPECT_EQ(written.summary.texel_m, 0.002);
+    EXPECT_EQ(written.summary.seen_texels, 2u * 6 * 8);
+    EXPECT_EQ(written.summary.filled_texels, 2u * 2 * 8);
+    const tinygltf::Primitive& first = mesh_of(written.model, "object 1").primitives.at(0);
+    EXPECT_TRUE(first.attributes.contains("TEXCOORD_0"));
+    EXPECT_FALSE(first.attributes.contains("COLOR_0"));
+    const tinygltf::Image& page = image_of(written.model, material_of(written.model, first));
+    EXPECT_EQ(page.width, 64);
+    EXPECT_EQ(page.height, 32);
+    EXPECT_NEAR(page.extras.Get("seen").GetNumberAsDouble(), 0.75, 1e-9);
+    EXPECT_EQ(page.extras.Get("texel_m").GetNumberAsDouble(), 0.002);
+    const tinygltf::Primitive& second = mesh_of(written.model, "object 2").primitives.at(0);
+    EXPECT_EQ(image_of(written.model, material_of(written.model, second)).width, 16);
+}
+
+TEST(GlbTexture, PlacesAreSharesOfThePage) {
+    const TextureLayout layout = three_quads();
+    const Written written = written_and_read(layout, painted(layout, glm::vec3(0.2f)));
+    const tinygltf::Primitive& primitive = mesh_of(written.model, "object 1").primitives.at(0);
+    const tinygltf::Accessor& accessor =
+        written.model.accessors.at(static_cast<size_t>(primitive.attributes.at("TEXCOORD_0")));
+    const tinygltf::BufferView& view = written.model.bufferViews.at(static_cast<size_t>(accessor.bufferView));
+    std::vector<glm::vec2> places(accessor.count);
+    std::memcpy(static_cast<void*>(places.data()), written.model.buffers.at(0).data.data() + view.byteOffset,
+                view.byteLength);
+    EXPECT_EQ(places.at(0), glm::vec2(4.0f / 64, 4.0f / 32));
+    EXPECT_EQ(places.at(3), glm::vec2(12.0f / 64, 12.0f / 32));
+}
+
+TEST(GlbTexture, TexelsAreTheBaseColourOfTheirSegment) {
+    const TextureLayout layout = three_quads();
+    const glm::vec3 kd(0.2f, 0.4f, 0.1f);
+    const Written written = written_and_read(layout, painted(layout, kd));
+    for (const uint32_t label : {1u, 2u}) {
+        const SegmentReflectance& segment = layout.pieces[0].reflectance.segments[label];
+        const tinygltf::Primitive& primitive =
+            mesh_of(written.model, "object " + std::to_string(label)).primitives.at(0);
+        const tinygltf::Image& page = image_of(written.model, material_of(written.model, primitive));
+        const GltfMaterial look = gltf_material(segment.gloss.value_or(WardGloss{}), *segment.kd);
+        const glm::vec3 base = base_color_of(look, kd);
+        const size_t texel = (size_t{8} * static_cast<size_t>(page.width) + 8) * static_cast<size_t>(page.component);
+        for (size_t channel = 0; channel < 3; ++channel) {
+            const double expected = 255 * srgb_encoded(double{base[static_cast<glm::length_t>(channel)]});
+            EXPECT_NEAR(page.image.at(texel + channel), expected, 0.51) << "PNG keeps it";
+        }
+    }
+}
+
+TEST(GlbTexture, AMetalHasOneColourAndNoPage) {
+    const TextureLayout layout = three_quads();
+    const Written written = written_and_read(layout, painted(layout, glm::vec3(0.2f)));
+    const tinygltf::Primitive& metal = mesh_of(written.model, "object 3").primitives.at(0);
+    EXPECT_FALSE(metal.attributes.contains("TEXCOORD_0"));
+    EXPECT_EQ(material_of(written.model, metal).pbrMetallicRoughness.baseColorTexture.index, -1);
+    EXPECT_EQ(material_of(written.model, metal).pbrMetallicRoughness.metallicFactor, 1);
+}
+
+TEST(GlbTexture, ASurfaceWithColoursAloneShowsThem) {
+    TextureLayout layout = three_quads();
+    layout.pieces[0].reflectance = {};
+    for (TextureBox& box : layout.boxes) box.label = 0;
+    const Written written = written_and_read(layout, painted(layout, glm::vec3(0.5f)));
+    const tinygltf::Mesh& mesh = mesh_of(written.model, "surface");
+    ASSERT_EQ(mesh.primitives.size(), 2u) << "one for each page";
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+        EXPECT_TRUE(primitive.attributes.contains("TEXCOORD_0"));
+        EXPECT_FALSE(primitive.attributes.contains("COLOR_0"));
+    }
+}
+
+TEST(PagePicture, WhatShowsNoSurfaceHasTheColoursAroundIt) {
+    TexturePage page{Image<glm::vec3>({16, 3}), Image<TexelState>({16, 3}, TexelState::kEmpty)};
+    page.kd.at(0, 1) = glm::vec3(0.2f);
+    page.kd.at(15, 1) = glm::vec3(0.6f);
+    page.states.at(0, 1) = TexelState::kSeen;
+    page.states.at(15, 1) = TexelState::kFilled;
+    const Image<SrgbPixel> picture = page_picture(page, {{0, {0, 0}, {16, 3}, 0}}, 0, [](uint32_t) { return 1.0f; });
+    for (const uint32_t x : {0u, 1u, 5u}) EXPECT_NEAR(linear_color(picture.at(x, 0)).r, 0.2f, 0.003f) << x;
+    for (const uint32_t x : {9u, 13u, 15u}) EXPECT_NEAR(linear_color(picture.at(x, 2)).r, 0.6f, 0.004f) << x;
+}
+
+TEST(PagePicture, ASegmentsFactorStaysInItsBox) {
+    TexturePage page{Image<glm::vec3>({4, 1}, glm::vec3(0.2f)), Image<TexelState>({4, 1}, TexelState::kSeen)};
+    const Image<SrgbPixel> picture = page_picture(page, {{0, {0, 0}, {2, 1}, 1}, {0, {2, 0}, {4, 1}, 2}}, 0,
+                                                  [](uint32_t label) { return label == 1 ? 1.0f : 2.0f; });
+    EXPECT_NEAR(linear_color(picture.at(1, 0)).r, 0.2f, 0.003f);
+    EXPECT_NEAR(linear_color(picture.at(2, 0)).r, 0.4f, 0.004f);
+}
+
+}  // namespace
+}  // namespace patina
