@@ -91,7 +91,7 @@ TEST_F(SameBytes, ASeedChangesMaterialsAndNeitherPathNorLights) {
 TEST_F(SameBytes, ASeedRoundsColoursAndLeavesTheSurface) {
     record("4");
     const auto scene_of = [&](std::vector<std::string> more) {
-        more.insert(more.end(), {"--lighting", "none", "--labels", "off", "--surface-error", "0"});
+        more.insert(more.end(), {"--lighting", "none", "--labels", "off", "--surface-error", "0", "--texture", "off"});
         run_quietly(recording_, std::move(more));
         return read_text(out() / "scene.glb");
     };

@@ -35,6 +35,21 @@ TEST(Video, HoldsItsFramesInOrder) {
     EXPECT_GT(middles[2][0], middles[2][2] + 100);
 }
 
+TEST(Video, Mp4IsWhatBrowsersPlay) {
+    const TemporaryFolder folder;
+    VideoWriter video(folder / "a.mp4", kExtent, 25);
+    for (int i = 0; i < 10; ++i) video.write(i < 5 ? kRed : kBlue);
+    video.finish();
+    cv::VideoCapture capture((folder / "a.mp4").string());
+    ASSERT_TRUE(capture.isOpened());
+    const int codec = static_cast<int>(capture.get(cv::CAP_PROP_FOURCC));
+    EXPECT_THAT(codec, testing::AnyOf(cv::VideoWriter::fourcc('a', 'v', 'c', '1'),
+                                      cv::VideoWriter::fourcc('h', '2', '6', '4')));
+    size_t frames = 0;
+    for (cv::Mat frame; capture.read(frame);) ++frames;
+    EXPECT_EQ(frames, 10u);
+}
+
 TEST(Video, OneThatIsNotFinishedLeavesNothing) {
     const TemporaryFolder folder;
     { VideoWriter(folder / "a.avi", kExtent, 25).write(kRed); }

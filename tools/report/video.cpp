@@ -1,5 +1,7 @@
 #include "tools/report/video.h"
 
+#include <algorithm>
+
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
@@ -11,9 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int codec_of(const fs::path& file) {
-    if (file.extension() == ".avi") return cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
-    if (file.extension() == ".mp4") return cv::VideoWriter::fourcc('m', 'p', '4', 'v');
+/// In the order in which they are tried: browsers play H.264, which not every FFmpeg encodes, and no MPEG-4 Visual.
+std::vector<int> codecs_of(const fs::path& file) {
+    using cv::VideoWriter;
+    if (file.extension() == ".avi") return {VideoWriter::fourcc('M', 'J', 'P', 'G')};
+    if (file.extension() == ".mp4")
+        return {VideoWriter::fourcc('a', 'v', 'c', '1'), VideoWriter::fourcc('m', 'p', '4', 'v')};
     throw Error("the video '", file.string(), "' must be a .avi or a .mp4");
 }
 
@@ -25,7 +30,7 @@ int backend_for(const fs::path& file) {
 }
 
 const fs::path& checked(const fs::path& file) {
-    codec_of(file);
+    codecs_of(file);
     return file;
 }
 
@@ -38,7 +43,10 @@ struct VideoWriter::Encoder {
 VideoWriter::VideoWriter(const fs::path& file, Extent2D extent, double fps, const std::vector<fs::path>& inputs)
     : file_(checked(file), inputs), extent_(extent), encoder_(std::make_unique<Encoder>()) {
     const cv::Size size(static_cast<int>(extent.width), static_cast<int>(extent.height));
-    if (!encoder_->writer.open(file_.partial_path().string(), backend_for(file), codec_of(file), fps, size)) {
+    const auto opens = [&](int codec) {
+        return encoder_->writer.open(file_.partial_path().string(), backend_for(file), codec, fps, size);
+    };
+    if (!std::ranges::any_of(codecs_of(file), opens)) {
         throw Error("the video '", file.string(), "' of ", extent, " pixels at ", fps,
                     " frames a second cannot be written: there is no encoder for it, or no space left on the disk");
     }
