@@ -6,8 +6,8 @@
 namespace patina {
 
 /// The albedo of each texel, packed (lib/color/packed_albedo.glsl) with its state: 0 where no surface lies, all is 0; 1
-/// where no picture shows it, its albedo is what records know; 2 where one does: the mean of what pictures say, times
-/// the balance between the blocks of its surface around it. Returns u32 by texel.
+/// where no picture shows it, its albedo is what they show within 3 cm of it, else what records know; 2 where one does:
+/// the mean of what pictures say, times the balance between the blocks of its surface around it. Returns u32 by texel.
 graph::BufferId add_finish_texels(graph::FrameGraph& frame, const TextureBand& band, const TextureBandIds& ids,
                                   const TextureBalance& balance, Extent2D page);
 

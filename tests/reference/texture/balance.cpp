@@ -7,7 +7,7 @@ namespace patina::reference {
 namespace {
 
 constexpr int kBlock = 8, kTaps = 4;
-constexpr double kReach_m = 0.08, kOneSurface_m = 0.06;
+constexpr double kReach_m = 0.08, kOneSurface_m = 0.06, kFill_m = 0.03;
 
 struct Block {
     glm::dvec3 position_m{0}, seen{0}, known{0};
@@ -64,23 +64,33 @@ void balance(Blocks& blocks, int x, int y, int stride) {
     own.factor = glm::clamp((known / shares + 0.01) / (seen / shares + 0.01), 0.25, 4.0);
 }
 
-/// Between the four blocks around a texel; empty where none is of its surface.
-std::optional<glm::dvec3> factor_at(Blocks& blocks, double column, double row, const glm::dvec3& position_m) {
+/// Between the four blocks around a texel.
+struct Around {
+    std::optional<glm::dvec3> factor, albedo;  ///< empty where none is of its surface
+};
+
+Around around_of(Blocks& blocks, double column, double row, const glm::dvec3& position_m) {
     const double u = column / kBlock - 0.5, v = row / kBlock - 0.5;
     const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
-    glm::dvec3 sum(0);
-    double shares = 0;
+    glm::dvec3 sum(0), albedo(0);
+    double shares = 0, near_shares = 0;
     for (int i = 0; i < 4; ++i) {
         const int dx = i % 2, dy = i / 2;
         const Block& block =
             *blocks.at(std::clamp(x + dx, 0, blocks.width - 1), std::clamp(y + dy, 0, blocks.height - 1));
-        if (!block.factor || glm::distance(block.position_m, position_m) > kReach_m) continue;
+        const double away = glm::distance(block.position_m, position_m);
+        if (!block.factor || away > kReach_m) continue;
         const double share = (dx == 1 ? u - x : 1 - u + x) * (dy == 1 ? v - y : 1 - v + y) + 1e-4;
         sum += share * *block.factor;
         shares += share;
+        if (away > kFill_m) continue;
+        albedo += share * *block.factor * block.seen;
+        near_shares += share;
     }
-    if (shares == 0) return std::nullopt;
-    return sum / shares;
+    Around around;
+    if (shares > 0) around.factor = sum / shares;
+    if (near_shares > 0) around.albedo = albedo / near_shares;
+    return around;
 }
 
 }  // namespace
@@ -97,12 +107,14 @@ std::vector<glm::dvec3> balance_page(const SeenPage& page) {
     std::vector<glm::dvec3> balanced(page.known.size(), glm::dvec3(0));
     for (size_t i = 0; i < balanced.size(); ++i) {
         if (!page.position_m[i]) continue;
-        balanced[i] = page.known[i];
-        if (!page.seen[i]) continue;
         const double column = static_cast<double>(i % page.extent.width) + 0.5;
         const double row = static_cast<double>(i / page.extent.width) + 0.5;
-        if (const auto factor = factor_at(blocks, column, row, *page.position_m[i]))
-            balanced[i] = *factor * *page.seen[i];
+        const Around around = around_of(blocks, column, row, *page.position_m[i]);
+        if (page.seen[i]) {
+            balanced[i] = around.factor ? *around.factor * *page.seen[i] : page.known[i];
+        } else {
+            balanced[i] = around.albedo.value_or(page.known[i]);
+        }
     }
     return balanced;
 }
