@@ -53,6 +53,7 @@ void Stream::run(const std::stop_token& stop) {
                 assemble(transfer);
                 give_back(std::move(transfer));
             }
+            transfers_ += work.size();
             work.clear();
             publish_statistics();
         }
@@ -111,6 +112,7 @@ void Stream::publish_statistics() {
     const std::lock_guard lock(mutex_);
     statistics_.infrared = infrared_.statistics();
     statistics_.color = color_.statistics();
+    statistics_.transfers = transfers_;
     statistics_.frames = pairs_;
     statistics_.unpaired_infrared = pairer_.unpaired_infrared();
     statistics_.unpaired_color = pairer_.unpaired_color();

@@ -20,6 +20,7 @@ namespace patina::sensor::kinect2 {
 struct StreamStatistics {
     InfraredStatistics infrared;
     ColorStatistics color;
+    uint64_t transfers = 0;          ///< that the assemblers have worked through
     uint64_t frames = 0;             ///< pairs
     uint64_t unpaired_infrared = 0;  ///< frames without a partner within 16 ms
     uint64_t unpaired_color = 0;
@@ -73,7 +74,7 @@ class Stream final : public TransferSink {
     ColorAssembler color_;
     FramePairer pairer_;
     RawFrame spare_;
-    uint64_t pairs_ = 0;
+    uint64_t transfers_ = 0, pairs_ = 0;
 
     std::jthread thread_;  // last: stops and joins before what it uses is destroyed
 };
