@@ -14,7 +14,9 @@
 namespace patina::sensor::kinect2 {
 
 struct DeviceOptions {
-    size_t queued_frames = 3;                 ///< pairs that wait for next(); the oldest gives way
+    size_t queued_frames = 3;  ///< pairs that wait for next(); the oldest gives way
+    /// Of each stream, that wait for the assembling thread while it is late: 64 ms of infrared, 17 MB.
+    size_t waiting_transfers = 64;
     std::chrono::milliseconds silence{2000};  ///< without a pair, after which next() throws
     Readiness readiness;
 };

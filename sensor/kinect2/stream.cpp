@@ -3,19 +3,13 @@
 #include <utility>
 
 namespace patina::sensor::kinect2 {
-namespace {
-
-/// Transfers that may wait for the assemblers: 64 ms of infrared (17 MB), and as many of colour.
-constexpr size_t kSpares = 64;
-
-}  // namespace
-
-Stream::Stream(size_t queued_frames, std::string name) : frames_(queued_frames), name_(std::move(name)) {
-    for (size_t i = 0; i < kSpares; ++i) {
+Stream::Stream(size_t queued_frames, size_t waiting_transfers, std::string name)
+    : frames_(queued_frames), name_(std::move(name)) {
+    for (size_t i = 0; i < waiting_transfers; ++i) {
         color_spares_.transfers.emplace_back(StreamKind::kColor);
         infrared_spares_.transfers.emplace_back(StreamKind::kInfrared);
     }
-    filled_.reserve(2 * kSpares);  // so that exchange() allocates nothing
+    filled_.reserve(2 * waiting_transfers);  // so that exchange() allocates nothing
     thread_ = std::jthread([this](std::stop_token stop) { run(stop); });
 }
 
@@ -47,7 +41,7 @@ void Stream::end(bool unplugged, const std::string& reason) noexcept {
 void Stream::run(const std::stop_token& stop) {
     try {
         std::vector<Transfer> work;
-        work.reserve(2 * kSpares);
+        work.reserve(filled_.capacity());
         while (wait_for_work(stop, work)) {
             for (Transfer& transfer : work) {
                 assemble(transfer);

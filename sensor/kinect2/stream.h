@@ -31,8 +31,9 @@ struct StreamStatistics {
 /// One run of the streams: takes transfers from the event thread, and turns them into frames on a thread of its own.
 class Stream final : public TransferSink {
   public:
-    /// `queued_frames`: how many pairs wait to be fetched. `name`: the device, for messages.
-    Stream(size_t queued_frames, std::string name);
+    /// `queued_frames`: how many pairs wait to be fetched. `waiting_transfers`: how many transfers of each kind wait to
+    /// be assembled. `name`: the device, for messages.
+    Stream(size_t queued_frames, size_t waiting_transfers, std::string name);
     /// The transport must have stopped.
     ~Stream() override;
 

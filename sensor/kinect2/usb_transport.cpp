@@ -133,7 +133,7 @@ class UsbTransport final : public Transport {
     /// A reset may put the device on the bus anew, under another address; it is then opened again.
     void reset() override {
         stop_streams();
-        const int code = libusb_reset_device(handle());
+        const int code = handle_ ? libusb_reset_device(handle_.get()) : LIBUSB_ERROR_NOT_FOUND;
         if (code == LIBUSB_ERROR_NOT_FOUND) {
             reopen();
         } else {
@@ -164,7 +164,7 @@ class UsbTransport final : public Transport {
 
   private:
     libusb_device_handle* handle() const {
-        if (!handle_) throw Unplugged(name_, " was closed, because it did not give back its transfers");
+        if (!handle_) throw Error(name_, " was closed, because it did not give back its transfers");
         return handle_.get();
     }
 

@@ -51,7 +51,7 @@ void Bus::pass_interval() {
 
 void Bus::receive(const SentPacket& packet) {
     const std::lock_guard lock(mutex_);
-    if (isochronous_.empty()) return;
+    if (isochronous_.empty() || hung_) return;
     libusb_transfer& transfer = *isochronous_.front();
     libusb_iso_packet_descriptor& descriptor = transfer.iso_packet_desc[filled_];
     const size_t length = std::min<size_t>(packet.bytes.size(), descriptor.length);
@@ -64,7 +64,7 @@ void Bus::receive(const SentPacket& packet) {
 
 bool Bus::receive(std::span<const uint8_t> bytes) {
     const std::lock_guard lock(mutex_);
-    if (bulk_.empty()) return false;
+    if (bulk_.empty() || hung_) return false;
     libusb_transfer& transfer = *bulk_.front();
     const size_t length = std::min<size_t>(bytes.size(), static_cast<size_t>(transfer.length));
     std::memcpy(transfer.buffer, bytes.data(), length);
@@ -110,7 +110,8 @@ int Bus::cancel(libusb_transfer* transfer) {
     auto& queue = queue_of(transfer);
     const auto found = std::ranges::find(queue, transfer);
     if (found == queue.end()) return LIBUSB_ERROR_NOT_FOUND;
-    if (options_.cancel_hangs) return 0;
+    hung_ |= options_.cancel_hangs;
+    if (hung_) return 0;
     if (&queue == &isochronous_ && found == queue.begin()) filled_ = 0;
     queue.erase(found);
     completed_.push_back({transfer, LIBUSB_TRANSFER_CANCELLED});
@@ -149,6 +150,7 @@ void Bus::forget_transfers() {
     completed_.clear();
     filled_ = 0;
     bytes_in_use_ = 0;
+    hung_ = false;
 }
 
 }  // namespace patina::sensor::kinect2::testing

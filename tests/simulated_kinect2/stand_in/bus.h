@@ -53,6 +53,7 @@ class Bus {
     int filled_ = 0;  ///< packets of the first isochronous transfer
     uint64_t bytes_in_use_ = 0, submissions_ = 0, intervals_ = 0;
     bool interrupted_ = false;
+    bool hung_ = false;  ///< cancelled transfers do not come back
 
     std::jthread thread_;
 };

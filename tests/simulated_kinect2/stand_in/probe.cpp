@@ -1,13 +1,15 @@
-// Runs the driver over whatever libusb is loaded and prints what came: probe SECONDS [RUNS].
-//   frames, lost and unpaired ones, whether sequence numbers and contents fit, and the CPU time of this process without
-//   that of the stand-in's bus.
+// Runs the driver over whatever libusb is loaded and prints what came: kinect2_probe SECONDS [RUNS [compare]].
+//   Frames, lost and unpaired ones, and the CPU time of this process without that of the stand-in's bus. With
+//   "compare", frames whose numbers are both even or both odd must have the same bytes, as the stand-in sends them.
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <unistd.h>
 
@@ -39,7 +41,24 @@ double cpu_seconds() {
     return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-void run(Device& device, double seconds) {
+/// Counts frames that are not as the first of their kind.
+class Comparison {
+  public:
+    explicit Comparison(bool compares) : compares_(compares) {}
+
+    bool damaged(const RawFrame& frame) {
+        if (frame.infrared.size() != kInfraredBytes || frame.color.size() < 4) return true;
+        std::vector<uint8_t>& first = first_[frame.sequence % 2];
+        if (compares_ && first.empty()) first = frame.infrared;
+        return compares_ && first != frame.infrared;
+    }
+
+  private:
+    bool compares_;
+    std::vector<uint8_t> first_[2];
+};
+
+void run(Device& device, double seconds, Comparison& comparison) {
     device.start();
     RawFrame frame;
     uint64_t frames = 0, damaged = 0;
@@ -48,7 +67,7 @@ void run(Device& device, double seconds) {
     double cpu = cpu_seconds();
     while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds && device.next(frame)) {
         if (frames++ == 0) first = frame.sequence;
-        damaged += frame.infrared.size() != kInfraredBytes || frame.color.size() < 4;
+        damaged += comparison.damaged(frame) ? 1 : 0;
     }
     cpu = cpu_seconds() - cpu;
     const double elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -71,7 +90,8 @@ int main(int argc, char** argv) {
     const int runs = argc > 2 ? std::atoi(argv[2]) : 1;
     try {
         Device device(open_usb());
-        for (int i = 0; i < runs; ++i) run(device, seconds);
+        Comparison comparison(argc > 3);
+        for (int i = 0; i < runs; ++i) run(device, seconds, comparison);
         if (!device.warning().empty()) std::printf("warning: %s\n", device.warning().c_str());
     } catch (const std::exception& error) {
         std::printf("error: %s\n", error.what());
