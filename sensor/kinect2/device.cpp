@@ -105,6 +105,15 @@ void Device::halt() noexcept {
     stream_.reset();
 }
 
+std::string Device::warning() const {
+    const std::string& descriptor = transport_->serial();
+    if (!descriptor.empty() && !calibration_.serial.empty() && descriptor != calibration_.serial) {
+        return text(name(), ": the serial number is ", descriptor, " in its descriptor, ", calibration_.serial,
+                    " in its own page");
+    }
+    return transport_->warning();
+}
+
 void Device::interrupt() {
     const std::lock_guard lock(mutex_);
     interrupted_ = true;

@@ -53,7 +53,7 @@ class Device {
     /// "Kinect v2 at 2-1".
     const std::string& name() const { return transport_->name(); }
     /// What works less well than it should; empty: nothing.
-    std::string warning() const { return transport_->warning(); }
+    std::string warning() const;
     /// Of the present or last run.
     StreamStatistics statistics() const;
 

@@ -1,7 +1,10 @@
 #include "sensor/kinect2/diagnosis.h"
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -36,7 +39,7 @@ std::string speed_name(int speed) {
 }
 
 struct Maker {
-    const char* id;
+    std::string_view id;
     const char* name;
     bool doubtful;
 };
@@ -46,31 +49,12 @@ constexpr Maker kMakers[] = {{"0x8086", "Intel", false}, {"0x1912", "Renesas", f
 
 std::string without_0x(const std::string& id) { return id.starts_with("0x") ? id.substr(2) : id; }
 
-/// The host controller is the parent of the bus's root hub.
-void find_controller(const fs::path& devices, uint8_t bus, ConnectedDevice& device) {
-    std::error_code error;
-    const fs::path root_hub = fs::canonical(devices / text("usb", int{bus}), error);
-    if (error) return;
-    const fs::path controller = root_hub.parent_path();
-    const std::string vendor = word_of(controller / "vendor"), product = word_of(controller / "device");
-    const fs::path driver = fs::read_symlink(controller / "driver", error).filename();
-    if (vendor.empty()) return;
-    std::string name = "unknown make";
-    for (const Maker& maker : kMakers) {
-        if (vendor != maker.id) continue;
-        name = maker.name;
-        device.doubtful_controller = maker.doubtful;
-    }
-    device.controller = text(name, " (", without_0x(vendor), ":", without_0x(product), ")");
-    if (!driver.empty()) device.controller += ", driver " + printable(driver.string());
-}
-
 ConnectedDevice look_at(const usb::Listed& listed, const SystemPaths& system) {
     ConnectedDevice device;
     device.name = usb::name_of(listed);
     device.speed = speed_name(listed.speed);
     device.fast_enough = listed.speed >= LIBUSB_SPEED_SUPER;
-    find_controller(system.devices, libusb_get_bus_number(listed.device.get()), device);
+    device.controller = find_controller(system.devices, libusb_get_bus_number(listed.device.get()));
     libusb_device_handle* opened = nullptr;
     const int code = libusb_open(listed.device.get(), &opened);
     const usb::Handle handle(opened);
@@ -101,10 +85,10 @@ class Report {
         out_ << device.name << "\n";
         line("speed", device.speed,
              device.fast_enough ? "" : ": too slow; check that port, cable and power supply are those of USB 3");
-        if (!device.controller.empty()) {
+        if (!device.controller.name.empty()) {
             line(
-                "controller", device.controller,
-                device.doubtful_controller ? "; controllers of this make mostly do not carry the infrared stream" : "");
+                "controller", device.controller.name,
+                device.controller.doubtful ? "; controllers of this make mostly do not carry the infrared stream" : "");
         }
         if (device.access_error.empty()) {
             line("access", "yes");
@@ -131,6 +115,23 @@ class Report {
 };
 
 }  // namespace
+
+Controller find_controller(const fs::path& devices, uint8_t bus) {
+    std::error_code error;
+    // The root hub's parent.
+    const fs::path folder = fs::canonical(devices / text("usb", int{bus}), error).parent_path();
+    const std::string vendor = word_of(folder / "vendor"), product = word_of(folder / "device");
+    if (error || vendor.empty()) return {};
+    const auto* const maker = std::ranges::find(kMakers, vendor, &Maker::id);
+    const bool known = maker != std::end(kMakers);
+    Controller controller;
+    controller.doubtful = known && maker->doubtful;
+    controller.name =
+        text(known ? maker->name : "unknown make", " (", without_0x(vendor), ":", without_0x(product), ")");
+    const fs::path driver = fs::read_symlink(folder / "driver", error).filename();
+    if (!driver.empty()) controller.name += ", driver " + printable(driver.string());
+    return controller;
+}
 
 Diagnosis diagnose(const SystemPaths& system) {
     Diagnosis diagnosis;

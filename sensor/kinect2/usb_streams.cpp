@@ -17,8 +17,7 @@ constexpr uint8_t kColorEndpoint = 0x83, kInfraredEndpoint = 0x84;
 constexpr size_t kColorTransfers = 20, kInfraredTransfers = 60;
 /// 16 ms of infrared and a third of a picture: with less, any delay of the event thread would lose data.
 constexpr size_t kFewestColor = 8, kFewestInfrared = 16;
-/// The ring may have run dry when nothing completed for this long.
-constexpr auto kStall = 45ms;
+constexpr auto kTransferTime = 1ms;  // 8 intervals of 125 us
 /// A stream whose transfers all fail ends instead of spinning.
 constexpr uint32_t kMostFailures = 200;
 constexpr auto kMostForCancelling = 5s;
@@ -79,7 +78,7 @@ void Streams::start() {
 }
 
 void Streams::add_slots(StreamKind kind, size_t count, libusb_device_handle* handle) {
-    Stream& all = stream(kind);
+    Ring& all = ring(kind);
     all.idle.reserve(count);  // the event thread allocates nothing
     for (size_t i = 0; i < count; ++i) all.slots.push_back(std::make_unique<Slot>(*this, handle, kind));
 }
@@ -87,7 +86,7 @@ void Streams::add_slots(StreamKind kind, size_t count, libusb_device_handle* han
 void Streams::submit_all(StreamKind kind) {
     const bool color = kind == StreamKind::kColor;
     const std::lock_guard lock(mutex_);
-    Stream& all = stream(kind);
+    Ring& all = ring(kind);
     size_t submitted = 0;
     int code = 0;
     for (; submitted < all.slots.size(); ++submitted) {
@@ -109,7 +108,7 @@ void Streams::submit_all(StreamKind kind) {
 int Streams::submit(Slot& slot) {
     slot.transfer->buffer = slot.buffer.bytes.data();  // another one after each exchange
     const int code = libusb_submit_transfer(slot.transfer.get());
-    if (code == 0) ++stream(slot.buffer.kind).in_flight;
+    if (code == 0) ++ring(slot.buffer.kind).in_flight;
     return code;
 }
 
@@ -121,30 +120,30 @@ void Streams::completed(libusb_transfer* transfer) {
 void Streams::on_completed(Slot& slot) {
     {
         const std::lock_guard lock(mutex_);
-        --stream(slot.buffer.kind).in_flight;
+        --ring(slot.buffer.kind).in_flight;
         returned_.notify_all();
         if (stopping_ || ended_) return;
     }
     if (slot.transfer->status == LIBUSB_TRANSFER_NO_DEVICE) return end(true, {});
     slot.read_result();
     sink_.exchange(slot.buffer);
-    note_stall(slot);
     submit_again(slot);
 }
 
-/// After a stall the transfers that were in flight are still whole and in order; data is missing before the one that is
-/// submitted next.
-void Streams::note_stall(Slot& slot) {
-    if (slot.buffer.kind != StreamKind::kInfrared) return;
+/// Whether the ring of infrared transfers, with so many besides the one that has just completed, may have run dry since
+/// the last one completed: three quarters of the time that it lasts have passed. The transfers that were in flight are
+/// still whole and in order; data is missing before the one that is submitted next.
+bool Streams::stalled(size_t in_flight) {
     const auto now = std::chrono::steady_clock::now();
-    slot.follows_gap = last_infrared_.time_since_epoch().count() != 0 && now - last_infrared_ > kStall;
-    last_infrared_ = now;
+    const auto last = std::exchange(last_infrared_, now);
+    return last.time_since_epoch().count() != 0 && now - last > kTransferTime * in_flight * 3 / 4;
 }
 
 void Streams::submit_again(Slot& slot) {
     std::unique_lock lock(mutex_);
     if (stopping_) return;
-    Stream& all = stream(slot.buffer.kind);
+    Ring& all = ring(slot.buffer.kind);
+    if (slot.buffer.kind == StreamKind::kInfrared) slot.follows_gap = stalled(all.in_flight);
     const bool failed = slot.transfer->status != LIBUSB_TRANSFER_COMPLETED;
     all.failures = failed ? all.failures + 1 : 0;
     all.idle.push_back(&slot);
@@ -172,7 +171,7 @@ bool Streams::stop() noexcept {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
     }
-    for (Stream* all : {&color_, &infrared_}) {
+    for (Ring* all : {&color_, &infrared_}) {
         for (const auto& slot : all->slots)
             libusb_cancel_transfer(slot->transfer.get());  // those at rest are not found
     }

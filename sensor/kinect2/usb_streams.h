@@ -51,20 +51,20 @@ class Streams {
         bool follows_gap = false;  ///< the device had no transfer to fill before this one was submitted
     };
 
-    /// Of one kind of transfers.
-    struct Stream {
+    /// The transfers of one kind.
+    struct Ring {
         std::vector<std::unique_ptr<Slot>> slots;
         std::vector<Slot*> idle;  ///< could not be submitted again; tried with each one that completes
         size_t in_flight = 0;
         uint32_t failures = 0;  ///< transfers in a row that failed
     };
 
-    Stream& stream(StreamKind kind) { return kind == StreamKind::kColor ? color_ : infrared_; }
+    Ring& ring(StreamKind kind) { return kind == StreamKind::kColor ? color_ : infrared_; }
     void add_slots(StreamKind kind, size_t count, libusb_device_handle* handle);
     void submit_all(StreamKind kind);
     static void LIBUSB_CALL completed(libusb_transfer* transfer);
     void on_completed(Slot& slot);
-    void note_stall(Slot& slot);
+    bool stalled(size_t in_flight);
     int submit(Slot& slot);
     void submit_again(Slot& slot);
     void end(bool unplugged, const std::string& reason);
@@ -77,7 +77,7 @@ class Streams {
 
     std::mutex mutex_;  ///< of what follows
     std::condition_variable returned_;
-    Stream color_, infrared_;
+    Ring color_, infrared_;
     bool stopping_ = false, ended_ = false;
 
     std::chrono::steady_clock::time_point last_infrared_{};  ///< of the event thread alone

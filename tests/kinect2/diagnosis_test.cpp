@@ -18,7 +18,7 @@ ConnectedDevice fine() {
     device.name = "Kinect v2 at 2-1";
     device.speed = "SuperSpeed";
     device.fast_enough = true;
-    device.controller = "Intel (8086:a36d), driver xhci_hcd";
+    device.controller.name = "Intel (8086:a36d), driver xhci_hcd";
     device.serial = "012345678901";
     return device;
 }
@@ -41,7 +41,7 @@ TEST(Kinect2Diagnosis, EachObstacleHasItsRemedy) {
     ConnectedDevice device = fine();
     device.speed = "high speed (USB 2)";
     device.fast_enough = false;
-    device.doubtful_controller = true;
+    device.controller.doubtful = true;
     device.access_error = "Access denied";
     device.denied = true;
     diagnosis.devices = {device};
@@ -65,6 +65,27 @@ TEST(Kinect2Diagnosis, AbsenceIsOneLine) {
     EXPECT_THAT(format(diagnosis), HasSubstr("the adaptor is connected, the camera is not"));
     diagnosis.usb_error = "the system's USB cannot be reached: no permission";
     EXPECT_EQ(format(diagnosis), "Kinect v2: the system's USB cannot be reached: no permission\n");
+}
+
+TEST(Kinect2Diagnosis, ControllerIsTheParentOfTheBussRootHub) {
+    const fs::path root = fs::temp_directory_path() / "patina-kinect2-sys";
+    const fs::path controller = root / "pci0000:00/0000:00:14.0";
+    fs::create_directories(controller / "usb2");
+    fs::create_directories(root / "bus");
+    fs::create_directory_symlink(controller / "usb2", root / "bus/usb2");
+    fs::create_directory_symlink("/sys/bus/pci/drivers/xhci_hcd", controller / "driver");
+    const auto find = [&](const char* vendor) {
+        std::ofstream(controller / "vendor") << vendor << "\n";
+        std::ofstream(controller / "device") << "0xa36d\n";
+        return find_controller(root / "bus", 2);
+    };
+    EXPECT_EQ(find("0x8086").name, "Intel (8086:a36d), driver xhci_hcd");
+    EXPECT_FALSE(find("0x8086").doubtful);
+    EXPECT_EQ(find("0x1b21").name, "ASMedia (1b21:a36d), driver xhci_hcd");
+    EXPECT_TRUE(find("0x1b21").doubtful);
+    EXPECT_EQ(find("0x4242").name, "unknown make (4242:a36d), driver xhci_hcd");
+    EXPECT_EQ(find_controller(root / "bus", 3).name, "");
+    fs::remove_all(root);
 }
 
 TEST(Kinect2Diagnosis, MemoryOfTheSystemIsRead) {

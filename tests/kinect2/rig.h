@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,17 @@ struct Rig {
     SimulatedTransport* transport = nullptr;
     std::unique_ptr<Device> device;
 };
+
+/// The message of the Error that `work` throws; "none" when it throws none.
+template <class Work>
+std::string failure_of(Work work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "none";
+}
 
 /// One infrared frame again and again, and pictures of six bytes: what tests use that look at neither.
 SimulatedDeviceOptions small_and_quick();
