@@ -55,7 +55,7 @@ void Bus::receive(const SentPacket& packet) {
     libusb_transfer& transfer = *isochronous_.front();
     libusb_iso_packet_descriptor& descriptor = transfer.iso_packet_desc[filled_];
     const size_t length = std::min<size_t>(packet.bytes.size(), descriptor.length);
-    std::memcpy(transfer.buffer + static_cast<size_t>(filled_) * descriptor.length, packet.bytes.data(), length);
+    std::copy_n(packet.bytes.begin(), length, transfer.buffer + static_cast<size_t>(filled_) * descriptor.length);
     descriptor.actual_length = static_cast<unsigned>(length);
     descriptor.status = packet.complete ? LIBUSB_TRANSFER_COMPLETED : LIBUSB_TRANSFER_ERROR;
     if (++filled_ < transfer.num_iso_packets) return;
