@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "engine/vulkan/floor.h"
+#include "sensor/kinect2/diagnosis.h"
 #include "tools/commands/commands.h"
 #include "tools/program/standard_streams.h"
 
@@ -45,10 +46,12 @@ void print(const vulkan::DeviceReport& device) {
 }  // namespace
 
 void add_doctor(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("doctor", "List the Vulkan devices, what they offer, and what is missing");
+    CLI::App* command = app.add_subcommand(
+        "doctor", "List the Vulkan devices and connected cameras, what they offer, and what is missing");
     const auto arguments = std::make_shared<DeviceArguments>();
     arguments->add_to(*command);
     command->callback([arguments] {
+        print_out("{}", sensor::kinect2::format(sensor::kinect2::diagnose()));  // first: no Vulkan device ends it below
         const auto devices = vulkan::list_devices();
         for (const vulkan::DeviceReport& device : devices) print(device);
         const uint32_t chosen = vulkan::choose_device(devices, arguments->selector);
