@@ -7,8 +7,8 @@
 
 layout(local_size_x = 128) in;  // divides the picture
 layout(constant_id = 0) const bool kDropEdges = true;
-layout(binding = 0,
-       rgba32f) uniform readonly image2D readings;             // depth in mm; amplitude, negative at an edge; infrared
+// Depth in mm; amplitude, negative at an edge; infrared.
+layout(binding = 0, rgba32f) uniform readonly image2D readings;
 layout(binding = 1, r32ui) uniform readonly uimage2D sources;  // x | y << 16, or kNoSource
 layout(binding = 2, r32f) uniform writeonly image2D depth_m;
 layout(binding = 3, r32f) uniform writeonly image2D infrared;

@@ -11,8 +11,8 @@ layout(constant_id = 0) const bool kSmooth = true;  // whether phasors are smoot
 layout(binding = 0, rgba32f) uniform readonly image2D phasors_ab;
 layout(binding = 1, rgba32f) uniform readonly image2D phasors_c;
 layout(binding = 2, rgba32f) uniform readonly image2D offsets_c_ray;  // z, w: the ray, as depth_of() takes it
-layout(binding = 3,
-       rgba32f) uniform writeonly image2D readings;  // depth in mm; amplitude, negative at an edge; infrared
+// Depth in mm; amplitude, negative at an edge; infrared.
+layout(binding = 3, rgba32f) uniform writeonly image2D readings;
 layout(push_constant) uniform Push { UnwrapPhasesParams params; };
 
 const ivec2 kLast = ivec2(kInfraredWidth, kInfraredHeight) - 1;
@@ -30,36 +30,37 @@ PhasorRow row_at(ivec2 pixel) {
     return row;
 }
 
-bool plausible(vec3 turns, vec3 amplitudes) {
+// Smoothed, but for the picture's border.
+Smoothed smoothed(PhasorRow rows[3], bool border) {
+    const Phasors center = rows[1].columns[1];
+    const Smoothed own = Smoothed(center.along, center.across, vec3(0.0));
+    if (!kSmooth) return own;
+    const Smoothed inner = smooth_phasors(rows, params.exponent, params.min_square);
+    return Smoothed(mix(inner.along, own.along, bvec3(border)), mix(inner.across, own.across, bvec3(border)),
+                    mix(inner.distances, own.distances, bvec3(border)));
+}
+
+bool plausible(vec3 counted, vec3 amplitudes, float sum) {
     const float smallest = min(amplitudes.x, min(amplitudes.y, amplitudes.z));
     const float largest = max(amplitudes.x, max(amplitudes.y, amplitudes.z));
     const float limit = exp2(params.slope * log2(largest) + params.offset);
     const float clamped = clamp(limit, params.min_residual, params.max_residual);
-    return smallest >= params.min_amplitude && amplitudes.x + amplitudes.y + amplitudes.z >= params.min_sum &&
-           clamped * clamped >= residual(turns);
+    return smallest >= params.min_amplitude && sum >= params.min_sum && clamped * clamped >= residual(counted);
 }
 
 void store_pixel(ivec2 pixel, PhasorRow rows[3]) {
-    const Phasors center = rows[1].columns[1];
-    Smoothed phasors = Smoothed(center.along, center.across, vec3(0.0));
     const bool border = any(equal(pixel, ivec2(0))) || any(equal(pixel, kLast));
-    if (kSmooth) {
-        const Smoothed inner = smooth_phasors(rows, params.exponent, params.min_square);
-        phasors.along = mix(inner.along, center.along, bvec3(border));
-        phasors.across = mix(inner.across, center.across, bvec3(border));
-        phasors.distances = mix(inner.distances, vec3(0.0), bvec3(border));
-    }
+    const Smoothed phasors = smoothed(rows, border);
     const vec3 amplitudes = kAmplitudeScale * sqrt(phasors.along * phasors.along + phasors.across * phasors.across);
     vec3 fraction;
     [[unroll]] for (int f = 0; f < 3; ++f) fraction[f] = turns(phasors.along[f], phasors.across[f]);
     const vec3 counted = unwrapped(fraction);
-    const float mean = (counted.x + counted.y + counted.z) / 3.0;
-    const float depth = depth_of(mean, imageLoad(offsets_c_ray, pixel).zw);
+    const float depth = depth_of((counted.x + counted.y + counted.z) / 3.0, imageLoad(offsets_c_ray, pixel).zw);
     const bool even = all(lessThan(phasors.distances, vec3(params.max_distance)));
     const float sum = amplitudes.x + amplitudes.y + amplitudes.z;
     const float infrared = imageLoad(phasors_c, pixel).z;
-    const float valid_depth = plausible(counted, amplitudes) ? depth : 0.0;
-    imageStore(readings, pixel, vec4(valid_depth, even ? sum : -sum, infrared, 0.0));
+    imageStore(readings, pixel,
+               vec4(plausible(counted, amplitudes, sum) ? depth : 0.0, even ? sum : -sum, infrared, 0.0));
 }
 
 void main() {

@@ -28,8 +28,8 @@ vec3 unwrapped(vec3 fraction) {
 }
 
 // How far the turns are from those of any one distance, squared, as an angle.
-float residual(vec3 turns) {
-    const vec3 off = cross(2.0 * kPi * turns, kFrequencies);
+float residual(vec3 counted) {
+    const vec3 off = cross(2.0 * kPi * counted, kFrequencies);
     return dot(off, off);
 }
 
