@@ -39,7 +39,7 @@ set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRun
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.
-set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|photometry|shading|surface|tracking)$")
+set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading|surface|tracking)$")
 
 # Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
 # there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the

@@ -24,8 +24,8 @@ struct PictureFile {
     Extent2D extent;
 };
 
-PictureFile load(const std::filesystem::path& path) {
-    PictureFile file{path.string(), read_file(path, limits::kPictureBytes), PictureFormat::kPng, {}};
+PictureFile load(const std::string& name, std::vector<uint8_t> bytes) {
+    PictureFile file{name, std::move(bytes), PictureFormat::kPng, {}};
     const std::optional<PictureFormat> format = picture_format(file.bytes);
     if (!format) throw Error(file.name, " is neither PNG, JPEG nor OpenEXR: it has ", file.bytes.size(), " bytes");
     file.format = *format;
@@ -35,6 +35,10 @@ PictureFile load(const std::filesystem::path& path) {
         case PictureFormat::kExr: file.extent = check_exr(file.bytes, file.name); break;
     }
     return file;
+}
+
+PictureFile load(const std::filesystem::path& path) {
+    return load(path.string(), read_file(path, limits::kPictureBytes));
 }
 
 PictureFile load(const std::filesystem::path& path, Extent2D expected) {
@@ -74,6 +78,16 @@ int rgb_conversion(int channels) {
     return channels == 3 ? cv::COLOR_BGR2RGB : cv::COLOR_BGRA2RGB;
 }
 
+Image<SrgbPixel> srgb_of(const PictureFile& file) {
+    cv::Mat picture = decode(file);
+    if (picture.depth() != CV_8U) {
+        throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
+    }
+    if (picture.channels() == 2) throw Error(file.name, " has 2 channels, but colour must have 1, 3 or 4");
+    cv::cvtColor(picture, picture, rgb_conversion(picture.channels()));
+    return to_image<SrgbPixel>(picture, file.extent);
+}
+
 void encode_png(const std::filesystem::path& file, const cv::Mat& picture) {
     const std::vector<int> settings{cv::IMWRITE_PNG_COMPRESSION, 3, cv::IMWRITE_PNG_STRATEGY,
                                     cv::IMWRITE_PNG_STRATEGY_DEFAULT};
@@ -96,13 +110,15 @@ Extent2D picture_extent(const std::filesystem::path& file) { return load(file).e
 ColorImage read_color(const std::filesystem::path& path, Extent2D expected) {
     PictureFile file = load(path, expected);
     if (file.format == PictureFormat::kExr) return read_exr_color(file.name, std::move(file.bytes));
-    cv::Mat picture = decode(file);
-    if (picture.depth() != CV_8U) {
-        throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
-    }
-    if (picture.channels() == 2) throw Error(file.name, " has 2 channels, but colour must have 1, 3 or 4");
-    cv::cvtColor(picture, picture, rgb_conversion(picture.channels()));
-    return to_image<SrgbPixel>(picture, expected);
+    return srgb_of(file);
+}
+
+Image<SrgbPixel> decode_color(std::span<const uint8_t> bytes, const std::string& name, Extent2D expected) {
+    const PictureFile file = load(name, {bytes.begin(), bytes.end()});
+    if (file.format == PictureFormat::kExr) throw Error(name, " has a colour picture in OpenEXR, not in PNG or JPEG");
+    if (file.extent != expected)
+        throw Error(name, " has a colour picture of ", file.extent, " pixels, but ", expected, " are needed");
+    return srgb_of(file);
 }
 
 DepthImage read_depth(const std::filesystem::path& path, Extent2D expected, uint16_t invalid) {

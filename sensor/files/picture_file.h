@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "patina/frame.h"
@@ -15,6 +17,10 @@ Extent2D picture_extent(const std::filesystem::path& file);
 /// OpenEXR with channels R G B, linear. Throws Error when it is missing, truncated, damaged, of another kind, or not of
 /// size `expected`.
 ColorImage read_color(const std::filesystem::path& file, Extent2D expected);
+
+/// Decodes a colour picture of 8 bits a channel that lies in memory, PNG or JPEG. `name` says where it is from, for
+/// messages. Errors as read_color.
+Image<SrgbPixel> decode_color(std::span<const uint8_t> bytes, const std::string& name, Extent2D expected);
 
 /// Decodes a depth picture: 16-bit PNG with one channel, as raw units in which `invalid` becomes 0; or OpenEXR in
 /// metres (channel Z, depth, Y or R), in which what is not positive and finite becomes 0. Errors as read_color.

@@ -8,10 +8,18 @@ namespace {
 
 /// What the names of a stage's passes and resources begin with.
 constexpr std::pair<std::string_view, Stage> kPrefixes[] = {
-    {"input.", kGeometry},        {"fusion.", kGeometry},        {"map.", kGeometry},
-    {"photometry.", kGeometry},   {"observation", kObservation}, {"segmentation.", kSegmentation},
-    {"segments.", kSegmentation}, {"specular.", kSpecular},      {"segment_materials", kSpecular},
-    {"reflectance.", kAlbedo},    {"lights", kAlbedo},
+    {"input.", kGeometry},
+    {"kinect2.", kGeometry},
+    {"fusion.", kGeometry},
+    {"map.", kGeometry},
+    {"photometry.", kGeometry},
+    {"observation", kObservation},
+    {"segmentation.", kSegmentation},
+    {"segments.", kSegmentation},
+    {"specular.", kSpecular},
+    {"segment_materials", kSpecular},
+    {"reflectance.", kAlbedo},
+    {"lights", kAlbedo},
 };
 
 constexpr std::string_view kTransfers[] = {"fill.", "copy.", "upload.", "read_back."};
