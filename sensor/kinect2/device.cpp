@@ -45,10 +45,11 @@ void Device::start() {
 }
 
 void Device::start_once() {
-    pages_ = start_sensors(*transport_, commands_, options_.readiness);
-    calibration_ = parse_calibration(pages_, transport_->name());
+    // Before the sensors: until transfers are submitted, what they send is lost.
     const auto stream =
         std::make_shared<Stream>(options_.queued_frames, options_.waiting_transfers, transport_->name());
+    pages_ = start_sensors(*transport_, commands_, options_.readiness);
+    calibration_ = parse_calibration(pages_, transport_->name());
     {
         const std::lock_guard lock(mutex_);
         running_ = true;
