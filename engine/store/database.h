@@ -17,7 +17,8 @@ namespace patina {
 /// What a database is opened for.
 enum class DatabaseUse {
     kState,  ///< content that is replaced: rollback journal, so that what is large is written once
-    kLog,    ///< content that is appended all the time: write-ahead log, so that a commit is one sequential write
+    kLog,    ///< content that is appended all the time: write-ahead log. A commit survives the process; the power's end
+             ///< only after a checkpoint, which is run by hand
     kRead    ///< only read, whoever wrote it: a schema runs no code, and values are limited to kLongestValue
 };
 

@@ -20,9 +20,9 @@ inline constexpr const char* kRecordingExtension = ".patina";
 bool is_recording(const std::filesystem::path& file);
 
 /// Writes a recording: one SQLite file, docs/develop/recording_file.md has the tables. What was committed survives
-/// whatever ends the process, and a cut of the power; what was not is gone, and the file opens as it is. All functions
-/// throw Error, naming the file, where the disk refuses: then nothing since the last commit is kept, and nothing more
-/// can be added.
+/// whatever ends the process, and once a LogKeeper has been at it a cut of the power, too; what was not is gone, and
+/// the file opens as it is. All functions throw Error, naming the file, where the disk refuses: then nothing since the
+/// last commit is kept, and nothing more can be added.
 class RecordingWriter {
   public:
     /// Throws Error, too, where something has that name already.
@@ -37,7 +37,7 @@ class RecordingWriter {
     /// Adds the next frame of a sequence that has begun: its index is the count of those before it.
     void add(SequenceRole role, const RecordedFrame& frame);
 
-    /// Brings all that was added to the disk.
+    /// Commits all that was added.
     void commit();
 
     /// Commits, notes that both sequences are whole, and makes one file of the file and its log.

@@ -17,6 +17,11 @@ constexpr double kMargin_s = 0.1;
 constexpr double kLeastInterval_s = 0.05;
 /// The slowest of so many commits is what the next one is expected to take.
 constexpr size_t kRemembered = 8;
+/// What a transaction holds at most, about; of memory and of the database's cache.
+constexpr uint64_t kMostGathered = uint64_t{64} << 20;
+/// A log that is longer is brought into the file before more is written: what a disk as slow as that needs in space
+/// stays bounded.
+constexpr uint64_t kMostLogBytes = uint64_t{512} << 20;
 /// Of the clock that decoded frames are stamped by.
 constexpr double kSecondsPerTick = 1e-9;
 
@@ -98,7 +103,8 @@ void Recorder::skip(Skipped skipped) {
 void Recorder::hand_over(Item item) {
     std::unique_lock lock(mutex_);
     const auto fits = [&] {
-        return queue_.empty() || counts_.queued_bytes + item.bytes <= options_.most_queued_bytes || !problem_.empty();
+        return counts_.queued_bytes == 0 || counts_.queued_bytes + item.bytes <= options_.most_queued_bytes ||
+               !problem_.empty();
     };
     if (options_.when_full == WhenFull::kWait) changed_.wait(lock, fits);
     const bool is_frame = !std::holds_alternative<Begin>(item.content);
@@ -143,8 +149,10 @@ void Recorder::finish() {
 
 void Recorder::write_all() {
     try {
-        while (std::optional<Item> item = take()) write(*item);
+        keeper_.emplace(file_);
+        while (std::optional<Item> item = take()) gather(*item);
         commit();
+        keeper_.reset();
         writer_.finish();
     } catch (const std::exception& error) {
         fail(text("the recording could not be completed, what was written before is kept: ", reason_of(error)));
@@ -156,8 +164,8 @@ std::optional<Recorder::Item> Recorder::take() {
     std::unique_lock lock(mutex_);
     while (true) {
         const auto ready = [&] { return !queue_.empty() || ending_; };
-        if (uncommitted_ > 0) {
-            if (Clock::now() >= commit_due() || !changed_.wait_until(lock, commit_due(), ready)) {
+        if (!gathered_.empty()) {
+            if (commit_is_due() || !changed_.wait_until(lock, commit_due(), ready)) {
                 lock.unlock();
                 commit();
                 lock.lock();
@@ -169,35 +177,34 @@ std::optional<Recorder::Item> Recorder::take() {
         if (queue_.empty()) return std::nullopt;
         Item item = std::move(queue_.front());
         queue_.pop_front();
-        counts_.queued_bytes -= item.bytes;
-        lock.unlock();
-        changed_.notify_all();
         return item;
     }
 }
 
-void Recorder::write(Item& item) {
-    if (const auto* begin = std::get_if<Begin>(&item.content)) return write_begin(*begin);
-    if (const auto* decoded = std::get_if<Decoded>(&item.content)) {
-        write_frame(packed(decoded->frame, decoded->arrival_s), item.given);
+void Recorder::gather(Item& item) {
+    if (const auto* begin = std::get_if<Begin>(&item.content)) {
+        commit();
+        role_ = begin->role;
+        writer_.begin(role_, begin->sequence);
+    } else if (const auto* decoded = std::get_if<Decoded>(&item.content)) {
+        gather_frame(packed(decoded->frame, decoded->arrival_s), item);
     } else {
-        write_frame(std::get<RecordedFrame>(item.content), item.given);
+        gather_frame(std::get<RecordedFrame>(std::move(item.content)), item);
     }
 }
 
-void Recorder::write_begin(const Begin& begin) {
-    commit();
-    role_ = begin.role;
-    writer_.begin(begin.role, begin.sequence);
-}
-
-void Recorder::write_frame(const RecordedFrame& frame, Clock::time_point given) {
-    if (uncommitted_++ == 0) {
-        oldest_ = given;
+void Recorder::gather_frame(RecordedFrame frame, const Item& item) {
+    if (gathered_.empty()) {
+        oldest_ = item.given;
         began_ = Clock::now();
     }
-    writer_.add(role_, frame);
-    for (const Payload& payload : frame.payloads) uncommitted_bytes_ += payload.content.size();
+    gathered_.push_back(std::move(frame));
+    gathered_bytes_ += item.bytes;
+}
+
+/// Early where the queue fills up.
+bool Recorder::commit_is_due() const {
+    return gathered_bytes_ >= std::min(kMostGathered, options_.most_queued_bytes / 2) || Clock::now() >= commit_due();
 }
 
 Recorder::Clock::time_point Recorder::commit_due() const {
@@ -210,25 +217,37 @@ Recorder::Clock::time_point Recorder::commit_due() const {
     return std::max(earliest, after(oldest_, kMostAtRisk_s - kMargin_s - expected_s));
 }
 
+/// All at once: a transaction that were open longer would keep the log from beginning anew.
 void Recorder::commit() {
-    if (uncommitted_ == 0) return;
+    if (gathered_.empty()) return;
     const auto start = Clock::now();
+    uint64_t bytes = 0;
+    for (const RecordedFrame& frame : gathered_) {
+        writer_.add(role_, frame);
+        for (const Payload& payload : frame.payloads) bytes += payload.content.size();
+    }
     writer_.commit();
     const double took_s = std::chrono::duration<double>(Clock::now() - start).count();
     commits_s_.push_back(took_s);
     if (commits_s_.size() > kRemembered) commits_s_.pop_front();
-    const std::lock_guard lock(mutex_);
-    counts_.written += uncommitted_;
-    counts_.bytes += uncommitted_bytes_;
-    counts_.slowest_commit_s = std::max(counts_.slowest_commit_s, took_s);
-    uncommitted_ = uncommitted_bytes_ = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        counts_.written += gathered_.size();
+        counts_.bytes += bytes;
+        counts_.queued_bytes -= gathered_bytes_;
+        counts_.slowest_commit_s = std::max(counts_.slowest_commit_s, took_s);
+    }
+    changed_.notify_all();
+    gathered_.clear();
+    gathered_bytes_ = 0;
+    keeper_->committed(kMostLogBytes);
 }
 
 void Recorder::fail(const std::string& problem) {
     {
         const std::lock_guard lock(mutex_);
         problem_ = problem;
-        counts_.lost += uncommitted_;
+        counts_.lost += gathered_.size();
         for (const Item& item : queue_) counts_.lost += !std::holds_alternative<Begin>(item.content);
         queue_.clear();
         counts_.queued_bytes = 0;

@@ -10,8 +10,10 @@
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
 #include "sensor/recording/container.h"
+#include "sensor/recording/log_keeper.h"
 #include "sensor/recording/recorded_frame.h"
 
 namespace patina::sensor {
@@ -23,13 +25,14 @@ struct RecorderCounts {
     uint64_t dropped = 0;  ///< frames that came while the queue was full; they are in the file as skipped
     uint64_t lost = 0;     ///< those that came when nothing more could be written, and those since the last commit then
     uint64_t bytes = 0;    ///< of payloads on the disk
-    uint64_t queued_bytes = 0, most_queued_bytes = 0;  ///< of frames that wait to be written; and at the most
+    uint64_t queued_bytes = 0, most_queued_bytes = 0;  ///< of frames that are not committed; and at the most
     double slowest_commit_s = 0;
 };
 
-/// Writes frames to a recording on a thread of its own, which also compresses them. A transaction ends in time for
-/// what is at risk never to be older than kMostAtRisk_s; that begins with the moment in which a frame is handed over.
-/// Frames are handed over from one thread at a time.
+/// Writes frames to a recording on a thread of its own, which also compresses them. It commits in time for what a kill
+/// would cost never to be older than kMostAtRisk_s; that begins with the moment in which a frame is handed over.
+/// Another thread brings commits to the disk at once, for the power may be cut. Frames are handed over from one thread
+/// at a time.
 class Recorder {
   public:
     static constexpr double kMostAtRisk_s = 0.5;
@@ -89,9 +92,9 @@ class Recorder {
     void hand_over(Item item);
     void write_all();
     std::optional<Item> take();
-    void write(Item& item);
-    void write_begin(const Begin& begin);
-    void write_frame(const RecordedFrame& frame, Clock::time_point given);
+    void gather(Item& item);
+    void gather_frame(RecordedFrame frame, const Item& item);
+    bool commit_is_due() const;
     void commit();
     void fail(const std::string& problem);
     Clock::time_point commit_due() const;
@@ -109,8 +112,10 @@ class Recorder {
     // Of the writing thread alone.
     RecordingWriter writer_;
     SequenceRole role_ = SequenceRole::kMain;
-    uint64_t uncommitted_ = 0, uncommitted_bytes_ = 0;
-    Clock::time_point oldest_{}, began_{};  ///< of what is not committed: handed over, and written
+    std::optional<LogKeeper> keeper_;
+    std::vector<RecordedFrame> gathered_;   ///< of the next transaction
+    uint64_t gathered_bytes_ = 0;           ///< as they count in the queue, which they leave with the commit
+    Clock::time_point oldest_{}, began_{};  ///< of these: handed over, and gathered
     std::deque<double> commits_s_;
 
     std::thread thread_;
