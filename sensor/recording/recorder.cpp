@@ -12,7 +12,7 @@ namespace patina::sensor {
 namespace {
 
 /// Of the time that a frame may be at risk, what the machine's other work may take.
-constexpr double kMargin_s = 0.1;
+constexpr double kMargin_s = 0.25;
 /// Commits become no more frequent than this, however slow they are: each costs the disk a flush.
 constexpr double kLeastInterval_s = 0.05;
 /// The slowest of so many commits is what the next one is expected to take.

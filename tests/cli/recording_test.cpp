@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <set>
@@ -125,8 +127,11 @@ TEST_F(RecordingCommands, AnInterruptEndsARecordingThatIsWhole) {
     EXPECT_LT(*recording.sequence(sensor::SequenceRole::kMain).info.frames, 300u);
 }
 
+/// In milliseconds: trajectory.txt has six digits of a second.
+int64_t milliseconds(double timestamp_s) { return std::llround(1000 * timestamp_s); }
+
 /// Another recording with the frames alone whose times are given.
-void keep_frames(const fs::path& from, const std::set<double>& times_s, const fs::path& to) {
+void keep_frames(const fs::path& from, const std::set<int64_t>& times_ms, const fs::path& to) {
     const auto source = sensor::open_sequence(from);
     sensor::Recorder recorder(to, {.when_full = sensor::Recorder::WhenFull::kWait});
     sensor::RecordedSequence sequence;
@@ -135,12 +140,12 @@ void keep_frames(const fs::path& from, const std::set<double>& times_s, const fs
     uint32_t frames = 0;
     while (auto reading = source->next()) {
         Frame frame = std::get<Frame>(*std::move(reading));
-        if (!times_s.contains(frame.timestamp_s)) continue;
+        if (!times_ms.contains(milliseconds(frame.timestamp_s))) continue;
         frame.index = frames++;
         recorder.record(std::move(frame));
     }
     recorder.finish();
-    EXPECT_EQ(frames, times_s.size());
+    EXPECT_EQ(frames, times_ms.size());
 }
 
 TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
@@ -162,9 +167,10 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
     EXPECT_EQ(live["recording"]["frames"], 90u);  // dropped ones, too
     EXPECT_EQ(sensor::open_sequence(beside("beside.patina"))->info().frames, 90u);
 
-    std::set<double> used_s;
-    for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt")) used_s.insert(pose.timestamp_s);
-    keep_frames(folder_, used_s, file_);
+    std::set<int64_t> used_ms;
+    for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt"))
+        used_ms.insert(milliseconds(pose.timestamp_s));
+    keep_frames(folder_, used_ms, file_);
     expect_same(reconstructed(out()), results_of(file_, beside("again")));
 }
 

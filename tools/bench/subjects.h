@@ -20,6 +20,7 @@ Subject refine_subject();
 Subject hemi_subject();
 Subject examples_subject();
 Subject track_subject();
+Subject record_subject();
 
 /// All that have a name, in the order of --help.
 std::vector<Subject> named_subjects();
