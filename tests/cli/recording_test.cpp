@@ -77,7 +77,8 @@ TEST_F(RecordingCommands, ExportGivesBackTheFolder) {
     const auto before = files_in(folder_), after = files_in(beside("native"));
     for (const auto& [name, content] : after) {
         // Poses go through a quaternion each time, which may move their last digit.
-        if (!name.ends_with("trajectory.txt")) EXPECT_TRUE(before.at(name) == content) << name;
+        const bool same = name.ends_with("trajectory.txt") || before.at(name) == content;
+        EXPECT_TRUE(same) << name;
     }
     EXPECT_TRUE(after.contains("lighting/sequence.json") && after.contains("trajectory.txt"));
     EXPECT_EQ(std::count_if(after.begin(), after.end(), [](const auto& f) { return f.first.starts_with("color/"); }),
@@ -104,7 +105,7 @@ TEST_F(RecordingCommands, AFullDiskKeepsWhatWasRecorded) {
     synthesise("60");
     Outcome outcome;
     {
-        const test::FileSizeLimit limit(600000);
+        const test::FileSizeLimit limit(300000);  // the empty tables take 262144
         outcome = patina({"record", folder_, "--out", file_, "--quiet"});
     }
     EXPECT_THAT(expect_failure(outcome), AllOf(HasSubstr("what was written before is kept"), HasSubstr("frames")));
