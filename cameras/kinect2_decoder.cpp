@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "engine/core/error.h"
 #include "passes/kinect2/decode.h"
@@ -15,12 +16,15 @@ namespace {
 
 /// The picture in a JPEG, as the world is.
 Image<SrgbPixel> color_of(const sensor::kinect2::RawFrame& raw, const std::string& name) {
-    Image<SrgbPixel> picture;
+    ColorImage decoded;
     try {
-        picture = sensor::decode_color(raw.color, name, kinect2::kColorExtent);
+        decoded = sensor::decode_color(name, raw.color, kinect2::kColorExtent);
     } catch (const Error& error) {
         throw DamagedFrame(error.what());
     }
+    if (!std::holds_alternative<Image<SrgbPixel>>(decoded))
+        throw DamagedFrame(name, " has a colour picture in OpenEXR, not in JPEG");
+    Image<SrgbPixel> picture = std::get<Image<SrgbPixel>>(std::move(decoded));
     const auto width = static_cast<ptrdiff_t>(picture.extent().width);
     auto row = picture.pixels().begin();
     for (uint32_t y = 0; y < picture.extent().height; ++y, row += width) std::reverse(row, row + width);

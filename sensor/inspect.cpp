@@ -152,7 +152,7 @@ Inspector& Inspector::operator=(Inspector&&) noexcept = default;
 void Inspector::add(const Reading& reading) {
     SequenceReport& report = state_->report;
     if (const auto* skipped = std::get_if<Skipped>(&reading)) {
-        report.skipped.push_back(*skipped);
+        if (!skipped->dropped) report.skipped.push_back(*skipped);
         return;
     }
     const Frame& frame = std::get<Frame>(reading);

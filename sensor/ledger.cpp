@@ -8,7 +8,11 @@ namespace patina::sensor {
 
 void Ledger::note(const Reading& reading) {
     ++read_;
-    if (const auto* skipped = std::get_if<Skipped>(&reading)) skip(skipped->index, skipped->reason);
+    const auto* skipped = std::get_if<Skipped>(&reading);
+    if (!skipped) return;
+    if (!skipped->dropped) return skip(skipped->index, skipped->reason);
+    ++dropped_;
+    settle(skipped->index);
 }
 
 void Ledger::use(uint32_t index) {
@@ -32,9 +36,9 @@ std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
                     " were read: ", read_ < frames ? frames - read_ : read_ - frames,
                     read_ < frames ? " missing" : " too many");
     }
-    const size_t settled = used_ + skipped_.size();
+    const size_t settled = used_ + dropped_ + skipped_.size();
     if (settled != read_) {
-        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ", skipped_.size(),
+        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ", dropped_ + skipped_.size(),
                     " skipped: ", settled < read_ ? read_ - settled : settled - read_,
                     settled < read_ ? " unaccounted for" : " too many");
     }

@@ -13,7 +13,8 @@ namespace patina::sensor {
 /// was used or could not be.
 class Ledger {
   public:
-    /// Notes that a source yielded a frame or skipped one; a skipped one is settled with that.
+    /// Notes that a source yielded a frame or skipped one; a skipped one is settled with that. Dropped ones are only
+    /// counted: there may be twenty a second.
     void note(const Reading& reading);
 
     /// Notes that a frame was used.
@@ -24,10 +25,11 @@ class Ledger {
 
     uint32_t read() const { return read_; }
     uint32_t used() const { return used_; }
-    const std::vector<Skipped>& skipped() const { return skipped_; }
+    uint32_t dropped() const { return dropped_; }
+    const std::vector<Skipped>& skipped() const { return skipped_; }  ///< without those that were dropped
 
-    /// Empty when every frame of the sequence was read once, and used or skipped once; otherwise one sentence that says
-    /// by how much the numbers disagree. Of a source without a known length, what was read is what there was.
+    /// Empty when every frame of the sequence was read once, and used, skipped or dropped once; otherwise one sentence
+    /// that says by how much the numbers disagree. Of a source without a known length, what was read is what there was.
     std::optional<std::string> discrepancy(const SequenceInfo& info) const;
 
   private:
@@ -35,6 +37,7 @@ class Ledger {
 
     uint32_t read_ = 0;
     uint32_t used_ = 0;
+    uint32_t dropped_ = 0;
     std::vector<Skipped> skipped_;
     std::vector<uint32_t> settled_;  ///< how often, by frame index
 };

@@ -11,6 +11,7 @@
 #include "sensor/readers/open3d.h"
 #include "sensor/readers/seven_scenes.h"
 #include "sensor/readers/tum.h"
+#include "sensor/recording/container.h"
 
 namespace patina::sensor {
 namespace {
@@ -30,6 +31,11 @@ constexpr std::array kFormats{
     Format{"tum", "rgb.txt with depth.txt", is_tum_sequence, open_tum},
     Format{"open3d", "camera_intrinsic.json with color/ and depth/", is_open3d_sequence, open_open3d},
 };
+
+/// Of a sequence that is named by its folder or by its sequence.json.
+fs::path folder_of(const fs::path& sequence) {
+    return sequence.filename() == "sequence.json" ? fs::absolute(sequence).parent_path() : sequence;
+}
 
 /// All formats' names or contents in one enumeration: "a, b or c".
 std::string enumerated(std::string_view Format::*member) {
@@ -80,15 +86,34 @@ const Format& named(const std::string& name) {
 std::string format_names() { return enumerated(&Format::name); }
 
 void expect_sequence_path(const fs::path& path) {
+    if (names_recording(path)) return;
     if (path.empty()) throw Error("a sequence is named by an empty path, but must be a folder");
     if (!path_exists(path)) throw Error(path.string(), " does not exist");
 }
 
-std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format) {
+std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& format,
+                                      const MakePayloadDecoder& make_decoder) {
+    if (names_recording(path)) return open_recording(path, make_decoder);
     expect_sequence_path(path);
-    const fs::path folder = path.filename() == "sequence.json" ? fs::absolute(path).parent_path() : path;
-    if (!is_folder(folder)) throw Error(path.string(), " is a file, but a sequence is a folder");
+    const fs::path folder = folder_of(path);
+    if (!is_folder(folder))
+        throw Error(path.string(), " is a file, but a sequence is a folder or a recording of Patina");
     return (format.empty() ? recognised(folder) : named(format)).open(folder);
+}
+
+fs::path lighting_of(const fs::path& sequence) {
+    if (is_recording(sequence)) {
+        return RecordingFile(sequence).has(SequenceRole::kLighting) ? lighting_in(sequence) : fs::path();
+    }
+    const fs::path inside = folder_of(sequence) / "lighting";
+    return is_folder(inside) ? inside : fs::path();
+}
+
+fs::path main_of(const fs::path& lighting) {
+    const fs::path folder = folder_of(lighting);
+    if (folder.filename() != "lighting") return {};
+    const fs::path beside = fs::absolute(folder).lexically_normal().parent_path();
+    return is_recording(beside) || path_exists(beside / "sequence.json") ? beside : fs::path();
 }
 
 }  // namespace patina::sensor

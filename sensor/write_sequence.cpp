@@ -4,20 +4,17 @@
 #include <cmath>
 #include <system_error>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/core/error.h"
 #include "engine/core/srgb.h"
-#include "sensor/camera_json.h"
 #include "sensor/files/exr_file.h"
 #include "sensor/files/picture_file.h"
 #include "sensor/files/text_file.h"
+#include "sensor/sequence_json.h"
 
 namespace patina::sensor {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// Linear 0..1 to an 8-bit code.
 uint8_t srgb_code(float linear) {
@@ -58,12 +55,6 @@ void expect_extent(const fs::path& stem, const Picture& picture, Extent2D expect
     const Extent2D extent = std::visit([](const auto& image) { return image.extent(); }, picture);
     if (extent != expected)
         throw Error(stem.string(), ": the frame is ", extent, " pixels, but the sequence ", expected);
-}
-
-Json to_json(const RigidTransform& transform) {
-    Json rows = Json::array();
-    for (int i = 0; i < 16; ++i) rows.push_back(transform[i % 4][i / 4]);
-    return rows;
 }
 
 }  // namespace
@@ -125,26 +116,11 @@ void SequenceWriter::write_lists() const {
 }
 
 void SequenceWriter::write_sequence_file() const {
-    Json color = camera_json(info_.color);
-    if (info_.exposure_known) {
-        color["exposure_s"] = exposures_.front().exposure_s;
-        color["gain"] = exposures_.front().gain;
-    }
-    if (!info_.motion_blur) color["motion_blur"] = false;
-    Json depth = camera_json(info_.depth);
-    depth["metres_per_unit"] = info_.metres_per_unit;
-    depth["max_metres"] = info_.max_metres;
-    Json root{{"format", "patina-sequence"},
-              {"version", 1},
-              {"name", info_.name},
-              {"fps", info_.fps},
-              {"frames", timestamps_s_.size()},
-              {"color", color},
-              {"depth", depth},
-              {"depth_to_color", to_json(info_.color_from_depth)}};
-    if (info_.gravity) root["gravity"] = {info_.gravity->x, info_.gravity->y, info_.gravity->z};
-    if (!info_.indirect_light) root["indirect_light"] = false;
-    write_bytes(partial_folder() / "sequence.json", root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    SequenceInfo info = info_;
+    info.frames = static_cast<uint32_t>(timestamps_s_.size());
+    const auto root = sequence_json(info, exposures_.front());
+    write_bytes(partial_folder() / "sequence.json",
+                root.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace patina::sensor

@@ -35,6 +35,9 @@ int run_command(int argc, char** argv) {
     tools::add_synth_hemi(app);
     int exit_code = tools::kExitDone;
     tools::add_run(app, exit_code, {argv + std::min(argc, 2), argv + argc});
+    tools::add_live(app, exit_code);
+    tools::add_record(app, exit_code);
+    tools::add_export(app, exit_code);
     tools::add_render(app, exit_code);
     tools::add_eval(app);
     tools::add_lights(app);

@@ -17,6 +17,7 @@ class Device;
 struct Skipped {
     uint32_t index = 0;
     std::string reason;
+    bool dropped = false;  ///< nothing was wrong with it: a live source had a newer frame
 };
 
 /// One step of a source: a frame, or the reason why there is none at this index.
@@ -36,9 +37,9 @@ class Source {
     virtual std::optional<Reading> next() = 0;
 };
 
-/// Opens a recorded sequence: a folder, or its sequence.json. `format`: a name as SequenceInfo::format; empty:
-/// recognised by the folder's content. Throws Error when the path does not exist, is of no known format, or the
-/// sequence as a whole is unusable.
+/// Opens a recorded sequence: a folder, its sequence.json, or a file that `patina record` wrote. `format`: a name as
+/// SequenceInfo::format; empty: recognised by the content. Throws Error when the path does not exist, is of no known
+/// format, or the sequence as a whole is unusable.
 std::unique_ptr<Source> open_recording(const std::filesystem::path& path, const std::string& format = "");
 
 /// Renders a synthetic scene on the device as it is read. `scene` is the name of a built-in one ("cubes", "bunnies",

@@ -56,17 +56,10 @@ struct Folders {
     std::string main;
 };
 
-/// Of a sequence that is named by its folder or by its sequence.json.
-fs::path folder_of(const fs::path& sequence) {
-    return sequence.filename() == "sequence.json" ? fs::absolute(sequence).parent_path() : sequence;
-}
-
 Folders folders_of(const LightsOptions& options) {
-    const fs::path folder = folder_of(options.sequence), inside = folder / "lighting";
-    const fs::path beside = fs::absolute(folder).lexically_normal().parent_path();
-    if (is_folder(inside)) return {inside, folder.string()};
-    if (folder.filename() == "lighting" && path_exists(beside / "sequence.json")) return {folder, beside.string()};
-    return {folder, ""};
+    const fs::path inside = sensor::lighting_of(options.sequence);
+    if (!inside.empty()) return {inside, options.sequence};
+    return {options.sequence, sensor::main_of(options.sequence).string()};
 }
 
 /// In the moved world, read ahead.
@@ -281,7 +274,7 @@ std::vector<Light> lights_of(const Illumination& illumination) {
 bool has_lighting_sequence(const std::string& sequence) {
     if (const auto scene = scenes::scene_name(sequence))
         return scenes::lighting_sequence(scenes::load_scene(*scene)).has_value();
-    return is_folder(folder_of(sequence) / "lighting");
+    return !sensor::lighting_of(sequence).empty();
 }
 
 Illumination find_lights(vulkan::Device& device, const LightsOptions& options) {

@@ -163,7 +163,8 @@ bool SessionCore::step() {
     if (inspector_) inspector_->add(*reading);
     if (const auto* skipped = std::get_if<Skipped>(&*reading)) {
         last_ = FrameResult{.state = TrackingState::kLost, .reason = skipped->reason};
-        report(options_.callbacks, fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
+        if (!skipped->dropped)
+            report(options_.callbacks, fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
     } else {
         fuse(std::get<Frame>(*std::move(reading)));
     }

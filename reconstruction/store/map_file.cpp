@@ -1,15 +1,12 @@
 #include "reconstruction/store/map_file.h"
 
-#include <array>
 #include <cstring>
 #include <new>
 
 #include <zstd.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include "engine/core/error.h"
+#include "engine/store/content_digest.h"
 
 namespace patina {
 
@@ -17,16 +14,6 @@ namespace {
 
 constexpr int64_t kApplication = 0x5054'4e41;  // "PTNA", in the file's header
 constexpr int kLevel = 1;                      // of compression: it is to keep pace with the disk
-
-using ContentDigest = std::array<std::byte, 16>;
-
-ContentDigest digest_of(std::span<const std::byte> content) {
-    XXH128_canonical_t canonical;
-    XXH128_canonicalFromHash(&canonical, XXH3_128bits(content.data(), content.size()));
-    ContentDigest digest;
-    std::memcpy(digest.data(), canonical.digest, digest.size());
-    return digest;
-}
 
 bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);

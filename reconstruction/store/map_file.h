@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reconstruction/store/database.h"
+#include "engine/store/database.h"
 
 struct ZSTD_CCtx_s;
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "reconstruction/store/database.h"
+#include "engine/store/database.h"
 
 namespace patina {
 

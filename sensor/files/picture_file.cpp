@@ -24,8 +24,8 @@ struct PictureFile {
     Extent2D extent;
 };
 
-PictureFile load(const std::string& name, std::vector<uint8_t> bytes) {
-    PictureFile file{name, std::move(bytes), PictureFormat::kPng, {}};
+PictureFile examined(std::string name, std::vector<uint8_t> bytes) {
+    PictureFile file{std::move(name), std::move(bytes), PictureFormat::kPng, {}};
     const std::optional<PictureFormat> format = picture_format(file.bytes);
     if (!format) throw Error(file.name, " is neither PNG, JPEG nor OpenEXR: it has ", file.bytes.size(), " bytes");
     file.format = *format;
@@ -38,11 +38,10 @@ PictureFile load(const std::string& name, std::vector<uint8_t> bytes) {
 }
 
 PictureFile load(const std::filesystem::path& path) {
-    return load(path.string(), read_file(path, limits::kPictureBytes));
+    return examined(path.string(), read_file(path, limits::kPictureBytes));
 }
 
-PictureFile load(const std::filesystem::path& path, Extent2D expected) {
-    PictureFile file = load(path);
+PictureFile of_size(PictureFile file, Extent2D expected) {
     if (file.extent != expected) {
         throw Error(file.name, " is ", file.extent, " pixels, but the sequence says ", expected);
     }
@@ -78,16 +77,6 @@ int rgb_conversion(int channels) {
     return channels == 3 ? cv::COLOR_BGR2RGB : cv::COLOR_BGRA2RGB;
 }
 
-Image<SrgbPixel> srgb_of(const PictureFile& file) {
-    cv::Mat picture = decode(file);
-    if (picture.depth() != CV_8U) {
-        throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
-    }
-    if (picture.channels() == 2) throw Error(file.name, " has 2 channels, but colour must have 1, 3 or 4");
-    cv::cvtColor(picture, picture, rgb_conversion(picture.channels()));
-    return to_image<SrgbPixel>(picture, file.extent);
-}
-
 void encode_png(const std::filesystem::path& file, const cv::Mat& picture) {
     const std::vector<int> settings{cv::IMWRITE_PNG_COMPRESSION, 3, cv::IMWRITE_PNG_STRATEGY,
                                     cv::IMWRITE_PNG_STRATEGY_DEFAULT};
@@ -103,26 +92,18 @@ cv::Mat borrowed(const Image<Pixel>& image, int type) {
     return {static_cast<int>(height), static_cast<int>(width), type, const_cast<Pixel*>(image.pixels().data())};
 }
 
-}  // namespace
-
-Extent2D picture_extent(const std::filesystem::path& file) { return load(file).extent; }
-
-ColorImage read_color(const std::filesystem::path& path, Extent2D expected) {
-    PictureFile file = load(path, expected);
+ColorImage color_in(PictureFile file) {
     if (file.format == PictureFormat::kExr) return read_exr_color(file.name, std::move(file.bytes));
-    return srgb_of(file);
+    cv::Mat picture = decode(file);
+    if (picture.depth() != CV_8U) {
+        throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
+    }
+    if (picture.channels() == 2) throw Error(file.name, " has 2 channels, but colour must have 1, 3 or 4");
+    cv::cvtColor(picture, picture, rgb_conversion(picture.channels()));
+    return to_image<SrgbPixel>(picture, file.extent);
 }
 
-Image<SrgbPixel> decode_color(std::span<const uint8_t> bytes, const std::string& name, Extent2D expected) {
-    const PictureFile file = load(name, {bytes.begin(), bytes.end()});
-    if (file.format == PictureFormat::kExr) throw Error(name, " has a colour picture in OpenEXR, not in PNG or JPEG");
-    if (file.extent != expected)
-        throw Error(name, " has a colour picture of ", file.extent, " pixels, but ", expected, " are needed");
-    return srgb_of(file);
-}
-
-DepthImage read_depth(const std::filesystem::path& path, Extent2D expected, uint16_t invalid) {
-    PictureFile file = load(path, expected);
+DepthImage depth_in(PictureFile file, uint16_t invalid) {
     if (file.format == PictureFormat::kExr) {
         Image<float> depth_m = read_exr_depth(file.name, std::move(file.bytes));
         for (float& z : depth_m.pixels()) z = std::isfinite(z) && z > 0 ? z : 0.0f;
@@ -133,9 +114,29 @@ DepthImage read_depth(const std::filesystem::path& path, Extent2D expected, uint
         throw Error(file.name, " has ", picture.channels(), " channel(s) of ", 8 * picture.elemSize1(),
                     " bits, but depth must have 1 of 16");
     }
-    auto depth = to_image<uint16_t>(picture, expected);
+    auto depth = to_image<uint16_t>(picture, file.extent);
     if (invalid != 0) std::replace(depth.pixels().begin(), depth.pixels().end(), invalid, uint16_t{0});
     return depth;
+}
+
+}  // namespace
+
+Extent2D picture_extent(const std::filesystem::path& file) { return load(file).extent; }
+
+ColorImage read_color(const std::filesystem::path& file, Extent2D expected) {
+    return color_in(of_size(load(file), expected));
+}
+
+ColorImage decode_color(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected) {
+    return color_in(of_size(examined(name, std::move(bytes)), expected));
+}
+
+DepthImage read_depth(const std::filesystem::path& file, Extent2D expected, uint16_t invalid) {
+    return depth_in(of_size(load(file), expected), invalid);
+}
+
+DepthImage decode_depth(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected) {
+    return depth_in(of_size(examined(name, std::move(bytes)), expected), 0);
 }
 
 std::string picture_stem(uint32_t index) {

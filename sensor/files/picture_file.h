@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "patina/frame.h"
 
@@ -18,13 +17,13 @@ Extent2D picture_extent(const std::filesystem::path& file);
 /// size `expected`.
 ColorImage read_color(const std::filesystem::path& file, Extent2D expected);
 
-/// Decodes a colour picture of 8 bits a channel that lies in memory, PNG or JPEG. `name` says where it is from, for
-/// messages. Errors as read_color.
-Image<SrgbPixel> decode_color(std::span<const uint8_t> bytes, const std::string& name, Extent2D expected);
-
 /// Decodes a depth picture: 16-bit PNG with one channel, as raw units in which `invalid` becomes 0; or OpenEXR in
 /// metres (channel Z, depth, Y or R), in which what is not positive and finite becomes 0. Errors as read_color.
 DepthImage read_depth(const std::filesystem::path& file, Extent2D expected, uint16_t invalid = 0);
+
+/// The same of a picture file's bytes; `name` stands for the file in messages.
+ColorImage decode_color(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected);
+DepthImage decode_depth(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected);
 
 /// The name of a frame's picture in Patina's own format without its extension: the index in at least six digits.
 std::string picture_stem(uint32_t index);

@@ -10,6 +10,7 @@
 #include "sensor/files/text_file.h"
 #include "sensor/pose.h"
 #include "sensor/readers/folder_source.h"
+#include "sensor/sequence_json.h"
 
 namespace patina::sensor {
 namespace {
@@ -17,73 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kAssociationLimit_s = 0.02;  // TUM's own limit for its trajectories
-
-struct SequenceFile {
-    SequenceInfo info;
-    Exposure exposure;
-};
-
-Intrinsics read_intrinsics(const JsonValue& camera) {
-    Intrinsics intrinsics;
-    intrinsics.extent = {camera.at("width").positive_integer(), camera.at("height").positive_integer()};
-    check_picture_size(camera.where(), intrinsics.extent.width, intrinsics.extent.height);
-    intrinsics.fx = camera.at("fx").positive();
-    intrinsics.fy = camera.at("fy").positive();
-    intrinsics.cx = camera.at("cx").number();
-    intrinsics.cy = camera.at("cy").number();
-    if (const auto distortion = camera.find("distortion")) {
-        const std::vector<double> values = distortion->numbers(intrinsics.distortion.size());
-        std::copy(values.begin(), values.end(), intrinsics.distortion.begin());
-    }
-    return intrinsics;
-}
-
-RigidTransform read_transform(const JsonValue& value) {
-    return checked_pose(matrix_from_rows(value.numbers(16)), value.where()).transform;
-}
-
-glm::dvec3 read_direction(const JsonValue& value) {
-    const std::vector<double> numbers = value.numbers(3);
-    const glm::dvec3 direction(numbers[0], numbers[1], numbers[2]);
-    if (!(glm::length(direction) > 0)) throw Error(value.where(), " is [0, 0, 0], which is no direction");
-    return direction;
-}
-
-void expect_format(const JsonValue& root) {
-    const std::string format = root.at("format").string();
-    if (format != "patina-sequence") {
-        throw Error(root.at("format").where(), " is \"", format, "\", must be \"patina-sequence\"");
-    }
-    const uint32_t version = root.at("version").positive_integer();
-    if (version != 1) throw Error(root.at("version").where(), " is ", version, ", but this program reads version 1");
-}
-
-SequenceFile read_sequence_file(const fs::path& file, const std::string& default_name) {
-    const JsonValue root = JsonValue::read(file);
-    expect_format(root);
-    const JsonValue color = root.at("color");
-    const JsonValue depth = root.at("depth");
-    SequenceFile sequence;
-    SequenceInfo& info = sequence.info;
-    info.format = "patina-sequence";
-    info.name = root.find("name") ? root.at("name").string() : default_name;
-    info.fps = root.find("fps") ? root.at("fps").positive() : info.fps;
-    info.frames = root.at("frames").positive_integer();
-    info.color = read_intrinsics(color);
-    info.depth = read_intrinsics(depth);
-    info.metres_per_unit = depth.at("metres_per_unit").positive();
-    if (const auto far = depth.find("max_metres")) info.max_metres = far->positive();
-    if (const auto transform = root.find("depth_to_color")) info.color_from_depth = read_transform(*transform);
-    if (const auto gravity = root.find("gravity")) info.gravity = read_direction(*gravity);
-    if (const auto exposure = color.find("exposure_s")) {
-        sequence.exposure.exposure_s = exposure->positive();
-        info.exposure_known = true;
-    }
-    if (const auto gain = color.find("gain")) sequence.exposure.gain = gain->positive();
-    if (const auto blur = color.find("motion_blur")) info.motion_blur = blur->boolean();
-    if (const auto indirect = root.find("indirect_light")) info.indirect_light = indirect->boolean();
-    return sequence;
-}
 
 /// Calls use(index, line) for each line of a file of 'index ...' lines; throws Error on an index out of range or given
 /// twice.
@@ -171,8 +105,10 @@ void expect_frames(const fs::path& folder, uint32_t frames) {
 class NativeSource : public FolderSource {
   public:
     explicit NativeSource(const fs::path& folder) : folder_(folder) {
-        const SequenceFile sequence = read_sequence_file(folder / "sequence.json", folder_name(folder));
+        const JsonValue root = JsonValue::read(folder / "sequence.json");
+        const SequenceDescription sequence = parse_sequence(root, folder_name(folder));
         info_ = sequence.info;
+        info_.frames = root.at("frames").positive_integer();
         expect_pictures_of_size(folder / "color", info_.color.extent, *info_.frames, "color");
         expect_pictures_of_size(folder / "depth", info_.depth.extent, *info_.frames, "depth");
         expect_frames(folder, *info_.frames);

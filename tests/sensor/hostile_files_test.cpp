@@ -16,6 +16,7 @@
 #include "sensor/truth.h"
 #include "sensor/write_sequence.h"
 #include "tests/scenes/scene_json.h"
+#include "tests/sensor/recording_rig.h"
 #include "tests/sensor/sequences.h"
 
 // Every reader, on files that chance has damaged: it reads them or throws an Error that names a file, and nothing else.
@@ -163,6 +164,11 @@ TEST_F(HostileFiles, Open3d) {
     write_text(folder_ / "s/intrinsic.json",
                R"({"width": 32, "height": 24, "intrinsic_matrix": [14, 0, 0, 0, 13, 0, 7, 6, 1]})");
     attack_sequence("s", {"intrinsic.json", "color/000000.png", "depth/000001.png"});
+}
+
+TEST_F(HostileFiles, Recordings) {
+    write_recording(folder_ / "room.patina", 3);
+    attack("room.patina", 200, [&] { inspect(*open_sequence(folder_ / "room.patina")); });
 }
 
 TEST_F(HostileFiles, LightsMaterialsAndScenes) {

@@ -21,6 +21,7 @@ Subject hemi_subject();
 Subject examples_subject();
 Subject track_subject();
 Subject kinect2_subject();
+Subject record_subject();
 
 /// All that have a name, in the order of --help.
 std::vector<Subject> named_subjects();

@@ -49,6 +49,9 @@ void add_synth(CLI::App& app);
 void add_synth_hemi(CLI::App& app);
 /// `arguments`: the command line after "run".
 void add_run(CLI::App& app, int& exit_code, const std::vector<std::string>& arguments);
+void add_live(CLI::App& app, int& exit_code);
+void add_record(CLI::App& app, int& exit_code);
+void add_export(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);

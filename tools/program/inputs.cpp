@@ -3,7 +3,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "engine/core/input_file.h"
+#include "sensor/open.h"
 #include "sensor/output/apart.h"
 
 namespace patina::tools {
@@ -26,8 +26,7 @@ std::vector<fs::path> sequence_inputs(const std::string& sequence) {
     const bool names_parent = given.filename() == "sequence.json" || !given.has_filename();
     const fs::path folder = names_parent ? given.parent_path() : given;
     std::vector<fs::path> inputs{folder};
-    if (folder.filename() == "lighting" && path_exists(folder.parent_path() / "sequence.json"))
-        inputs.push_back(folder.parent_path());
+    if (fs::path main = sensor::main_of(folder); !main.empty()) inputs.push_back(std::move(main));
     return inputs;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "reconstruction/store/map_file.h"
+#include "sensor/recording/container.h"
 
 namespace patina::tools {
 
@@ -31,6 +32,7 @@ double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20)
 
 fs::path map_at(const fs::path& path) {
     std::error_code failure;
+    if (sensor::is_recording(path)) return {};
     if (fs::is_regular_file(path, failure)) return is_database(path) ? path : fs::path();
     const fs::path inside = path / "map.sqlite";
     const bool alone = fs::is_regular_file(inside, failure) && !fs::exists(path / "sequence.json", failure);

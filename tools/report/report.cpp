@@ -199,6 +199,11 @@ std::string report_html(const RunSummary& summary, std::span<const ReportPicture
                                                   "ks (red, green, blue; 0 to 1), roughness alpha. Confidence is that "
                                                   "of kd, from 0 to 1.",
                                                   segment_table(summary.segments)));
+    if (summary.live)
+        html +=
+            report_section("Live", explained("From a frame's exposure until its pose was known, and until a picture "
+                                             "of the model from there was.",
+                                             live_table(*summary.live)));
     html += report_section("Tracking", tracking_table(summary.tracking));
     html += report_section("GPU time per pass", pass_table(summary.passes));
     html += report_section("Device memory", memory_table(summary.memory));

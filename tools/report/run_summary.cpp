@@ -22,7 +22,10 @@ Json sequence_json(const SequenceInfo& sequence) {
 Json frames_json(const FrameLedger& frames) {
     Json skipped = Json::array();
     for (const Skipped& frame : frames.skipped) skipped.push_back({{"index", frame.index}, {"reason", frame.reason}});
-    return {{"read", frames.read}, {"used", frames.used}, {"skipped", std::move(skipped)}};
+    Json json{{"read", frames.read}, {"used", frames.used}};
+    if (frames.dropped > 0) json["dropped"] = frames.dropped;
+    json["skipped"] = std::move(skipped);
+    return json;
 }
 
 Json memory_json(const std::vector<MemorySummary>& pools) {
@@ -99,6 +102,7 @@ Json json_of(const RunSummary& summary) {
     }
     run["memory"] = memory_json(summary.memory);
     run["totals"] = object_of(summary.totals);
+    if (summary.live) run["live"] = live_json(*summary.live);
     if (!summary.tracking.empty()) run["tracking"] = tracking_json(summary.tracking);
     if (!summary.color_gains.empty()) run["color_gains"] = gains_json(summary.color_gains);
     if (summary.held_out) run["held_out"] = held_out_json(*summary.held_out);
@@ -121,7 +125,7 @@ std::string run_json(const RunSummary& summary) { return dumped(json_of(summary)
 std::string run_id(const RunSummary& summary, uint64_t files_digest) {
     Json what = json_of(summary);
     // The memory of transient resources depends on what ran before: less did after a break.
-    for (const char* key : {"id", "passes", "times", "memory"}) what.erase(key);
+    for (const char* key : {"id", "passes", "times", "memory", "live"}) what.erase(key);
     Digest digest;
     digest.add(dumped(what));
     digest.add(std::to_string(files_digest));

@@ -12,6 +12,7 @@
 #include "patina/scene.h"
 #include "patina/source.h"
 #include "sensor/truth.h"
+#include "tools/report/live_summary.h"
 #include "tools/report/picture_score.h"
 #include "tools/report/tracking_summary.h"
 
@@ -25,11 +26,12 @@ struct DeviceSummary {
     std::string driver;          ///< name and version
 };
 
-/// What became of the frames that were due: read is used plus skipped.
+/// What became of the frames that were due: read is used plus skipped plus dropped.
 struct FrameLedger {
     uint64_t read = 0;  ///< arrived from the source, skipped ones included
     uint64_t used = 0;  ///< fused into the model
     std::vector<Skipped> skipped;
+    uint64_t dropped = 0;  ///< a live source had newer ones
 };
 
 /// How full the pool of voxel blocks was at the end.
@@ -77,8 +79,8 @@ struct SegmentSummary {
     SegmentReflectance reflectance;
 };
 
-/// Everything that run.json and report.html say about a finished run. Durations belong into `passes` and `times_s`
-/// only: all the rest is equal between two runs of the same input on the same device.
+/// Everything that run.json and report.html say about a finished run. Durations belong into `passes`, `times_s`
+/// and `live` only: all the rest is equal between two runs of the same input on the same device.
 struct RunSummary {
     std::string version;               ///< of Patina
     std::string id{};                  ///< of the run, run_id(); empty where it is not known yet
@@ -95,6 +97,7 @@ struct RunSummary {
     std::optional<ObservationPoolSummary> observation_pool{};  ///< empty without reflectance
     std::vector<MemorySummary> memory;
     std::vector<std::pair<std::string, uint64_t>> totals;  ///< counts of what was made, as {"triangles", 1200}
+    std::optional<LiveSummary> live{};                     ///< of a live source; empty of a recording
     std::vector<TrackedFrame> tracking{};                  ///< each frame that was read; empty where poses were given
     std::vector<ValueRange> color_gains;     ///< of red, green and blue over the frames; empty where there are none
     std::optional<HeldOutSummary> held_out;  ///< empty where no picture was held out
@@ -111,8 +114,8 @@ struct RunSummary {
 };
 
 /// The text of run.json: two-space indented JSON whose keys keep one order. All durations stand in the top-level
-/// objects "passes" and "times"; without these two, the text is equal between two runs that did the same. Numbers that
-/// are not finite become null; text that is not UTF-8 has its bad bytes replaced.
+/// objects "passes", "times" and "live"; without these, the text is equal between two runs that did the same. Numbers
+/// that are not finite become null; text that is not UTF-8 has its bad bytes replaced.
 std::string run_json(const RunSummary& summary);
 
 /// The run's id, 16 hexadecimal digits: of the summary without id, durations and memory, and of OutputFolder::digest()

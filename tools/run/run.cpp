@@ -73,12 +73,13 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
 /// where it still can be, the most valuable first.
 class Run {
   public:
-    Run(const RunOptions& options, Console& console, OutputFolder& folder)
+    Run(const RunOptions& options, Console& console, OutputFolder& folder, RunCompanion* companion)
         : options_(options),
           console_(console),
           folder_(folder),
+          companion_(companion),
           device_(options.device),
-          session_(Access::vulkan(device_), options),
+          session_(Access::vulkan(device_), options, companion ? companion->source() : nullptr),
           pipeline_(session_.pipeline()),
           dumps_(folder, session_.info().frames, options.dump_every) {
         session_.bring_back([this](graph::StateVisitor& visitor, MapFile& map) {
@@ -91,10 +92,12 @@ class Run {
     void fuse_all() {
         try {
             while (session_.step()) {
+                if (companion_) companion_->after_step(session_);
                 if (const Frame* frame = session_.fused()) after(*frame);
                 if (const Frame* frame = session_.held_out()) held_out_.keep(*frame, pipeline_.frames() - 1);
                 session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
             }
+            if (companion_) companion_->end();
             session_.end();
             session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
         } catch (const Interrupted& interrupted) {
@@ -119,6 +122,7 @@ class Run {
     }
 
     Outcome write_results() {
+        if (companion_) companion_->end();
         if (ended_.empty()) check_validation();
         // All of this is on the host.
         attempt("trajectory.txt", [&] { folder_.write("trajectory.txt", trajectory_text(session_.world_poses())); });
@@ -315,6 +319,9 @@ class Run {
         if (scene_ && glb_ && glb_->triangles == 0)
             outcome.fall_short("the surface is empty: from none of the frames a triangle was reconstructed");
         if (!dumps_.problem().empty()) outcome.fall_short(dumps_.problem());
+        if (companion_) {
+            for (std::string& shortfall : companion_->shortfalls()) outcome.fall_short(std::move(shortfall));
+        }
         for (const std::string& problem : problems_) outcome.fall_short(problem);
         return outcome;
     }
@@ -326,6 +333,7 @@ class Run {
         summary.finished = ended_.empty();
         summary.ended = ended_;
         summary.held_out = held_out_summary_;
+        if (companion_) companion_->add_to(summary);
         if (scene_) scene_->add_to(summary);
         times_s_.emplace_back("total", seconds_since(start_));
         summary.times_s = times_s_;
@@ -364,6 +372,7 @@ class Run {
     const RunOptions& options_;
     Console& console_;
     OutputFolder& folder_;
+    RunCompanion* companion_;
     Clock::time_point start_ = Clock::now();
     Device device_;
     SessionCore session_;
@@ -384,14 +393,15 @@ class Run {
 
 }  // namespace
 
-Outcome run(const RunOptions& given) {
+Outcome run(const RunOptions& given, RunCompanion* companion) {
     Console console(given.quiet);  // from the first file to the last, so that none is left half-written
     RunOptions options = given;
     options.callbacks = console.callbacks();
+    if (companion) companion->adjust(options.callbacks);
     const std::vector<std::filesystem::path> inputs = inputs_of(options);
     OutputFolder folder(options.out, inputs);
     check_dump_graph(options, inputs);
-    Run job(options, console, folder);
+    Run job(options, console, folder, companion);
     job.fuse_all();
     return job.write_results();
 }

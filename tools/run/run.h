@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "export/scene_files.h"
+#include "reconstruction/session/session_core.h"
 #include "tools/program/outcome.h"
 #include "tools/program/sequence_options.h"
+#include "tools/report/run_summary.h"
 
 namespace patina::tools {
 
@@ -26,11 +29,30 @@ struct RunOptions : SequenceOptions {
         dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none
 };
 
+/// What a run has whose source is live: it goes along from the first frame to the summary.
+class RunCompanion {
+  public:
+    virtual ~RunCompanion() = default;
+
+    /// The source; called once.
+    virtual std::unique_ptr<Source> source() = 0;
+    /// Changes what the session calls while it works.
+    virtual void adjust(SessionCallbacks& callbacks) = 0;
+    /// After each step of the session.
+    virtual void after_step(SessionCore& session) = 0;
+    /// Once the last frame was taken, or something failed; may be called again.
+    virtual void end() = 0;
+    /// What it fell short of.
+    virtual std::vector<std::string> shortfalls() const = 0;
+    virtual void add_to(RunSummary& summary) const = 0;
+};
+
 /// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). When the user stops it, or an error does,
 /// what was fused so far is extracted and written, and run.json says how the run ended; of a device that was lost, what
 /// the host has. Such results take the place of no whole ones (OutputFolder::commit_unfinished). Returns what the
 /// results fall short of. Throws Error for whatever stopped the run, Interrupted when the user did before a frame was
 /// fused.
-Outcome run(const RunOptions& options);
+/// `companion` may be null; it must outlive the run.
+Outcome run(const RunOptions& options, RunCompanion* companion = nullptr);
 
 }  // namespace patina::tools

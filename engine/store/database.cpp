@@ -1,5 +1,6 @@
-#include "reconstruction/store/database.h"
+#include "engine/store/database.h"
 
+#include <cstring>
 #include <utility>
 
 #include <sqlite3.h>
@@ -32,16 +33,33 @@ const char* meaning_of(int code) {
 
 void Database::Close::operator()(sqlite3* handle) const { sqlite3_close(handle); }
 
-Database::Database(std::filesystem::path file) : file_(std::move(file)) {
+Database::Database(std::filesystem::path file, DatabaseUse use) : file_(std::move(file)) {
+    const int access = use == DatabaseUse::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* handle = nullptr;
-    const int code = sqlite3_open_v2(file_.c_str(), &handle,
-                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+    const int code = sqlite3_open_v2(file_.c_str(), &handle, access | SQLITE_OPEN_NOMUTEX, nullptr);
     handle_.reset(handle);
     if (code != SQLITE_OK) fail(code);
     sqlite3_extended_result_codes(handle, 1);
     sqlite3_busy_timeout(handle, kPatienceMs);
-    // A commit that returned is on the disk. What is large is not written twice, as a write-ahead log would.
-    run("PRAGMA synchronous = FULL; PRAGMA journal_mode = DELETE; PRAGMA temp_store = MEMORY");
+    run("PRAGMA temp_store = MEMORY");
+    switch (use) {
+        case DatabaseUse::kState:
+            // A commit that returned is on the disk. What is large is not written twice, as a write-ahead log would.
+            run("PRAGMA synchronous = FULL; PRAGMA journal_mode = DELETE");
+            break;
+        case DatabaseUse::kLog:
+            // The page size holds for the file's life, so it comes first. Large pages make short chains of large
+            // values.
+            // Who commits does not wait for the disk: checkpoints, which do, are the owner's to run.
+            run("PRAGMA page_size = 32768; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;"
+                "PRAGMA wal_autocheckpoint = 0");
+            break;
+        case DatabaseUse::kRead:
+            sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kLongestValue);
+            sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+            run("PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0");
+            break;
+    }
 }
 
 void Database::run(const std::string& sql) {
@@ -51,7 +69,9 @@ void Database::run(const std::string& sql) {
 
 void Database::fail(int code) const {
     const char* meaning = meaning_of(code);
-    throw Error("'", file_.string(), "': ", meaning ? meaning : sqlite3_errmsg(handle_.get()));
+    const int system = (code & 0xff) == SQLITE_IOERR ? sqlite3_system_errno(handle_.get()) : 0;
+    throw Error("'", file_.string(), "': ", meaning ? meaning : sqlite3_errmsg(handle_.get()),
+                system != 0 ? text(": ", std::strerror(system)) : "");
 }
 
 void Query::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
@@ -68,6 +88,11 @@ void Query::check(int code) const {
 
 Query& Query::with(int64_t number) {
     check(sqlite3_bind_int64(statement_.get(), ++given_, number));
+    return *this;
+}
+
+Query& Query::with(double number) {
+    check(sqlite3_bind_double(statement_.get(), ++given_, number));
     return *this;
 }
 
@@ -92,7 +117,17 @@ void Query::run() {
     }
 }
 
+Query& Query::again() {
+    sqlite3_reset(statement_.get());  // its code is that of the last step, which was reported
+    given_ = 0;
+    return *this;
+}
+
 int64_t Query::number(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+double Query::real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+bool Query::is_null(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
 
 std::string Query::text(int column) const {
     const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
@@ -102,6 +137,12 @@ std::string Query::text(int column) const {
 std::span<const std::byte> Query::blob(int column) const {
     const auto* bytes = static_cast<const std::byte*>(sqlite3_column_blob(statement_.get(), column));
     return {bytes, static_cast<size_t>(sqlite3_column_bytes(statement_.get(), column))};
+}
+
+void check_integrity(Database& database) {
+    Query check(database, "PRAGMA integrity_check(1)");
+    if (check.next() && check.text(0) == "ok") return;
+    throw Error("'", database.file().string(), "': it is damaged: ", check.text(0));
 }
 
 Transaction::Transaction(Database& database) : database_(database) { database_.run("BEGIN IMMEDIATE"); }

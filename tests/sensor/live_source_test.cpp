@@ -1,0 +1,121 @@
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include "engine/core/error.h"
+#include "sensor/ledger.h"
+#include "sensor/live/played_source.h"
+#include "tests/sensor/sequences.h"
+
+// What a live source yields to a consumer that is late: the newest frame, and word of the others.
+
+namespace patina::sensor {
+namespace {
+
+using namespace testing;
+
+uint32_t index_of(const Reading& reading) {
+    const auto* frame = std::get_if<Frame>(&reading);
+    return frame ? frame->index : std::get<Skipped>(reading).index;
+}
+
+bool dropped(const Reading& reading) {
+    const auto* skipped = std::get_if<Skipped>(&reading);
+    return skipped && skipped->dropped;
+}
+
+TEST(NewestFrame, TheNewestWinsAndTheOthersAreCounted) {
+    NewestFrame newest;
+    for (uint32_t i = 0; i < 3; ++i) newest.put(test_frame(i, {32, 24}, {16, 12}));
+    newest.put(Skipped{3, "a packet was lost"});
+    newest.end();
+    std::vector<Reading> readings;
+    while (auto reading = newest.take()) readings.push_back(*std::move(reading));
+    ASSERT_EQ(readings.size(), 4u);
+    for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(index_of(readings[i]), i);
+    EXPECT_TRUE(dropped(readings[0]) && dropped(readings[1]) && dropped(readings[2]));
+    EXPECT_FALSE(dropped(readings[3]));  // damaged, not dropped
+    const LiveCounts counts = newest.counts();
+    EXPECT_EQ(counts.captured, 4u);
+    EXPECT_EQ(counts.dropped, 3u);
+    EXPECT_EQ(counts.damaged, 1u);
+    EXPECT_EQ(counts.delivered, 0u);
+}
+
+TEST(NewestFrame, APromptConsumerGetsAll) {
+    NewestFrame newest;
+    for (uint32_t i = 0; i < 3; ++i) {
+        newest.put(test_frame(i, {32, 24}, {16, 12}));
+        EXPECT_EQ(std::get<Frame>(*newest.take()).index, i);
+    }
+    EXPECT_EQ(newest.counts().dropped, 0u);
+}
+
+TEST(NewestFrame, AFailureComesAfterWhatWaits) {
+    NewestFrame newest;
+    newest.put(test_frame(0, {32, 24}, {16, 12}));
+    newest.end(std::make_exception_ptr(Error("the camera is gone")));
+    EXPECT_EQ(std::get<Frame>(*newest.take()).index, 0u);
+    EXPECT_EQ(error_of([&] { newest.take(); }), "the camera is gone");
+}
+
+std::unique_ptr<Source> recording_of(uint32_t frames, double fps) {
+    std::vector<Reading> readings = test_readings(frames);
+    for (Reading& reading : readings) {
+        auto& frame = std::get<Frame>(reading);
+        frame.timestamp_s = 100 + frame.index / fps;
+    }
+    return std::make_unique<MemorySource>(test_info(), std::move(readings));
+}
+
+TEST(PlayedSource, KeepsTheRecordingsTime) {
+    PlayedSource source(recording_of(10, 100));
+    EXPECT_FALSE(source.info().frames.has_value());
+    const auto start = std::chrono::steady_clock::now();
+    double earliest_s = 1e9;
+    while (const auto reading = source.next()) {
+        // No frame is there before it was exposed.
+        if (const auto* frame = std::get_if<Frame>(&*reading))
+            earliest_s = std::min(earliest_s, source.now_s() - frame->timestamp_s);
+    }
+    EXPECT_GE(earliest_s, 0);
+    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    EXPECT_GE(took_s, 0.09);  // nine intervals of 10 ms
+}
+
+TEST(PlayedSource, ALateConsumerMissesFramesAndTheTapNone) {
+    std::vector<uint32_t> tapped;
+    PlayedSource source(recording_of(60, 200), [&](const Reading& reading) { tapped.push_back(index_of(reading)); });
+    Ledger ledger;
+    uint32_t expected = 0;
+    while (const auto reading = source.next()) {
+        EXPECT_EQ(index_of(*reading), expected++);  // all indices, in order
+        ledger.note(*reading);
+        if (!std::holds_alternative<Frame>(*reading)) continue;
+        ledger.use(index_of(*reading));
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    const LiveCounts counts = source.counts();
+    EXPECT_EQ(counts.captured, 60u);
+    EXPECT_EQ(counts.captured, counts.delivered + counts.dropped);
+    EXPECT_GT(counts.dropped, 20u);  // three of four, were the consumer alone with its machine
+    EXPECT_EQ(ledger.dropped(), counts.dropped);
+    EXPECT_EQ(ledger.used(), counts.delivered);
+    EXPECT_EQ(ledger.discrepancy(source.info()), std::nullopt);
+    EXPECT_EQ(tapped.size(), 60u);
+}
+
+TEST(PlayedSource, StopEndsAWait) {
+    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after a quarter of an hour
+    ASSERT_TRUE(source.next());
+    std::jthread stopper([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        source.stop();
+    });
+    EXPECT_FALSE(source.next());
+}
+
+}  // namespace
+}  // namespace patina::sensor

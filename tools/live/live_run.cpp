@@ -1,0 +1,151 @@
+#include "tools/live/live_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "tools/report/live_summary.h"
+
+namespace patina::tools {
+
+namespace {
+
+/// How soon an interrupt, or the end of the time, ends a source that yields nothing.
+constexpr std::chrono::milliseconds kWatch{50};
+/// So many latest frames are what the line of progress tells of.
+constexpr size_t kShown = 100;
+/// Pictures are rendered at a half of the depth camera's size: a person looks at them while the room is recorded.
+constexpr uint32_t kPictureShare = 2;
+
+/// A source that others hold as well.
+class SharedSource : public Source {
+  public:
+    explicit SharedSource(std::shared_ptr<Source> source) : source_(std::move(source)) {}
+    const SequenceInfo& info() const override { return source_->info(); }
+    std::optional<Reading> next() override { return source_->next(); }
+
+  private:
+    std::shared_ptr<Source> source_;
+};
+
+LatencySummary latest(const std::vector<float>& latencies_s) {
+    const size_t count = std::min(latencies_s.size(), kShown);
+    return summarised({latencies_s.end() - static_cast<ptrdiff_t>(count), latencies_s.end()});
+}
+
+}  // namespace
+
+sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder) {
+    if (!recorder) return {};
+    return [recorder = std::move(recorder)](const Reading& reading) {
+        if (const auto* skipped = std::get_if<Skipped>(&reading)) return recorder->skip(*skipped);
+        recorder->record(std::get<Frame>(reading));
+    };
+}
+
+LiveRun::LiveRun(std::shared_ptr<sensor::LiveSource> source, std::shared_ptr<sensor::Recorder> recorder,
+                 std::filesystem::path record, double seconds)
+    : source_(std::move(source)), recorder_(std::move(recorder)), record_(std::move(record)), seconds_(seconds) {}
+
+LiveRun::~LiveRun() = default;
+
+std::unique_ptr<Source> LiveRun::source() { return std::make_unique<SharedSource>(source_); }
+
+void LiveRun::adjust(SessionCallbacks& callbacks) {
+    // Before the first frame an interrupt stops the search for lights; later it ends the source, and the run is whole.
+    callbacks.stop = [this] { return interrupt_.requested() && !begun_; };
+    callbacks.progress = [this, show = callbacks.progress](SessionProgress progress) {
+        if (begun_) progress.detail = detail() + "  " + progress.detail;
+        show(progress);
+    };
+    watcher_ = std::jthread([this](std::stop_token stop) { watch(stop); });
+}
+
+/// The source may wait for a camera that has fallen silent: nobody but this thread would end that.
+void LiveRun::watch(std::stop_token stop) {
+    std::optional<std::chrono::steady_clock::time_point> started;
+    while (!stop.stop_requested()) {
+        std::this_thread::sleep_for(kWatch);
+        if (!begun_) continue;
+        if (!started) started = std::chrono::steady_clock::now();
+        const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - *started).count();
+        if (!interrupt_.requested() && (seconds_ <= 0 || passed_s < seconds_)) continue;
+        source_->stop();
+        return;
+    }
+}
+
+void LiveRun::after_step(SessionCore& session) {
+    const double now_s = source_->now_s();
+    begun_ = true;
+    const Frame* frame = session.fused();
+    if (!first_s_) first_s_ = frame ? frame->timestamp_s : now_s;
+    last_s_ = now_s;
+    if (frame) to_pose_s_.push_back(static_cast<float>(now_s - frame->timestamp_s));
+    look(session);
+}
+
+/// One picture is on its way at a time, so that a device that is slow renders fewer.
+void LiveRun::look(SessionCore& session) {
+    if (picture_ && picture_->view.ready()) {
+        to_picture_s_.push_back(static_cast<float>(source_->now_s() - picture_->exposed_s));
+        picture_.reset();
+    }
+    const Frame* frame = session.fused();
+    if (picture_ || !frame) return;
+    const Intrinsics& camera = session.info().depth;
+    const Extent2D extent{std::max(1u, camera.extent.width / kPictureShare),
+                          std::max(1u, camera.extent.height / kPictureShare)};
+    picture_.emplace(
+        Picture{session.pipeline().view(scaled_to(camera, extent), *frame->world_from_camera), frame->timestamp_s});
+}
+
+void LiveRun::end() {
+    if (std::exchange(ended_, true)) return;
+    watcher_.request_stop();
+    source_->stop();
+    counts_ = source_->counts();
+    picture_.reset();
+    if (!recorder_) return;
+    try {
+        recorder_->finish();
+    } catch (const Error& error) {
+        recorder_problem_ = error.what();
+    }
+    recorded_ = recorder_->counts();
+}
+
+std::vector<std::string> LiveRun::shortfalls() const {
+    std::vector<std::string> list;
+    if (!recorder_problem_.empty()) list.push_back(recorder_problem_);
+    if (recorded_ && recorded_->dropped > 0)
+        list.push_back(fmt::format("{} of {} frames are missing in '{}': the disk did not keep pace",
+                                   recorded_->dropped, recorded_->given, record_.string()));
+    return list;
+}
+
+std::string LiveRun::detail() const {
+    const sensor::LiveCounts counts = source_->counts();
+    const LatencySummary pose = latest(to_pose_s_), picture = latest(to_picture_s_);
+    return fmt::format("{} captured, {} dropped  pose {:.0f}/{:.0f} ms, picture {:.0f}/{:.0f} ms (median/95 %)",
+                       counts.captured, counts.dropped, pose.median_ms, pose.p95_ms, picture.median_ms, picture.p95_ms);
+}
+
+void LiveRun::add_to(RunSummary& summary) const {
+    LiveSummary live;
+    live.captured = counts_.captured;
+    live.dropped = counts_.dropped;
+    live.damaged = counts_.damaged;
+    live.seconds = last_s_ - first_s_.value_or(last_s_);
+    live.pose = summarised(to_pose_s_);
+    live.picture = summarised(to_picture_s_);
+    if (recorded_) {
+        live.recording = BesideSummary{record_.string(), recorded_->given, recorded_->dropped, recorded_->bytes,
+                                       recorded_->most_queued_bytes};
+    }
+    summary.live = std::move(live);
+}
+
+}  // namespace patina::tools

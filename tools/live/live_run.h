@@ -1,0 +1,65 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "reconstruction/view_readback.h"
+#include "sensor/live/live_source.h"
+#include "sensor/recording/recorder.h"
+#include "tools/program/interrupt.h"
+#include "tools/run/run.h"
+
+namespace patina::tools {
+
+/// Hands every reading to a recorder, where there is one.
+sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder);
+
+/// Goes along with a live run: measures how long after its exposure a frame's pose and a picture of the model are
+/// there, ends the source when the user asks or the time is over, and reports what was dropped.
+class LiveRun : public RunCompanion {
+  public:
+    /// `recorder` may be null; `record` is its file. `seconds`: of the source; 0: no limit.
+    LiveRun(std::shared_ptr<sensor::LiveSource> source, std::shared_ptr<sensor::Recorder> recorder,
+            std::filesystem::path record, double seconds);
+    ~LiveRun() override;
+
+    std::unique_ptr<Source> source() override;
+    void adjust(SessionCallbacks& callbacks) override;
+    void after_step(SessionCore& session) override;
+    void end() override;
+    std::vector<std::string> shortfalls() const override;
+    void add_to(RunSummary& summary) const override;
+
+  private:
+    void watch(std::stop_token stop);
+    void look(SessionCore& session);
+    std::string detail() const;
+
+    InterruptGuard interrupt_;
+    std::shared_ptr<sensor::LiveSource> source_;  ///< the session shares it
+    std::shared_ptr<sensor::Recorder> recorder_;
+    std::filesystem::path record_;
+    double seconds_;
+
+    std::atomic<bool> begun_ = false;  ///< the session has taken a step
+    std::optional<double> first_s_;    ///< when the first frame was exposed, on the source's clock
+    double last_s_ = 0;
+    std::vector<float> to_pose_s_, to_picture_s_;
+    struct Picture {
+        ViewReadback view;
+        double exposed_s = 0;
+    };
+    std::optional<Picture> picture_;  ///< on its way
+    bool ended_ = false;
+    sensor::LiveCounts counts_;
+    std::optional<sensor::RecorderCounts> recorded_;
+    std::string recorder_problem_;
+    std::jthread watcher_;  // last: it reads the others
+};
+
+}  // namespace patina::tools
