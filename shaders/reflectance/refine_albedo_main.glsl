@@ -37,6 +37,7 @@ const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter
 const float kLeastAlpha = 0.01;
 const float kRayError = 0.5;  // of the mean of gathered rays, relative, times the square root of their number
 const float kReflectedSpreads = 1.5;
+const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
 const float kUsualKd = 0.3;         // a usual albedo
 const float kUnknownError = 0.3;    // of what arrives from unknown directions, relative
 const uint kAnyClipped = 7u << 26;  // of a direction word
@@ -165,8 +166,8 @@ Center find_center(Center center, float noise) {
 
 // What is not reflected surroundings, of which the material does not tell: they change with the view, and only add. So
 // where colours scatter by more than their noise, the diffuse part lies below their mean.
-float unreflected_share(Center center, float noise) {
-    const float excess = kReflectedSpreads * max(center.spread - noise, 0.0);
+float unreflected_share(Center center, float noise, float mirror) {
+    const float excess = mix(kReflectedSpreads, kMirroredSpreads, mirror) * max(center.spread - noise, 0.0);
     return clamp(1.0 - excess / max(center.brightness, 1e-6), 0.0, 1.0);
 }
 
@@ -236,7 +237,11 @@ void main() {
     const Center center = find_center(guess, noise);
     Estimate estimate = robust_mean(center, noise);
     estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
-    if (gathered.met > 0.0) estimate.diffuse *= unreflected_share(center, noise);
+    if (gathered.met > 0.0) {
+        const float share = unreflected_share(center, noise, has_entry ? material.mirror : 0.0);
+        estimate.diffuse *= share;
+        if (has_entry) estimate.variance *= mix(1.0, share * share, material.mirror);
+    }
     albedo[record] = packed_albedo(estimate, irradiance);
     status[record].refined = refined_word(header.version, has_entry ? material.version : 0u);
 }
