@@ -46,10 +46,9 @@ void Pipeline::add_low_exposure(const RgbdFrame& frame, float radiance_scale, fl
     check_frame(frame, low_exposures_);
     const FrameCameras cameras = make_frame_cameras(frame);
     graph::FrameGraph graph = runner_.begin();
-    stages_.reflectance->add_low_exposure(graph,
-                                          {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color),
-                                           cameras.depth.gpu, cameras.color.gpu, low_exposures_++, radiance_scale,
-                                           lamp_luminance});
+    stages_.reflectance->add_low_exposure(
+        graph, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color), cameras.depth.gpu,
+                cameras.color.gpu, low_exposures_++, radiance_scale, lamp_luminance});
     runner_.submit(std::move(graph));
 }
 

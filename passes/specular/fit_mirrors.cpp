@@ -11,8 +11,14 @@ static_assert(gpu::kMirrorGroup == gpu::kBatchGroup && gpu::kSegmentSamples % gp
 void add_fit_mirrors(graph::FrameGraph& frame, const FitMirrorsInputs& inputs, const SegmentBatch& batch,
                      const WardFits& table, WardFitIds& fits, graph::BufferId& segment_materials) {
     const ObservationMapIds& records = inputs.records;
-    const gpu::MirrorParams params{inputs.map.grid(), inputs.map.edge_shift(), table.labels(), inputs.materials,
-                                   inputs.stamp,      inputs.memory,           0,              0,
+    const gpu::MirrorParams params{inputs.map.grid(),
+                                   inputs.map.edge_shift(),
+                                   table.labels(),
+                                   inputs.materials,
+                                   inputs.stamp,
+                                   inputs.memory,
+                                   0,
+                                   0,
                                    0};
     const std::array work{gpu::BatchWork{1, 1, gpu::kSegmentSamples, 1}, gpu::BatchWork{1, 1, gpu::kBatchGroup, 1}};
     const graph::BufferId arguments = add_plan_batch(frame, batch, work);

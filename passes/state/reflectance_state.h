@@ -14,9 +14,9 @@ namespace patina {
 
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
-    graph::BufferId status;     ///< gpu::RecordStatus per record
-    graph::BufferId gathered;   ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
-    graph::BufferId windows;    ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId status;        ///< gpu::RecordStatus per record
+    graph::BufferId gathered;      ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
+    graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
     graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], and
                                    ///< gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };

@@ -138,8 +138,8 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
         add_collect_far_field(
             graph, state,
             {inputs.position_m, inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
-        add_collect_surroundings(
-            graph, state, {inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
+        add_collect_surroundings(graph, state,
+                                 {inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
     }
     add_refine_reflectance(graph, models(part_around(frame)), voxels, records, collected.changed, access_,
                            settings_.refine);

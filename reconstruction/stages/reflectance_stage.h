@@ -52,11 +52,11 @@ struct SegmentIds {
 struct SpecularInputs {
     const ObservationMap& map;
     ObservationMapIds records;
-    graph::BufferId status;     ///< gpu::RecordStatus per record
+    graph::BufferId status;                       ///< gpu::RecordStatus per record
     std::optional<graph::BufferId> surroundings;  ///< gpu::SurroundingsCell; empty where no light is gathered from them
-    graph::BufferId lights;     ///< Lights::upload
-    uint32_t position_version;  ///< of the lights
-    graph::BufferId materials;  ///< gpu::SegmentMaterial per label; to be kept once replaced
+    graph::BufferId lights;                       ///< Lights::upload
+    uint32_t position_version;                    ///< of the lights
+    graph::BufferId materials;                    ///< gpu::SegmentMaterial per label; to be kept once replaced
     uint32_t material_count;
 };
 

@@ -54,10 +54,10 @@ void add_sample(ivec3 cell, vec3 rgb) {
         const uint found = atomicCompSwap(surroundings[place].key, 0u, key);
         if (found != 0u && found != key) continue;
         const uvec3 steps = uvec3(clamp(rgb, 0.0, kSurroundingsRange) * kSurroundingsSteps + 0.5);
-#define ADD_TO(sums)                                  \
-    atomicAdd(surroundings[place].sums.samples, 1u);  \
-    atomicAdd(surroundings[place].sums.r, steps.r);   \
-    atomicAdd(surroundings[place].sums.g, steps.g);   \
+#define ADD_TO(sums)                                 \
+    atomicAdd(surroundings[place].sums.samples, 1u); \
+    atomicAdd(surroundings[place].sums.r, steps.r);  \
+    atomicAdd(surroundings[place].sums.g, steps.g);  \
     atomicAdd(surroundings[place].sums.b, steps.b);
         if (params.radiance_scale > 0.0) {
             ADD_TO(low)

@@ -37,10 +37,10 @@ const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter
 const float kLeastAlpha = 0.01;
 const float kReflectedSpreads = 1.5;
 const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
-const float kUsualKd = 0.3;         // a usual albedo
-const float kUnknownError = 0.3;    // of what arrives from unknown directions, relative
-const uint kAnyClipped = 7u << 26;  // of a direction word
-const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
+const float kUsualKd = 0.3;          // a usual albedo
+const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
+const uint kAnyClipped = 7u << 26;   // of a direction word
+const uint kRobustSteps = 3u;        // after which one wild observation of ten weighs nothing
 
 // Of the brightnesses: where they lie, and their mean distance from there.
 struct Center {

@@ -17,15 +17,15 @@ layout(push_constant) uniform Push { ReflectanceParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
 #define RECORD(entry) record_table[entry]
-#include "lib/records/find_record.glsl"
 #include "lib/math/mean.glsl"
+#include "lib/records/find_record.glsl"
 #include "lib/records/gathered_light.glsl"
 #include "lib/records/reflectance.glsl"
 
 const float kSameCosine = 0.9;  // between the normals of one surface
 const float kOffPlaneVox = 1.0;
 const float kLeastWorth = 8.0;  // usual rays
-const uint kNeighbours = 27u;  // with the record itself
+const uint kNeighbours = 27u;   // with the record itself
 
 vec3 surface_at_vox(VoxelRecord record, ivec3 voxel) {
     return vec3(voxel) + surface_normal(record) * surface_offset_vox(record);

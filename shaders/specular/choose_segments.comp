@@ -5,8 +5,8 @@
 // labels that were handed out anew. One workgroup.
 #include "shared/segmentation/segment_samples.h"
 #include "shared/segmentation/segments.h"
-#include "shared/specular/specular_estimates.h"
 #include "shared/specular/mirror_fit.h"
+#include "shared/specular/specular_estimates.h"
 
 layout(local_size_x = kChooseSegmentsGroup) in;
 layout(std430, binding = 0) readonly buffer Labels { SegmentLabel labels[]; };
@@ -32,7 +32,8 @@ void forget(uint label) {
     estimates[label] = WardMaterial(vec4(0.0), vec4(0.0));
     if (label >= params.materials) return;
     const uint version = materials[label].version;
-    if (version != 0u) materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0.0, 0u, 0u);
+    if (version != 0u)
+        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0.0, 0u, 0u);
 }
 
 // Merging makes a label older, never younger.

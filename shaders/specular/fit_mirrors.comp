@@ -22,22 +22,22 @@ layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { MirrorParams params; };
 #include "lib/lighting/march_surroundings.glsl"
 
-const float kLobeAlpha = 0.06;      // of the mirrors that are looked for
+const float kLobeAlpha = 0.06;  // of the mirrors that are looked for
 const uint kRaysOfSet = 2u;
-const float kMost = 4.0;            // of a difference, so that 32 bits hold the sums
+const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
-const float kErrors = 2.0;          // from the estimate down to what is sure
-const float kGlassKs = 0.1;         // no dielectric reflects more, but for flat views,
-const float kMetalKs = 0.25;        // and no metal less
-const float kMirrorStep = 0.04;     // a change that is worth another look at the albedo
+const float kErrors = 2.0;       // from the estimate down to what is sure
+const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat views,
+const float kMetalKs = 0.25;     // and no metal less
+const float kMirrorStep = 0.04;  // a change that is worth another look at the albedo
 
 shared int sum_product;
 shared int sum_square;
 shared int sum_product2;
 shared uint sum_pairs;
 
-// The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing. What
-// is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
+// The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing.
+// What is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
 float mirrored(vec3 point_m, vec3 normal, vec3 to_viewer, uvec2 stream, uint set) {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < kRaysOfSet; ++i) {

@@ -8,8 +8,8 @@
 #include "lib/lighting/surroundings.glsl"
 #include "shared/reflectance/far_field.h"
 
-const uint kMostCrossings = 256u;        // cells of a ray: 7 m at least
-const float kOwnSurfaceCells = 1.5;      // what is no higher above the surface that a ray leaves is part of it
+const uint kMostCrossings = 256u;    // cells of a ray: 7 m at least
+const float kOwnSurfaceCells = 1.5;  // what is no higher above the surface that a ray leaves is part of it
 
 // The mean colour of a cell; a is 0 where there is no surface in it.
 vec4 look_up_surroundings(ivec3 cell) {

@@ -5,12 +5,12 @@
 #include "shared/input/camera.h"
 INTEROP_BEGIN
 
-INTEROP_CONST float kSurroundingsCellM = 0.05f;        // edge of a cell
-INTEROP_CONST uint kSurroundingsCells = 0x40000u;      // of the table, a power of two: 650 m^2 of surface
-INTEROP_CONST uint kSurroundingsProbes = 16u;          // places looked at, from the key's own on
-INTEROP_CONST float kSurroundingsSteps = 256.0f;       // of a linear pixel value, in whole numbers
-INTEROP_CONST float kSurroundingsRange = 64.0f;        // the largest of them
-INTEROP_CONST uint kLeastSurroundingsSamples = 3u;     // pixels that make a cell a surface
+INTEROP_CONST float kSurroundingsCellM = 0.05f;     // edge of a cell
+INTEROP_CONST uint kSurroundingsCells = 0x40000u;   // of the table, a power of two: 650 m^2 of surface
+INTEROP_CONST uint kSurroundingsProbes = 16u;       // places looked at, from the key's own on
+INTEROP_CONST float kSurroundingsSteps = 256.0f;    // of a linear pixel value, in whole numbers
+INTEROP_CONST float kSurroundingsRange = 64.0f;     // the largest of them
+INTEROP_CONST uint kLeastSurroundingsSamples = 3u;  // pixels that make a cell a surface
 INTEROP_CONST uint kSurroundingsGroup = 8u;
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
@@ -32,7 +32,7 @@ struct SurroundingsParams {
     Camera color_camera;
     uvec2 visited;  // how many pixels in x and y are looked at: every stride_px-th
     uint stride_px;
-    uint phase;  // which of the stride^2 pixels, changes from frame to frame
+    uint phase;            // which of the stride^2 pixels, changes from frame to frame
     float radiance_scale;  // of a frame of low exposure: the recording's exposure over its own; 0: a usual frame
     float lamp_luminance;  // of a frame of low exposure: from which a pixel is a lamp's, which is left out
     uint pad0;

@@ -9,10 +9,10 @@ INTEROP_CONST uint kMirrorGroup = 64u;
 
 // Two views of one voxel that lie far apart.
 struct MirrorPair {
-    uint record;      // kNoRecord: none
-    uint first;       // direction words
+    uint record;  // kNoRecord: none
+    uint first;   // direction words
     uint second;
-    float brighter;   // by how much the first is, linear, mean of the channels
+    float brighter;  // by how much the first is, linear, mean of the channels
 };
 
 // Sums over pairs, by label.

@@ -59,7 +59,8 @@ class CollectFarFieldTest : public GpuTest {
     Texels collect(const Sky& sky) {
         graph::FrameGraph frame = runner().begin();
         ReflectanceStateIds state;
-        state.surroundings = frame.fill(frame.create_buffer("far_field", kEdge * kEdge * sizeof(gpu::FarFieldTexel)), 0);
+        state.surroundings =
+            frame.fill(frame.create_buffer("far_field", kEdge * kEdge * sizeof(gpu::FarFieldTexel)), 0);
         FarFieldInputs inputs;
         inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
                                       std::as_bytes(std::span(sky.depth_m.pixels())));

@@ -66,11 +66,10 @@ using Cells = std::map<Cell, Sums>;
 class CollectSurroundingsTest : public GpuTest {
   protected:
     /// All 16 phases of a frame, so that every pixel looks once.
-    Cells collect(const Room& room) {
+    Cells collect(const Room& room, float radiance_scale = 0) {
         graph::FrameGraph frame = runner().begin();
         ReflectanceStateIds state;
-        state.surroundings = frame.fill(
-            frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
         SurroundingsInputs inputs;
         inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
                                       std::as_bytes(std::span(room.depth_m.pixels())));
@@ -79,6 +78,8 @@ class CollectSurroundingsTest : public GpuTest {
         inputs.color_linear =
             frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
         inputs.depth_camera = inputs.color_camera = make_camera(kCamera, room.world_from_camera);
+        inputs.radiance_scale = radiance_scale;
+        inputs.lamp_luminance = 0.5f;
         for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
             add_collect_surroundings(frame, state, inputs);
         const graph::Readback read = frame.read_back(state.surroundings);
@@ -96,7 +97,9 @@ class CollectSurroundingsTest : public GpuTest {
             };
             Sums& sums = cells[{coordinate(0), coordinate(10), coordinate(20)}];
             EXPECT_EQ(sums.samples, 0u) << "a cell has one place";
-            sums = {cell.usual.samples, glm::dvec3(cell.usual.r, cell.usual.g, cell.usual.b) / double{gpu::kSurroundingsSteps}};
+            const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.low : cell.usual;
+            EXPECT_EQ((radiance_scale > 0 ? cell.usual : cell.low).samples, 0u);
+            sums = {taken.samples, glm::dvec3(taken.r, taken.g, taken.b) / double{gpu::kSurroundingsSteps}};
         }
         return cells;
     }
@@ -160,6 +163,17 @@ TEST_F(CollectSurroundingsTest, WhatHasARimOnOneSideAloneIsNowhere) {
     Room room;
     room.open(50, kCamera.extent.width, 0, kCamera.extent.height);
     expect_same(collect(room), expected(room, [](uint32_t x, uint32_t) { return x < 50; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, LowExposureCountsApartInTheRecordingsPixelValuesWithoutLamps) {
+    Room room, bright;
+    for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+        for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+            room.color.at(x, y) = glm::vec4(glm::vec3(x < 60 ? 0.25f : 0.75f), 1);
+            bright.color.at(x, y) = glm::vec4(glm::vec3(2), 1);
+        }
+    }
+    expect_same(collect(room, 8), expected(bright, [](uint32_t x, uint32_t) { return x < 60; }), kOnBorders);
 }
 
 TEST_F(CollectSurroundingsTest, PixelsWithoutAColourDoNotCount) {

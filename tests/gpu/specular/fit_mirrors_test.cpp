@@ -87,11 +87,10 @@ class FitMirrorsTest : public FitWardTest {
             }
         }
         ReflectanceStateIds state;
-        state.surroundings = frame.fill(
-            frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
         SurroundingsInputs inputs;
-        inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
-                                      std::as_bytes(std::span(depth.pixels())));
+        inputs.depth_m =
+            frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f}, std::as_bytes(std::span(depth.pixels())));
         inputs.color_linear =
             frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
         inputs.depth_camera = inputs.color_camera = make_camera(kCamera, pose);
