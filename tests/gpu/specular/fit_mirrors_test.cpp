@@ -21,9 +21,9 @@ constexpr double kAlpha = 0.06;       // of the mirrors
 constexpr double kIrradiance = 0.45;  // over pi
 const Intrinsics kCamera{{640, 480}, 200, 200, 319.5, 239.5, {}};
 
-/// The wall's radiance: bright and dark squares of 0.3 m, and a slope.
+/// The wall's radiance: bright and dark squares of 0.8 m, several times what a lobe blurs, and a slope.
 double wall(double x, double y) {
-    const auto square = static_cast<int>(std::floor(x / 0.3) + std::floor(y / 0.3));
+    const auto square = static_cast<int>(std::floor(x / 0.8) + std::floor(y / 0.8));
     return (square & 1 ? 0.7 : 0.15) + 0.05 * x;
 }
 
@@ -67,7 +67,7 @@ class FitMirrorsTest : public FitWardTest {
             const double own = level(random_) * kIrradiance;
             while (record.observations.size() < 12) {
                 const glm::dvec3 direction = direction_about({0, 0, 1}, 0.72);
-                const double seen = own + surface.ks * mirrored(kept_point_m(map_, record), direction);
+                const double seen = own + surface.ks * mirrored(glm::dvec3(kept_point_m(map_, record)), direction);
                 record.observations.push_back({glm::vec3(direction), glm::vec3(static_cast<float>(seen)), {}});
             }
             records.push_back(record);
@@ -123,8 +123,9 @@ class FitMirrorsTest : public FitWardTest {
 TEST_F(FitMirrorsTest, AMirrorIsFoundWithItsKs) {
     fill(plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0));
     const Found found = find(6);
-    // Cells of 5 cm blur what a ray of the lobe sees at 1.5 m by a third of its width; 6 looks of 128 pairs.
-    EXPECT_NEAR(found.ks(), 0.8, 0.15);
+    // 6 looks of 128 pairs, two rays in a set: single rays differ by 0.3, their products by 0.1, so 0.004 on a square
+    // of 0.1; twice that for the pairs that come again, three deviations.
+    EXPECT_NEAR(found.ks(), 0.8, 0.2);
     EXPECT_GT(found.material.mirror, 0.95f);
     EXPECT_GT(found.material.version, 0u);
 }
