@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "passes/input/convert_color.h"
+#include "passes/input/convert_depth.h"
 #include "reconstruction/sample_surface.h"
 #include "reconstruction/segment_intervals.h"
 #include "reconstruction/streaming/map_tiles.h"
@@ -37,6 +39,17 @@ void Pipeline::add_posed(const RgbdFrame& frame) {
     check_frame(frame, frames());
     if (tracked_) return tracked_->add_posed(frame);
     fusion_.add(frame);
+}
+
+void Pipeline::add_low_exposure(const RgbdFrame& frame, float radiance_scale, float lamp_luminance) {
+    if (!stages_.reflectance) return;
+    check_frame(frame, low_exposures_);
+    const FrameCameras cameras = make_frame_cameras(frame);
+    graph::FrameGraph graph = runner_.begin();
+    stages_.reflectance->add_low_exposure(
+        graph, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color), cameras.depth.gpu,
+                cameras.color.gpu, low_exposures_++, radiance_scale, lamp_luminance});
+    runner_.submit(std::move(graph));
 }
 
 void Pipeline::fuse_waiting() {

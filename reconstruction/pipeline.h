@@ -46,6 +46,12 @@ class Pipeline {
     /// Fuses a frame at its given pose although others are tracked; tracking goes on from there. Throws Error as add().
     void add_posed(const RgbdFrame& frame);
 
+    /// Takes a frame of low exposure, which shows how bright is what the others clip: lamps, windows, patches of sun.
+    /// At any time, best before the first frame; in the frames' world. `radiance_scale` is their exposure over its own;
+    /// pixels from `lamp_luminance` on, 1 being full scale, are lamps', which lights tell of, and left out.
+    /// Without reflectance nothing changes. Throws Error when a picture is not its camera's size.
+    void add_low_exposure(const RgbdFrame& frame, float radiance_scale, float lamp_luminance);
+
     /// Asks `relocaliser` for poses of every frame that tracking lost, instead of the keyframes; the first from which
     /// the frame tracks is taken. Without tracking nothing changes.
     void set_relocaliser(Relocaliser relocaliser);
@@ -140,6 +146,7 @@ class Pipeline {
     Streaming streaming_;
     PosedFusion fusion_;
     std::optional<TrackedFusion> tracked_;  ///< empty where poses are given
+    uint32_t low_exposures_ = 0;            ///< frames of low exposure so far
     uint32_t gathered_after_ = 0;           ///< frames, when refine_all() gathered light last
 };
 

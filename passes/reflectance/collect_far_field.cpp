@@ -29,7 +29,7 @@ void add_collect_far_field(graph::FrameGraph& frame, ReflectanceStateIds& state,
     pass.read("position_m", inputs.position_m).read("depth_m", inputs.depth_m);
     pass.read("color_linear", inputs.color_linear);
     pass.read("Params", frame.upload<gpu::FarFieldParams>("far_field_params", std::span(&params, 1)));
-    state.far_field = pass.modify("FarField", state.far_field);
+    state.surroundings = pass.modify("FarField", state.surroundings);
     pass.dispatch_covering({params.visited.x, params.visited.y});
 }
 

@@ -17,7 +17,7 @@ struct FarFieldInputs {
 };
 
 /// Adds the colours of pixels that show no surface, neither in the depth picture nor in the model nor six pixels
-/// around, to state.far_field: light from far away, by direction alone. One pixel of 64 looks in a frame, others in
+/// around, to state.surroundings: light from far away, by direction alone. One pixel of 64 looks in a frame, others in
 /// each; frames after the first kMostFarFieldFrames add nothing, so that no sum overflows. Throws Error when position_m
 /// and depth_m differ in extent.
 void add_collect_far_field(graph::FrameGraph& frame, ReflectanceStateIds& state, const FarFieldInputs& inputs);

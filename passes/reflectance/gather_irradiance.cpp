@@ -9,7 +9,7 @@ void add_gather_irradiance(graph::FrameGraph& frame, ReflectanceFrame& reflectan
     auto pass = frame.compute("reflectance.gather_irradiance",
                               texel ? spirv::gather_irradiance_texel : spirv::gather_irradiance);
     const VoxelMapIds& voxels = reflectance.voxels;
-    pass.read("FarField", reflectance.state.far_field)
+    pass.read("Surroundings", reflectance.state.surroundings)
         .read("Lights", reflectance.lights)
         .read("Records", reflectance.records.records)
         .read("March", march.list);

@@ -16,6 +16,7 @@ ChosenSegments add_choose_segments(graph::FrameGraph& frame, const ChooseSegment
     choose.read("Labels", inputs.labels).read("Counts", inputs.counts).push(params);
     ids.fits.progress = choose.modify("Progress", ids.fits.progress);
     ids.fits.fits = choose.modify("Fits", ids.fits.fits);
+    ids.fits.mirrors = choose.modify("Mirrors", ids.fits.mirrors);
     ids.estimates.means = choose.modify("Means", ids.estimates.means);
     ids.estimates.materials = choose.modify("Estimates", ids.estimates.materials);
     ids.materials = choose.modify("Materials", ids.materials);

@@ -1,5 +1,7 @@
 #include "passes/state/reflectance_state.h"
 
+#include <utility>
+
 namespace patina {
 
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
@@ -9,9 +11,7 @@ ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap&
           device.create_buffer({.name = "reflectance.gathered", .bytes = map.capacity_records() * sizeof(glm::uvec2)})),
       windows_(
           device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})),
-      far_field_(
-          device.create_buffer({.name = "reflectance.far_field",
-                                .bytes = gpu::kFarFieldEdge * gpu::kFarFieldEdge * sizeof(gpu::FarFieldTexel)})) {}
+      surroundings_(device.create_buffer({.name = "reflectance.surroundings", .bytes = kSurroundingsBytes})) {}
 
 void ReflectanceState::reset(graph::FrameGraph& frame) {
     stamp_ = 0;
@@ -19,8 +19,14 @@ void ReflectanceState::reset(graph::FrameGraph& frame) {
     ids.status = frame.fill(ids.status, 0);
     ids.gathered = frame.fill(ids.gathered, 0);
     ids.windows = frame.fill(ids.windows, 0);
-    ids.far_field = frame.fill(ids.far_field, 0);
+    if (!has_low_exposure_) ids.surroundings = frame.fill(ids.surroundings, 0);
     keep(frame, ids);
+}
+
+graph::BufferId ReflectanceState::import_surroundings(graph::FrameGraph& frame) {
+    const graph::BufferId surroundings = frame.import(surroundings_);
+    if (std::exchange(has_low_exposure_, true)) return surroundings;
+    return frame.fill(surroundings, 0);
 }
 
 void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {
@@ -29,22 +35,23 @@ void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {
-    return {frame.import(status_), frame.import(gathered_), frame.import(windows_), frame.import(far_field_)};
+    return {frame.import(status_), frame.import(gathered_), frame.import(windows_), frame.import(surroundings_)};
 }
 
 void ReflectanceState::keep(graph::FrameGraph& frame, const ReflectanceStateIds& ids) {
     frame.keep(ids.status);
     frame.keep(ids.gathered);
     frame.keep(ids.windows);
-    frame.keep(ids.far_field);
+    frame.keep(ids.surroundings);
 }
 
 void ReflectanceState::visit(graph::StateVisitor& visitor) {
     visitor.value("reflectance.stamp", stamp_);
+    visitor.value("reflectance.has_low_exposure", has_low_exposure_);
     visitor.buffer(status_);
     visitor.buffer(gathered_);
     visitor.buffer(windows_);
-    visitor.buffer(far_field_);
+    visitor.buffer(surroundings_);
 }
 
 }  // namespace patina

@@ -8,16 +8,21 @@
 #include "passes/state/observation_map.h"
 #include "shared/reflectance/far_field.h"
 #include "shared/reflectance/reflectance.h"
+#include "shared/reflectance/surroundings.h"
 
 namespace patina {
 
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
-    graph::BufferId status;     ///< gpu::RecordStatus per record
-    graph::BufferId gathered;   ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
-    graph::BufferId windows;    ///< gpu::RefreshWindow[gpu::kWindows]
-    graph::BufferId far_field;  ///< gpu::FarFieldTexel[gpu::kFarFieldEdge^2]
+    graph::BufferId status;        ///< gpu::RecordStatus per record
+    graph::BufferId gathered;      ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
+    graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], and
+                                   ///< gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };
+
+constexpr uint64_t kSurroundingsBytes =
+    gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel) + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
 /// next, and the light that reaches them from what is around, 40 bytes a record; and light from far away. Lives as long
@@ -27,8 +32,12 @@ class ReflectanceState {
     /// Throws Error when memory runs out.
     ReflectanceState(vulkan::Device& device, const ObservationMap& map);
 
-    /// Nothing is up to date; the first thing done with it, and whenever the map is reset.
+    /// Nothing is up to date; the first thing done with it, and whenever the map is reset. What surroundings were taken
+    /// from frames of low exposure stays.
     void reset(graph::FrameGraph& frame);
+
+    /// The surroundings, empty before the first frame of low exposure; they outlive the frame.
+    graph::BufferId import_surroundings(graph::FrameGraph& frame);
 
     /// Announces that the map's pool grows to `records`; nothing is up to date of the new ones.
     void enlarge(graph::Enlargement& enlargement, uint32_t records);
@@ -42,8 +51,9 @@ class ReflectanceState {
     uint32_t next_stamp() { return ++stamp_; }
 
   private:
-    vulkan::BufferRef status_, gathered_, windows_, far_field_;
+    vulkan::BufferRef status_, gathered_, windows_, surroundings_;
     uint32_t stamp_ = 0;
+    bool has_low_exposure_ = false;
 };
 
 }  // namespace patina

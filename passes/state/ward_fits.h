@@ -6,7 +6,7 @@
 #include "engine/graph/frame_graph.h"
 #include "engine/graph/state_visitor.h"
 #include "engine/vulkan/device.h"
-#include "shared/specular/ward_fit.h"
+#include "shared/specular/mirror_fit.h"
 
 namespace patina {
 
@@ -15,6 +15,7 @@ struct WardFitIds {
     graph::BufferId fits;      ///< gpu::WardFit per label
     graph::BufferId curves;    ///< gpu::FitCurve[gpu::kFitAlphas] per label
     graph::BufferId progress;  ///< gpu::SegmentProgress per label
+    graph::BufferId mirrors;   ///< gpu::MirrorFit per label
 };
 
 /// What the observations of each segment told about its specular material so far, by label. Lives as long as the
@@ -34,18 +35,18 @@ class WardFits {
     void enlarge(graph::Enlargement& enlargement, uint32_t labels);
 
     WardFitIds import(graph::FrameGraph& frame) const {
-        return {frame.import(fits_), frame.import(curves_), frame.import(progress_)};
+        return {frame.import(fits_), frame.import(curves_), frame.import(progress_), frame.import(mirrors_)};
     }
     static void keep(graph::FrameGraph& frame, const WardFitIds& ids);
 
     void visit(graph::StateVisitor& visitor);
 
     uint32_t labels() const { return labels_; }
-    uint64_t bytes() const { return fits_->bytes() + curves_->bytes() + progress_->bytes(); }
+    uint64_t bytes() const { return fits_->bytes() + curves_->bytes() + progress_->bytes() + mirrors_->bytes(); }
 
   private:
     uint32_t labels_;
-    vulkan::BufferRef fits_, curves_, progress_;
+    vulkan::BufferRef fits_, curves_, progress_, mirrors_;
 };
 
 }  // namespace patina

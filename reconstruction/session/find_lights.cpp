@@ -286,4 +286,19 @@ Illumination find_lights(vulkan::Device& device, const LightsOptions& options) {
     return low_exposure ? find_at_low_exposure(options, folders, device, offset_m) : fit(options, device, offset_m);
 }
 
+void for_each_low_exposure(const LightsOptions& options, const TakeLowExposure& take) {
+    const Folders folders = folders_of(options);
+    const std::string main = main_of(options, folders);
+    if (main.empty()) return;
+    const LowExposure lighting = open_recorded(folders, offset_of(options, folders, true));
+    if (!in_main_world(options, folders, *lighting.source) || options.track) return;
+    const SequenceInfo& info = lighting.source->info();
+    const double main_exposure = lighting.main_exposure ? *lighting.main_exposure : exposure_of(main);
+    for_each_frame(options, *lighting.source, folders.lighting.string(), "surroundings", [&](const Frame& frame) {
+        if (!frame.world_from_camera) return without_pose(frame);
+        take(to_rgbd(info, frame), static_cast<float>(main_exposure / amount(frame.exposure)));
+        return std::string();
+    });
+}
+
 }  // namespace patina

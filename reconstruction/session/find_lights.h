@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,5 +76,11 @@ bool has_lighting_sequence(const std::string& sequence);
 /// (localise.h). In the main sequence: as fit_lights says. Throws Error when a sequence has no poses and there is no
 /// main one, or a file cannot be read; Interrupted when the caller stops it.
 Illumination find_lights(vulkan::Device& device, const LightsOptions& options);
+
+/// Calls take(frame, radiance_scale) for every frame of a recorded lighting sequence that has a pose in the main
+/// sequence's world; the scale is the main sequence's exposure over the frame's. For none where that world is another,
+/// or the main sequence is not known. Throws Error when a file cannot be read; Interrupted when the caller stops it.
+using TakeLowExposure = std::function<void(const RgbdFrame& frame, float radiance_scale)>;
+void for_each_low_exposure(const LightsOptions& options, const TakeLowExposure& take);
 
 }  // namespace patina

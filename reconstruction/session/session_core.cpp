@@ -90,6 +90,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
     start_pipeline(std::move(network));
+    if (!earlier) add_low_exposure(*pipeline_, options_, world_offset_m_);
     if (options_.resume) {
         resume();
     } else if (earlier) {

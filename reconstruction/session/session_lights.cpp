@@ -179,4 +179,21 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
     return json;
 }
 
+void add_low_exposure(Pipeline& pipeline, const SessionOptions& options, glm::dvec3 world_offset_m) {
+    const bool recorded = !options.sequence.empty() && !synthetic_scene(options);
+    if (!recorded || lights_source(options) != LightsSource::kLightingSequence) return;
+    if (!pipeline.reflectance() || !pipeline.reflectance()->gathers()) return;
+    const LightsOptions find = search_of(options, world_offset_m, false);
+    if (scenes::scene_name(find.sequence)) return;
+    try {
+        for_each_low_exposure(find, [&](const RgbdFrame& frame, float scale) {
+            pipeline.add_low_exposure(frame, scale, find.settings.find.threshold);
+        });
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const std::exception& error) {
+        report(options.callbacks, text("warning: what '", find.sequence, "' shows was left out: ", reason_of(error)));
+    }
+}
+
 }  // namespace patina

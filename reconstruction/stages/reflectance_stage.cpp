@@ -4,6 +4,7 @@
 
 #include "passes/observation/reclaim_records.h"
 #include "passes/reflectance/collect_far_field.h"
+#include "passes/reflectance/collect_surroundings.h"
 #include "passes/shading/pack_records.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -119,6 +120,14 @@ void ReflectanceStage::keep(graph::FrameGraph& graph) const {
     if (any_left_) graph.keep(away_.import(graph));
 }
 
+void ReflectanceStage::add_low_exposure(graph::FrameGraph& graph, const SurroundingsInputs& frame) {
+    if (settings_.refine.gathered_rays == 0) return;
+    ReflectanceStateIds state;
+    state.surroundings = state_.import_surroundings(graph);
+    add_collect_surroundings(graph, state, frame);
+    graph.keep(state.surroundings);
+}
+
 RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                                  const FrameContext& frame) {
     ObservationMapIds records = observations_.import(graph);
@@ -129,6 +138,8 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
         add_collect_far_field(
             graph, state,
             {inputs.position_m, inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
+        add_collect_surroundings(graph, state,
+                                 {inputs.depth_m, inputs.color_linear, frame.depth.gpu, frame.color.gpu, frame.index});
     }
     add_refine_reflectance(graph, models(part_around(frame)), voxels, records, collected.changed, access_,
                            settings_.refine);
@@ -138,8 +149,15 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
 }
 
 SpecularInputs ReflectanceStage::add_specular_inputs(graph::FrameGraph& graph) {
-    return {observations_,         observations_.import(graph), state_.import(graph).status,
-            lights_.upload(graph), lights_.position_version(),  materials_.import(graph),
+    const ReflectanceStateIds state = state_.import(graph);
+    const bool gathers = settings_.refine.gathered_rays > 0;
+    return {observations_,
+            observations_.import(graph),
+            state.status,
+            gathers ? std::optional(state.surroundings) : std::nullopt,
+            lights_.upload(graph),
+            lights_.position_version(),
+            materials_.import(graph),
             materials_.capacity()};
 }
 

@@ -8,6 +8,7 @@
 #include "passes/observation/observation.h"
 #include "passes/observation/stream_records.h"
 #include "passes/reflectance/average_segments.h"
+#include "passes/reflectance/collect_surroundings.h"
 #include "passes/reflectance/reflectance.h"
 #include "passes/shading/predict_radiance.h"
 #include "passes/shading/sample_reflectance.h"
@@ -51,10 +52,11 @@ struct SegmentIds {
 struct SpecularInputs {
     const ObservationMap& map;
     ObservationMapIds records;
-    graph::BufferId status;     ///< gpu::RecordStatus per record
-    graph::BufferId lights;     ///< Lights::upload
-    uint32_t position_version;  ///< of the lights
-    graph::BufferId materials;  ///< gpu::SegmentMaterial per label; to be kept once replaced
+    graph::BufferId status;                       ///< gpu::RecordStatus per record
+    std::optional<graph::BufferId> surroundings;  ///< gpu::SurroundingsCell; empty where no light is gathered from them
+    graph::BufferId lights;                       ///< Lights::upload
+    uint32_t position_version;                    ///< of the lights
+    graph::BufferId materials;                    ///< gpu::SegmentMaterial per label; to be kept once replaced
     uint32_t material_count;
 };
 
@@ -72,6 +74,10 @@ class ReflectanceStage {
 
     /// Empties the model, placing it around the map's centre; the first thing done with it.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
+
+    /// Takes a frame of low exposure into the surroundings alone; before the first frame, or after it. `radiance_scale`
+    /// is the recording's exposure over the frame's. It is in the world of the frames.
+    void add_low_exposure(graph::FrameGraph& graph, const SurroundingsInputs& frame);
 
     /// Collects a frame's observations and refines what they change. Returns the records that they changed.
     RecordList add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
@@ -128,6 +134,7 @@ class ReflectanceStage {
     std::vector<VoxelMap::PoolBytes> memory() const;
     const ReflectanceStageSettings& settings() const { return settings_; }
     const Lights& lights() const { return lights_; }
+    bool gathers() const { return settings_.refine.gathered_rays > 0; }
 
   private:
     graph::BufferId add_average(graph::FrameGraph& graph, const ObservationMapIds& records) const;

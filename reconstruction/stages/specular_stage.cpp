@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "passes/specular/bound_materials.h"
 #include "passes/specular/choose_segments.h"
+#include "passes/specular/fit_mirrors.h"
 #include "passes/specular/fit_ward.h"
 #include "passes/specular/fuse_estimates.h"
 #include "passes/specular/hemi_images.h"
@@ -48,6 +49,12 @@ void SpecularStage::add(graph::FrameGraph& graph, ReflectanceStage& reflectance,
                             {inputs.records.records, changed, segmentation.table().import(graph).labels, samples.counts,
                              fits_.labels(), inputs.material_count, frame_index + 1},
                             settings_.segments_per_frame, ids);
+    if (inputs.surroundings) {
+        add_fit_mirrors(graph,
+                        {inputs.map, inputs.records, *inputs.surroundings, samples, inputs.material_count,
+                         frame_index + 1, settings_.memory},
+                        chosen.all, fits_, ids.fits, ids.materials);
+    }
     if (network_) {
         // Of the network the fit takes a prior, which hardly matters where observations tell enough.
         const SegmentBatch& batch = settings_.fit ? chosen.doubtful : chosen.all;

@@ -8,6 +8,7 @@
 #include "lib/records/reflectance.glsl"
 #include "shared/lighting/lights.h"
 #include "shared/reflectance/far_field.h"
+#include "shared/reflectance/surroundings.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(constant_id = 1) const uint kRays = 8u;  // of a record in one update
@@ -18,7 +19,10 @@ layout(std140, binding = 0) uniform Lights {
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer March { uint listed[]; };
 layout(std430, binding = 3) buffer Gathered { uvec2 gathered[]; };
-layout(std430, binding = 16) readonly buffer FarField { FarFieldTexel far_field[]; };
+layout(std430, binding = 16) readonly buffer Surroundings {
+    FarFieldTexel far_field[kFarFieldTexels];
+    SurroundingsCell surroundings[];
+};
 layout(push_constant) uniform Push { ReflectanceParams params; };
 #include "lib/lighting/incident_light.glsl"
 

@@ -35,12 +35,12 @@ const float kClippedShare = 1e-3;      // the weight of what is only a lower bou
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
-const float kRayError = 0.5;  // of the mean of gathered rays, relative, times the square root of their number
 const float kReflectedSpreads = 1.5;
-const float kUsualKd = 0.3;         // a usual albedo
-const float kUnknownError = 0.3;    // of what arrives from unknown directions, relative
-const uint kAnyClipped = 7u << 26;  // of a direction word
-const uint kRobustSteps = 3u;       // after which one wild observation of ten weighs nothing
+const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
+const float kUsualKd = 0.3;          // a usual albedo
+const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
+const uint kAnyClipped = 7u << 26;   // of a direction word
+const uint kRobustSteps = 3u;        // after which one wild observation of ten weighs nothing
 
 // Of the brightnesses: where they lie, and their mean distance from there.
 struct Center {
@@ -165,22 +165,25 @@ Center find_center(Center center, float noise) {
 
 // What is not reflected surroundings, of which the material does not tell: they change with the view, and only add. So
 // where colours scatter by more than their noise, the diffuse part lies below their mean.
-float unreflected_share(Center center, float noise) {
-    const float excess = kReflectedSpreads * max(center.spread - noise, 0.0);
+float unreflected_share(Center center, float noise, float mirror) {
+    const float excess = mix(kReflectedSpreads, kMirroredSpreads, mirror) * max(center.spread - noise, 0.0);
     return clamp(1.0 - excess / max(center.brightness, 1e-6), 0.0, 1.0);
 }
 
 struct Estimate {
     vec3 diffuse;   // the mean
     vec3 variance;  // of it
+    float known;    // the share of what was seen that is not clipped
 };
 
 // By channel, as clipping is.
 Estimate robust_mean(Center center, float noise) {
     const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
     vec3 weights = vec3(1e-20), squares = vec3(0.0), mean = vec3(0.0);
-    float whole = 0.0, spread = 0.0;
+    float whole = 0.0, spread = 0.0, trusted = 1e-20, unclipped = 0.0;
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        trusted += trust[k];
+        unclipped += (direction_word[k] & kAnyClipped) != 0u ? 0.0 : trust[k];
         const float off = brightness[k] - center.brightness;
         const float weight = trust[k] * robust_share(off, inverse_scale);
         const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), observation_clipped(direction_word[k]));
@@ -191,11 +194,11 @@ Estimate robust_mean(Center center, float noise) {
         spread += weight * off * off;
     }
     const vec3 variance = noise * noise / weights + (spread / max(whole, 1e-20)) * squares / (weights * weights);
-    return Estimate(mean / weights, variance);
+    return Estimate(mean / weights, variance, unclipped / trusted);
 }
 
 // Kd where the voxel is lit, with its certainty.
-uvec2 packed_albedo(Estimate estimate, Irradiance irradiance) {
+uvec2 packed_albedo(Estimate estimate, Irradiance irradiance, float sureness) {
     const bvec3 lit = greaterThan(irradiance.sum, vec3(kLeastIrradiance));
     const vec3 inverse = 1.0 / max(irradiance.sum, kLeastIrradiance);
     const vec3 kd = mix(vec3(0.0), clamp(estimate.diffuse * inverse, 0.0, 1.0), lit);
@@ -203,7 +206,7 @@ uvec2 packed_albedo(Estimate estimate, Irradiance irradiance) {
     // Of an albedo that is usual, not of kd: else dark records were surer than bright ones, and means too dark.
     const vec3 noise = kUsualKd * min(irradiance.noise * inverse, 1.0);
     const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise;
-    const vec3 certainty = 1.0 / (1.0 + variance / (kKdDeviation * kKdDeviation));
+    const vec3 certainty = sureness / (1.0 + variance / (kKdDeviation * kKdDeviation));
     return uvec2(pack_shared_exponent(kd), pack_certainty(mix(vec3(0.0), certainty, lit)));
 }
 
@@ -236,7 +239,13 @@ void main() {
     const Center center = find_center(guess, noise);
     Estimate estimate = robust_mean(center, noise);
     estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
-    if (gathered.met > 0.0) estimate.diffuse *= unreflected_share(center, noise);
-    albedo[record] = packed_albedo(estimate, irradiance);
+    const float mirror = has_entry ? material.mirror : 0.0;
+    if (gathered.met > 0.0) {
+        const float share = unreflected_share(center, noise, mirror);
+        estimate.diffuse *= share;
+        estimate.variance *= mix(1.0, share * share, mirror);
+    }
+    // In a mirror what is always clipped is a lamp or a window.
+    albedo[record] = packed_albedo(estimate, irradiance, mix(1.0, estimate.known, mirror));
     status[record].refined = refined_word(header.version, has_entry ? material.version : 0u);
 }

@@ -38,6 +38,7 @@ layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer
 layout(constant_id = 1) const uint kGathers = 0u;  // 1: records know what arrives from all around
 
 const float kLeastAlpha = 0.01;
+const float kKnownWeight = 0.1;  // of a channel, from which on the records' own kd is shown
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
 ivec3 grid_low;
@@ -191,6 +192,13 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss, vec3 indirect
                  sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
 
+// Under the light that records gathered its errors cancel out against those of their own kd. So pictures are made from
+// that, where it is known at all, though the segment tells more of the albedo.
+vec3 shaded_kd(Reflectance own, Reflectance with_segment) {
+    if (kGathers == 0u || !own.known) return with_segment.kd;
+    return mix(with_segment.kd, own.kd, clamp(own.weights / kKnownWeight, 0.0, 1.0));
+}
+
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(position_m)))) return;
@@ -207,12 +215,13 @@ void main() {
         segment = found.labelled == kNoRecord ? 0u : record_label(records[found.labelled]);
         const bool has_entry = segment != 0u && segment < params.materials;
         gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
+        const Reflectance own = found;
         found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
         if (kMostLights > kLightsOfOneWord) load_further_visibility();
         const bool marched = normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
-        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, found.kd, gloss,
-                                 indirect_light(marched));
+        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, shaded_kd(own, found),
+                                 gloss, indirect_light(marched));
         known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, marched ? seen.arrives : kNotMarched);

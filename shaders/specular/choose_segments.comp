@@ -5,8 +5,8 @@
 // labels that were handed out anew. One workgroup.
 #include "shared/segmentation/segment_samples.h"
 #include "shared/segmentation/segments.h"
+#include "shared/specular/mirror_fit.h"
 #include "shared/specular/specular_estimates.h"
-#include "shared/specular/ward_fit.h"
 
 layout(local_size_x = kChooseSegmentsGroup) in;
 layout(std430, binding = 0) readonly buffer Labels { SegmentLabel labels[]; };
@@ -18,6 +18,7 @@ layout(std430, binding = 5) buffer Estimates { WardMaterial estimates[]; };
 layout(std430, binding = 6) buffer Materials { SegmentMaterial materials[]; };
 layout(std430, binding = 7) writeonly buffer Batch { uint batch[]; };        // count, then labels
 layout(std430, binding = 8) writeonly buffer Doubtful { uint doubtful[]; };  // likewise, of those
+layout(std430, binding = 9) writeonly buffer Mirrors { MirrorFit mirrors[]; };
 layout(push_constant) uniform Push { ChooseSegmentsParams params; };
 
 const uint kGroup = kChooseSegmentsGroup;
@@ -26,11 +27,13 @@ shared uvec2 candidates[kGroup];  // how urgent, label
 
 void forget(uint label) {
     fits[label] = WardFit(vec4(0.0), vec4(0.0), 0.0, 0.0, 0u, 0u, vec4(0.0), vec4(0.0));
+    mirrors[label] = MirrorFit(0.0, 0.0, 0.0, 0.0);
     means[label] = PerceptualMaterial(vec4(0.0), vec4(0.0));
     estimates[label] = WardMaterial(vec4(0.0), vec4(0.0));
     if (label >= params.materials) return;
     const uint version = materials[label].version;
-    if (version != 0u) materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0u, 0u, 0u);
+    if (version != 0u)
+        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0.0, 0u, 0u);
 }
 
 // Merging makes a label older, never younger.

@@ -1,11 +1,16 @@
-// What arrives at a surface along a ray: the fused colour of what it meets, or the far field. The includer declares
+// What arrives at a surface along a ray: the fused colour of what it meets, what the surroundings show there where that
+// is clipped or the map shows nothing, or the far field. The includer declares
 // what lib/map/march_map.glsl needs and
 //   COLOR(C, i)     uint, the colour of voxel i of the literal chunk C
 //   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
-//   layout(std430, binding = n) readonly buffer FarField { FarFieldTexel far_field[]; };
+//   layout(std430, binding = n) readonly buffer Surroundings {
+//       FarFieldTexel far_field[kFarFieldTexels];
+//       SurroundingsCell surroundings[];
+//   };
 #ifndef PATINA_LIB_INCIDENT_LIGHT_GLSL
 #define PATINA_LIB_INCIDENT_LIGHT_GLSL
 #include "lib/lighting/far_field.glsl"
+#include "lib/lighting/march_surroundings.glsl"
 #include "lib/map/march_map.glsl"
 
 const float kRayLiftVox = 2.5;            // from where a ray starts, above the surface
@@ -52,11 +57,18 @@ Incident incident_light(vec3 point_vox, vec3 normal, vec3 direction, vec4 ball_m
     const float lift = max(kRayLiftVox - skipped * cosine, 0.0);
     const vec3 start = point_vox + lift * normal;
     const float hit = find_hit(start, direction, skipped, to_ball_end(start, direction, ball_m));
-    const vec3 at_vox = start + hit * direction;
-    const vec4 color =
-        hit < 0.0 ? far_radiance(far_field[far_field_texel(direction)]) : surface_color(at_vox, direction);
-    const bool bright = max(max(color.r, color.g), color.b) > kLeastEmittedRadiance;
-    if (hit >= 0.0 && bright && is_lamp(at_vox * grid.voxel_m)) return Incident(vec3(0.0), true, true);
+    vec3 at_m = (start + hit * direction) * grid.voxel_m;
+    vec4 color = hit < 0.0 ? vec4(0.0) : surface_color(start + hit * direction, direction);
+    if (hit < 0.0) {
+        const MetSurroundings met = march_surroundings(point_vox * grid.voxel_m, normal, direction);
+        at_m = met.at_m;
+        color = met.color.a > 0.0 ? met.color : far_radiance(far_field[far_field_texel(direction)]);
+    }
+    if (max(max(color.r, color.g), color.b) > kLeastEmittedRadiance) {
+        if (is_lamp(at_m)) return Incident(vec3(0.0), true, true);
+        const vec4 cell = look_up_surroundings(surroundings_cell(at_m));
+        color.rgb = max(color.rgb, cell.rgb);
+    }
     return Incident(color.rgb, color.a > 0.0, false);
 }
 

@@ -13,7 +13,7 @@ SegmentMaterial changed_material(SegmentMaterial known, vec4 ks_alpha) {
                          abs(ks_alpha.w - known.ks_alpha.w) > kSeenShareStep * known.ks_alpha.w;
     if (known.version != 0u && !differs) return known;
     // Records keep 16 bits of it.
-    return SegmentMaterial(ks_alpha, known.version % 0xffffu + 1u, 0u, 0u, 0u);
+    return SegmentMaterial(ks_alpha, known.version % 0xffffu + 1u, known.mirror, 0u, 0u);
 }
 
 #endif

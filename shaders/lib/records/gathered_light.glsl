@@ -9,6 +9,8 @@
 
 const float kMostGatheredRays = 192.0;  // of a record; from then on the mean is a sliding one
 
+const float kRayError = 0.5;  // of a mean of usual rays, relative, times the square root of their number
+
 struct GatheredLight {
     vec3 mean;     // radiance where a ray met something
     float met;     // rays

@@ -6,6 +6,7 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kFarFieldEdge = 32u;        // texels of the octahedral map along each side: 6 degrees each
+INTEROP_CONST uint kFarFieldTexels = 1024u;    // of the whole map
 INTEROP_CONST float kFarFieldSteps = 1024.0f;  // of a linear pixel value, in whole numbers
 INTEROP_CONST uint kFarFieldGroup = 8u;
 

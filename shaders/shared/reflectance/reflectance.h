@@ -14,7 +14,7 @@ INTEROP_CONST float kLeastRefreshed = 1.0f / 16.0f;  // of fewer their share, bu
 struct SegmentMaterial {
     vec4 ks_alpha;  // rgb, Ward roughness
     uint version;   // changes with the material, above 0; 0: no entry
-    uint pad0;
+    float mirror;   // 1: a metal or a mirror, which has no diffuse part; passes/specular/fit_mirrors.h
     uint pad1;
     uint pad2;
 };

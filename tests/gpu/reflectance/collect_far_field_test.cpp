@@ -59,7 +59,8 @@ class CollectFarFieldTest : public GpuTest {
     Texels collect(const Sky& sky) {
         graph::FrameGraph frame = runner().begin();
         ReflectanceStateIds state;
-        state.far_field = frame.fill(frame.create_buffer("far_field", kEdge * kEdge * sizeof(gpu::FarFieldTexel)), 0);
+        state.surroundings =
+            frame.fill(frame.create_buffer("far_field", kEdge * kEdge * sizeof(gpu::FarFieldTexel)), 0);
         FarFieldInputs inputs;
         inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
                                       std::as_bytes(std::span(sky.depth_m.pixels())));
@@ -72,7 +73,7 @@ class CollectFarFieldTest : public GpuTest {
         inputs.depth_camera = inputs.color_camera = make_camera(kCamera, sky.world_from_camera);
         for (inputs.frame_index = 0; inputs.frame_index < 64; ++inputs.frame_index)
             add_collect_far_field(frame, state, inputs);
-        const graph::Readback read = frame.read_back(state.far_field);
+        const graph::Readback read = frame.read_back(state.surroundings);
         run(std::move(frame));
         Texels texels;
         const auto all = read.as<gpu::FarFieldTexel>();

@@ -156,9 +156,9 @@ TEST_F(GatherIrradianceTest, RecordsOfOneSurfaceShareTheirRays) {
     for (size_t i = 0; i < records.size(); ++i) {
         if (!on_wall(records[i])) continue;
         const reference::GatheredRays got = records[i].incident;
-        // A normal at the limit may count on one side alone.
-        const bool same = std::abs(double(got.met) - expected[i].met) <= 1 &&
-                          std::abs(double(got.missed) - expected[i].missed) <= 1 &&
+        // A normal at the limit may count on one side alone. Half floats round what the differences are made of.
+        const bool same = std::abs(double(got.met) - expected[i].met) <= 2 &&
+                          std::abs(double(got.missed) - expected[i].missed) <= 2 &&
                           glm::length(got.mean - expected[i].mean) < 1e-3;
         other += !same;
         ++compared;

@@ -116,6 +116,32 @@ TEST_F(PredictRadiance, GatheredLightIsReceivedAndReflected) {
     EXPECT_GT(hits, 0u);
 }
 
+// Of unsure records kd comes from their segment, too. Pictures do not: what the light is off by, kd is off by as much.
+TEST_F(PredictRadiance, UnderGatheredLightPicturesShowWhatTheRecordsHave) {
+    const glm::dvec3 around(0.5, 0.25, 0.75), left(0.25, 0.25, 0.25), right(0.75, 0.75, 0.75);
+    for (const bool gathers : {true, false}) {
+        ShadingRig rig = this->rig(wall_, 0.02f);
+        rig.lights.set({}, around);
+        rig.materials.set(3, glm::vec3(0), 0.25f);
+        if (gathers) rig.incident = reference::GatheredRays{around, 64, 0};
+        rig.paint([&](const RecordPlace& place) {
+            reference::ShadedRecord record = painted(place.point_m.x < 0 ? left : right, 3);
+            record.certainty = glm::dvec3(0.5);
+            return record;
+        });
+        const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+        const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+            const float at = view.position_m.at(x, y).x;
+            if (std::abs(at) < 0.05f) return;
+            const glm::dvec3 own = at < 0 ? left : right, kd(view.kd.at(x, y));
+            // An even record, 0.05 off, beside a segment that its records differ from by 0.1: a fifth of the segment.
+            ASSERT_LT(off(view.kd.at(x, y), 0.8 * own + 0.2 * 0.5 * (left + right)), 0.02) << x << ' ' << y;
+            ASSERT_LT(off(view.rgb.at(x, y), (gathers ? own : kd) * around), 4 * kHalf) << x << ' ' << y;
+        });
+        EXPECT_GT(hits, 0u);
+    }
+}
+
 TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {
     const auto ramp = [](glm::dvec3 p) {
         return glm::dvec3(0.5 + 0.5 * p.x, 0.4 - 0.4 * p.y, 0.5 + 0.3 * (p.x + p.y));

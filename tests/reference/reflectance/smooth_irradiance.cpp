@@ -1,5 +1,6 @@
 #include "tests/reference/reflectance/smooth_irradiance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -12,6 +13,8 @@ using Cell = std::tuple<int, int, int>;
 
 Cell cell_beside(glm::ivec3 cell, int x, int y, int z) { return {cell.x + x, cell.y + y, cell.z + z}; }
 
+double brightness(glm::dvec3 rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
+
 }  // namespace
 
 std::vector<GatheredRays> smooth_irradiance(const std::vector<GatheringPlace>& places, double edge_m) {
@@ -21,6 +24,7 @@ std::vector<GatheredRays> smooth_irradiance(const std::vector<GatheringPlace>& p
     for (const GatheringPlace& place : places) {
         glm::dvec3 light(0);
         double met = 0, missed = 0;
+        std::vector<GatheredRays> all;
         for (int x = -1; x <= 1; ++x) {
             for (int y = -1; y <= 1; ++y) {
                 for (int z = -1; z <= 1; ++z) {
@@ -32,10 +36,17 @@ std::vector<GatheredRays> smooth_irradiance(const std::vector<GatheringPlace>& p
                     light += double(other.rays.met) * other.rays.mean;
                     met += other.rays.met;
                     missed += other.rays.missed;
+                    all.push_back(other.rays);
                 }
             }
         }
-        const double kept = met + missed > 192 ? 192 / (met + missed) : 1;
+        const double mean = brightness(light) / std::max(met, 1.0);
+        double error2 = 0;  // of the mean, from how far its parts differ from it
+        for (const GatheredRays& rays : all)
+            error2 += std::pow(rays.met * (brightness(rays.mean) - mean) / std::max(met, 1.0), 2);
+        const double relative2 = mean > 0 ? error2 / (mean * mean) : 0;
+        const double worth = std::clamp(relative2 > 0 ? 0.25 / relative2 : 192.0, 8.0, 192.0);
+        const double kept = std::min(worth / std::max(met + missed, 1.0), 1.0);
         smooth.push_back({met > 0 ? light / met : glm::dvec3(0), static_cast<uint32_t>(std::lround(kept * met)),
                           static_cast<uint32_t>(std::lround(kept * missed))});
     }

@@ -21,8 +21,9 @@ struct GatheringPlace {
 };
 
 /// For each place all rays of the places in the cells around it, itself among them, whose normals are within 25.8
-/// degrees of its own and which lie less than `edge_m`, a cell's edge, off its tangent plane. More than 192 rays count
-/// as 192.
+/// degrees of its own and which lie less than `edge_m`, a cell's edge, off its tangent plane. They count as so many
+/// rays, 8 to 192, of a relative deviation of 0.5 each, as the mean is worth by how far the places differ; no more than
+/// there are.
 std::vector<GatheredRays> smooth_irradiance(const std::vector<GatheringPlace>& places, double edge_m);
 
 }  // namespace patina::reference

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "engine/graph/frame_graph.h"
+#include "passes/state/reflectance_state.h"
+#include "shared/reflectance/surroundings.h"
+
+namespace patina {
+
+/// A frame.
+struct SurroundingsInputs {
+    graph::ImageId depth_m;       ///< W x H r32f, metres; 0: no reading
+    graph::ImageId color_linear;  ///< the colour camera's rgba16f; a = 0: no reading
+    gpu::Camera depth_camera;
+    gpu::Camera color_camera;
+    uint32_t frame_index = 0;
+    float radiance_scale = 0;  ///< of a frame of low exposure: the recording's exposure over its own; else 0
+    float lamp_luminance = 0;  ///< of a frame of low exposure: of a pixel, 1 is full scale, from which it is a lamp's
+};
+
+/// Adds what a frame shows to state.surroundings: the mean colour of each cell of gpu::kSurroundingsCellM with a
+/// surface in it. A pixel without depth between readings left and right of it, or above and below, 16 pixels apart or
+/// more, shows an opening: a window, which lies in the plane of its rim, so that a mirror shows it there. One pixel of
+/// 16 looks in a frame, others in each; frames after the first kMostSurroundingsFrames add nothing, so that no sum
+/// overflows. What finds no place in the table is left out. Frames of low exposure are summed up apart: they tell what
+/// is clipped in the others. Their lamps, whose light counts by itself, are left out.
+void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& state, const SurroundingsInputs& inputs);
+
+/// A sum of 32 bits holds as many frames that show a cell at 0.3 m: 250 pixels of 16, of kSurroundingsRange each.
+constexpr uint32_t kMostSurroundingsFrames = 16384;
+
+}  // namespace patina

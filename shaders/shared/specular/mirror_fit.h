@@ -1,0 +1,39 @@
+// Whether a segment reflects what is around it as a mirror does. See passes/specular/fit_mirrors.h.
+#ifndef PATINA_SHARED_MIRROR_FIT_H
+#define PATINA_SHARED_MIRROR_FIT_H
+#include "shared/reflectance/surroundings.h"
+#include "shared/specular/ward_fit.h"
+INTEROP_BEGIN
+
+INTEROP_CONST uint kMirrorGroup = 64u;
+
+// Two views of one voxel that lie far apart.
+struct MirrorPair {
+    uint record;  // kNoRecord: none
+    uint first;   // direction words
+    uint second;
+    float brighter;  // by how much the first is, linear, mean of the channels
+};
+
+// Sums over pairs, by label.
+struct MirrorFit {
+    float product;   // of the difference in brightness and the difference in what the mirrored rays meet
+    float square;    // of the latter, from two sets of rays
+    float product2;  // the square of the first, which tells its error
+    float pairs;
+};
+
+struct MirrorParams {
+    VoxelGrid records;  // the observation map's grid
+    uint edge_shift;    // of the observation map
+    uint labels;        // of the tables
+    uint materials;     // entries of the table
+    uint stamp;         // the frame's index + 1
+    float memory;       // the share of the earlier frames' sums that is kept
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+INTEROP_END
+#endif

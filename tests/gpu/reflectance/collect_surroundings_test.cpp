@@ -1,0 +1,186 @@
+// What is around, in cells.
+
+#include "passes/reflectance/collect_surroundings.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <tuple>
+
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/shader_camera.h"
+#include "shared/fusion/voxel_map.h"
+#include "tests/gpu/gpu_test.h"
+#include "tests/reference/scenes/analytic_scene.h"
+
+namespace patina {
+namespace {
+
+const Intrinsics kCamera{{96, 80}, 60, 60, 47.5, 39.5, {}};
+
+using Cell = std::tuple<int, int, int>;
+
+/// A plane that a camera sees at an angle, with a window in it.
+struct Room {
+    RigidTransform world_from_camera = reference::look_at({0.3, 0.2, 0}, {0.4, 0.1, 1});
+    glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 0.2, -1));  ///< of the plane, in camera coordinates
+    double offset_m = -2;                                          ///< of the plane along it
+    Image<float> depth_m{kCamera.extent, 0.0f};
+    Image<glm::vec4> color{kCamera.extent, glm::vec4(0)};
+
+    Room() {
+        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+                depth_m.at(x, y) = static_cast<float>(plane_depth_m(x, y));
+                color.at(x, y) = glm::vec4(static_cast<float>(x) / 64, static_cast<float>(y) / 64, 7, 1);
+            }
+        }
+    }
+
+    glm::dvec3 ray(double x, double y) const {
+        return {(x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1};
+    }
+    double plane_depth_m(double x, double y) const { return offset_m / glm::dot(normal, ray(x, y)); }
+
+    Cell cell(double x, double y) const {
+        const glm::dvec3 point_m = glm::dvec3(world_from_camera * glm::dvec4(ray(x, y) * plane_depth_m(x, y), 1));
+        const auto at = [](double v) { return static_cast<int>(std::floor(v / double{gpu::kSurroundingsCellM})); };
+        return {at(point_m.x), at(point_m.y), at(point_m.z)};
+    }
+
+    void open(uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1) {
+        for (uint32_t y = y0; y < y1; ++y) {
+            for (uint32_t x = x0; x < x1; ++x) depth_m.at(x, y) = 0;
+        }
+    }
+};
+
+struct Sums {
+    uint64_t samples = 0;
+    glm::dvec3 color{0};
+};
+using Cells = std::map<Cell, Sums>;
+
+class CollectSurroundingsTest : public GpuTest {
+  protected:
+    /// All 16 phases of a frame, so that every pixel looks once.
+    Cells collect(const Room& room, float radiance_scale = 0) {
+        graph::FrameGraph frame = runner().begin();
+        ReflectanceStateIds state;
+        state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        SurroundingsInputs inputs;
+        inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
+                                      std::as_bytes(std::span(room.depth_m.pixels())));
+        std::vector<uint64_t> halves;
+        for (const glm::vec4& pixel : room.color.pixels()) halves.push_back(glm::packHalf4x16(pixel));
+        inputs.color_linear =
+            frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
+        inputs.depth_camera = inputs.color_camera = make_camera(kCamera, room.world_from_camera);
+        inputs.radiance_scale = radiance_scale;
+        inputs.lamp_luminance = 0.5f;
+        for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
+            add_collect_surroundings(frame, state, inputs);
+        const graph::Readback read = frame.read_back(state.surroundings);
+        run(std::move(frame));
+        Cells cells;
+        std::vector<gpu::SurroundingsCell> all(gpu::kSurroundingsCells);
+        const std::vector<std::byte> bytes = read.as<std::byte>();
+        std::memcpy(all.data(), bytes.data() + gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel),
+                    all.size() * sizeof(all[0]));
+        for (const gpu::SurroundingsCell& cell : all) {
+            if (cell.key == 0) continue;
+            const auto coordinate = [&](uint32_t shift) {
+                const auto low = static_cast<int>(cell.key >> shift & 1023u);
+                return low >= 512 ? low - 1024 : low;
+            };
+            Sums& sums = cells[{coordinate(0), coordinate(10), coordinate(20)}];
+            EXPECT_EQ(sums.samples, 0u) << "a cell has one place";
+            const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.low : cell.usual;
+            EXPECT_EQ((radiance_scale > 0 ? cell.usual : cell.low).samples, 0u);
+            sums = {taken.samples, glm::dvec3(taken.r, taken.g, taken.b) / double{gpu::kSurroundingsSteps}};
+        }
+        return cells;
+    }
+
+    /// The same by a plain loop over the pixels for which `shows(x, y)` holds.
+    template <class Shows>
+    static Cells expected(const Room& room, Shows&& shows) {
+        Cells cells;
+        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+                const glm::vec4 seen = glm::min(room.color.at(x, y), glm::vec4(gpu::kSurroundingsRange));
+                if (!shows(x, y) || seen.a == 0) continue;
+                Sums& sums = cells[room.cell(x, y)];
+                ++sums.samples;
+                sums.color += glm::dvec3(seen);
+            }
+        }
+        return cells;
+    }
+
+    /// Pixels on the borders of cells may fall to either side in float: `most_apart` of them do.
+    static void expect_same(const Cells& found, const Cells& wanted, uint64_t most_apart) {
+        uint64_t apart = 0, pixels = 0;
+        for (const auto& [cell, sums] : wanted) {
+            const auto at = found.find(cell);
+            const Sums got = at == found.end() ? Sums{} : at->second;
+            apart += got.samples > sums.samples ? got.samples - sums.samples : sums.samples - got.samples;
+            pixels += sums.samples;
+            if (got.samples != sums.samples) continue;
+            // Half floats and whole steps: less than a step a pixel.
+            EXPECT_LT(glm::length(got.color - sums.color), 0.004 * static_cast<double>(sums.samples) + 1e-6);
+        }
+        uint64_t all = 0;
+        for (const auto& [cell, sums] : found) all += sums.samples;
+        EXPECT_EQ(all, pixels);
+        EXPECT_LE(apart, most_apart);
+    }
+};
+
+constexpr uint64_t kOnBorders = 40;  // of 7680 pixels
+
+TEST_F(CollectSurroundingsTest, EveryPixelCountsOnceInTheCellOfItsSurface) {
+    const Room room;
+    expect_same(collect(room), expected(room, [](uint32_t, uint32_t) { return true; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, AWindowLiesInThePlaneOfItsRim) {
+    Room room;
+    room.open(30, 70, 20, 60);
+    // Rims are looked for every third pixel, and a plane's inverse depth is linear: no error beside rounding.
+    expect_same(collect(room), expected(room, [](uint32_t, uint32_t) { return true; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, ANarrowGapIsNoWindow) {
+    Room room;
+    room.open(40, 50, 0, kCamera.extent.height);
+    expect_same(collect(room), expected(room, [](uint32_t x, uint32_t) { return x < 40 || x >= 50; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, WhatHasARimOnOneSideAloneIsNowhere) {
+    Room room;
+    room.open(50, kCamera.extent.width, 0, kCamera.extent.height);
+    expect_same(collect(room), expected(room, [](uint32_t x, uint32_t) { return x < 50; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, LowExposureCountsApartInTheRecordingsPixelValuesWithoutLamps) {
+    Room room, bright;
+    for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+        for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+            room.color.at(x, y) = glm::vec4(glm::vec3(x < 60 ? 0.25f : 0.75f), 1);
+            bright.color.at(x, y) = glm::vec4(glm::vec3(2), 1);
+        }
+    }
+    expect_same(collect(room, 8), expected(bright, [](uint32_t x, uint32_t) { return x < 60; }), kOnBorders);
+}
+
+TEST_F(CollectSurroundingsTest, PixelsWithoutAColourDoNotCount) {
+    Room room;
+    for (glm::vec4& pixel : room.color.pixels()) pixel.a = 0;
+    EXPECT_TRUE(collect(room).empty());
+}
+
+}  // namespace
+}  // namespace patina

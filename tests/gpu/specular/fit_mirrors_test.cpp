@@ -1,0 +1,171 @@
+// Which segments are mirrors: made-up voxels of a plane that see a wall of known colours.
+
+#include "passes/specular/fit_mirrors.h"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/shader_camera.h"
+#include "passes/reflectance/collect_surroundings.h"
+#include "tests/gpu/specular/fit_ward_rig.h"
+#include "tests/reference/scenes/analytic_scene.h"
+
+namespace patina {
+namespace {
+
+constexpr double kWall_m = 1.5;       // in front of the plane z = 0
+constexpr double kAlpha = 0.06;       // of the mirrors
+constexpr double kIrradiance = 0.45;  // over pi
+const Intrinsics kCamera{{640, 480}, 200, 200, 319.5, 239.5, {}};
+
+/// The wall's radiance: bright and dark squares of 0.8 m, several times what a lobe blurs, and a slope.
+double wall(double x, double y) {
+    const auto square = static_cast<int>(std::floor(x / 0.8) + std::floor(y / 0.8));
+    return (square & 1 ? 0.7 : 0.15) + 0.05 * x;
+}
+
+struct Surface {
+    double ks = 0;
+    double least_kd = 0.3, most_kd = 0.3;  ///< voxels have different ones
+};
+
+class FitMirrorsTest : public FitWardTest {
+  protected:
+    struct Found {
+        gpu::MirrorFit fit;
+        gpu::SegmentMaterial material;
+        double ks() const { return double{fit.product} / double{fit.square}; }
+    };
+
+    /// What a viewer sees mirrored: the mean over Ward's lobe, by plain Monte Carlo.
+    double mirrored(glm::dvec3 point, glm::dvec3 to_viewer) {
+        std::uniform_real_distribution<double> uniform(0, 1);
+        double sum = 0;
+        constexpr int kRays = 200;
+        for (int i = 0; i < kRays; ++i) {
+            const double tangent = kAlpha * std::sqrt(-std::log(1 - uniform(random_)));
+            const double angle = 2 * std::numbers::pi * uniform(random_);
+            const glm::dvec3 half_way =
+                glm::normalize(glm::dvec3(tangent * std::cos(angle), tangent * std::sin(angle), 1));
+            const glm::dvec3 ray = 2 * glm::dot(half_way, to_viewer) * half_way - to_viewer;
+            const glm::dvec3 at = point + ray * ((kWall_m - point.z) / ray.z);
+            sum += wall(at.x, at.y);
+        }
+        return sum / kRays;
+    }
+
+    std::vector<FilledRecord> plane(uint32_t label, const Surface& surface, double least_x_m) {
+        std::uniform_real_distribution<double> place(0, 0.4), level(surface.least_kd, surface.most_kd);
+        std::vector<FilledRecord> records;
+        while (records.size() < kVoxels) {
+            FilledRecord record{{least_x_m + place(random_), place(random_), 0.001}, {0, 0, 1}, label, {}};
+            const auto voxel = voxel_of(record);
+            if (!used_.insert(voxel).second) continue;
+            const double own = level(random_) * kIrradiance;
+            while (record.observations.size() < 12) {
+                const glm::dvec3 direction = direction_about({0, 0, 1}, 0.72);
+                const double seen = own + surface.ks * mirrored(glm::dvec3(kept_point_m(map_, record)), direction);
+                record.observations.push_back({glm::vec3(direction), glm::vec3(static_cast<float>(seen)), {}});
+            }
+            records.push_back(record);
+        }
+        return records;
+    }
+
+    graph::BufferId add_wall(graph::FrameGraph& frame) {
+        Image<float> depth(kCamera.extent, static_cast<float>(kWall_m));
+        std::vector<uint64_t> halves;
+        const RigidTransform pose = reference::look_at({0, 0, 0}, {0, 0, 1});
+        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+                const glm::dvec4 ray((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1, 0);
+                const glm::dvec4 at = glm::dmat4(pose) * (ray * kWall_m);
+                halves.push_back(glm::packHalf4x16(glm::vec4(glm::vec3(static_cast<float>(wall(at.x, at.y))), 1)));
+            }
+        }
+        ReflectanceStateIds state;
+        state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        SurroundingsInputs inputs;
+        inputs.depth_m =
+            frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f}, std::as_bytes(std::span(depth.pixels())));
+        inputs.color_linear =
+            frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
+        inputs.depth_camera = inputs.color_camera = make_camera(kCamera, pose);
+        for (; inputs.frame_index < 16; ++inputs.frame_index) add_collect_surroundings(frame, state, inputs);
+        return state.surroundings;
+    }
+
+    /// Looks so many times at label 1.
+    Found find(uint32_t times = 1) {
+        Found found{};
+        for (uint32_t i = 0; i < times; ++i) {
+            graph::FrameGraph frame = runner().begin();
+            const ObservationMapIds records = map_.import(frame);
+            const SegmentSampleIds samples = samples_.import(frame);
+            const FitMirrorsInputs inputs{map_, records, add_wall(frame), samples, kLabels, i + 1, 0.93f};
+            WardFitIds ids = table_.import(frame);
+            graph::BufferId materials = rig_.materials.import(frame);
+            const std::vector<uint32_t> list{1, 1};
+            add_fit_mirrors(frame, inputs, {frame.upload<uint32_t>("batch", list), 1}, table_, ids, materials);
+            WardFits::keep(frame, ids);
+            frame.keep(materials);
+            const graph::Readback fits = frame.read_back(ids.mirrors), read = frame.read_back(materials);
+            run(std::move(frame));
+            found = {fits.as<gpu::MirrorFit>()[1], read.as<gpu::SegmentMaterial>()[1]};
+        }
+        return found;
+    }
+};
+
+TEST_F(FitMirrorsTest, AMirrorIsFoundWithItsKs) {
+    fill(plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0));
+    const Found found = find(6);
+    // 6 looks of 128 pairs, two rays in a set: single rays differ by 0.3, their products by 0.1, so 0.004 on a square
+    // of 0.1; twice that for the pairs that come again, three deviations.
+    EXPECT_NEAR(found.ks(), 0.8, 0.2);
+    EXPECT_GT(found.material.mirror, 0.95f);
+    EXPECT_GT(found.material.version, 0u);
+}
+
+TEST_F(FitMirrorsTest, PrintIsNoMirror) {
+    fill(plane(1, {.ks = 0, .least_kd = 0.05, .most_kd = 0.9}, 0));
+    const Found found = find(6);
+    EXPECT_LT(std::abs(found.ks()), 0.02);
+    EXPECT_EQ(found.material.mirror, 0.0f);
+}
+
+TEST_F(FitMirrorsTest, LacquerIsNoMirror) {
+    fill(plane(1, {.ks = 0.05, .least_kd = 0.1, .most_kd = 0.6}, 0));
+    const Found found = find(6);
+    EXPECT_NEAR(found.ks(), 0.05, 0.02);
+    EXPECT_EQ(found.material.mirror, 0.0f);
+}
+
+TEST_F(FitMirrorsTest, ClippedViewsDoNotCount) {
+    auto records = clipped(plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0), 0.01f);
+    fill(records);
+    EXPECT_EQ(find().fit.pairs, 0.0f);
+}
+
+TEST_F(FitMirrorsTest, TheOrderOfVoxelsDoesNotMatter) {
+    const auto records = plane(1, {.ks = 0.5}, 0);
+    fill(records);
+    const Found forwards = find();
+    backwards_ = true;
+    graph::FrameGraph frame = runner().begin();
+    map_.reset(frame, glm::dvec3(0));
+    table_.reset(frame);
+    samples_.reset(frame);
+    run(std::move(frame));
+    fill(records);
+    const Found backwards = find();
+    EXPECT_EQ(forwards.fit.product, backwards.fit.product);
+    EXPECT_EQ(forwards.fit.square, backwards.fit.square);
+    EXPECT_EQ(forwards.fit.pairs, backwards.fit.pairs);
+}
+
+}  // namespace
+}  // namespace patina
