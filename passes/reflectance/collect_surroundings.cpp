@@ -26,6 +26,9 @@ gpu::SurroundingsParams make_params(const SurroundingsInputs& inputs, Extent2D e
 void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& state, const SurroundingsInputs& inputs) {
     if (inputs.frame_index >= kMostSurroundingsFrames) return;
     const gpu::SurroundingsParams params = make_params(inputs, frame.common_extent({inputs.depth_m}));
+    auto count = frame.compute("reflectance.count_surroundings", spirv::count_surroundings);
+    state.surroundings = count.modify("Surroundings", state.surroundings);
+    count.dispatch(1);
     auto pass = frame.compute("reflectance.collect_surroundings", spirv::collect_surroundings);
     pass.read("depth_m", inputs.depth_m).read("color_linear", inputs.color_linear);
     pass.read("Params", frame.upload<gpu::SurroundingsParams>("surroundings_params", std::span(&params, 1)));

@@ -21,8 +21,8 @@ struct SurroundingsInputs {
 /// surface in it. A pixel without depth between readings left and right of it, or above and below, 16 pixels apart or
 /// more, shows an opening: a window, which lies in the plane of its rim, so that a mirror shows it there. One pixel of
 /// 16 looks in a frame, others in each; frames after the first kMostSurroundingsFrames add nothing, so that no sum
-/// overflows. What finds no place in the table is left out. Frames of low exposure are summed up apart: they tell what
-/// is clipped in the others. Their lamps, whose light counts by itself, are left out.
+/// overflows. Once gpu::kMostSurroundings cells are in use, no others are added. Frames of low exposure are summed up
+/// apart: they tell what is clipped in the others. Their lamps, whose light counts by itself, are left out.
 void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& state, const SurroundingsInputs& inputs);
 
 /// A sum of 32 bits holds as many frames that show a cell at 0.3 m: 250 pixels of 16, of kSurroundingsRange each.

@@ -17,12 +17,14 @@ struct ReflectanceStateIds {
     graph::BufferId status;        ///< gpu::RecordStatus per record
     graph::BufferId gathered;      ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
     graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
-    graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], and
-                                   ///< gpu::SurroundingsCell[gpu::kSurroundingsCells]
+    graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], gpu::SurroundingsCounts, u32 of
+                                   ///< blocks, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };
 
-constexpr uint64_t kSurroundingsBytes =
-    gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel) + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
+constexpr uint64_t kSurroundingsCellsAt =
+    gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel) + sizeof(gpu::SurroundingsCounts) +
+    gpu::kSurroundingsBlockWords * sizeof(uint32_t);  ///< where the cells begin, bytes
+constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
 /// next, and the light that reaches them from what is around, 40 bytes a record; and light from far away. Lives as long

@@ -13,6 +13,8 @@ layout(binding = 1, rgba16f) uniform readonly image2D color_linear;
 layout(std140, binding = 2) uniform Params { SurroundingsParams params; };
 layout(std430, binding = 3) buffer Surroundings {
     FarFieldTexel far_field[kFarFieldTexels];
+    SurroundingsCounts surroundings_counts;
+    uint surroundings_blocks[kSurroundingsBlockWords];
     SurroundingsCell surroundings[];
 };
 
@@ -47,12 +49,24 @@ float depth_of_opening(ivec2 pixel, ivec2 extent) {
     return sum.y > 0.0 ? sum.y / sum.x : 0.0;
 }
 
+// Whether a key is in a place of the table, which it takes where that is free and `grows`.
+bool is_placed(uint place, uint key, ivec3 cell, bool grows) {
+    if (!grows) return surroundings[place].key == key;
+    const uint found = atomicCompSwap(surroundings[place].key, 0u, key);
+    if (found == key) return true;
+    if (found != 0u) return false;
+    const uint bit = surroundings_bit(surroundings_block(cell));
+    atomicOr(surroundings_blocks[bit >> 5u], 1u << (bit & 31u));
+    atomicAdd(surroundings_counts.fresh, 1u);
+    return true;
+}
+
 void add_sample(ivec3 cell, vec3 rgb) {
     const uint key = surroundings_key(cell);
+    const bool grows = surroundings_counts.total < kMostSurroundings;
     for (uint probe = 0u; probe < kSurroundingsProbes; ++probe) {
         const uint place = surroundings_place(key, probe);
-        const uint found = atomicCompSwap(surroundings[place].key, 0u, key);
-        if (found != 0u && found != key) continue;
+        if (!is_placed(place, key, cell, grows)) continue;
         const uvec3 steps = uvec3(clamp(rgb, 0.0, kSurroundingsRange) * kSurroundingsSteps + 0.5);
 #define ADD_TO(sums)                                 \
     atomicAdd(surroundings[place].sums.samples, 1u); \

@@ -21,6 +21,8 @@ layout(std430, binding = 2) readonly buffer March { uint listed[]; };
 layout(std430, binding = 3) buffer Gathered { uvec2 gathered[]; };
 layout(std430, binding = 16) readonly buffer Surroundings {
     FarFieldTexel far_field[kFarFieldTexels];
+    SurroundingsCounts surroundings_counts;
+    uint surroundings_blocks[kSurroundingsBlockWords];
     SurroundingsCell surroundings[];
 };
 layout(push_constant) uniform Push { ReflectanceParams params; };

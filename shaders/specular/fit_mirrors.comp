@@ -15,6 +15,8 @@ layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer Pairs { MirrorPair pairs[]; };  // kSegmentSamples per segment
 layout(std430, binding = 3) readonly buffer Surroundings {
     FarFieldTexel far_field[kFarFieldTexels];
+    SurroundingsCounts surroundings_counts;
+    uint surroundings_blocks[kSurroundingsBlockWords];
     SurroundingsCell surroundings[];
 };
 layout(std430, binding = 4) buffer Mirrors { MirrorFit mirrors[]; };

@@ -5,6 +5,8 @@
 //   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
 //   layout(std430, binding = n) readonly buffer Surroundings {
 //       FarFieldTexel far_field[kFarFieldTexels];
+//       SurroundingsCounts surroundings_counts;
+//       uint surroundings_blocks[kSurroundingsBlockWords];
 //       SurroundingsCell surroundings[];
 //   };
 #ifndef PATINA_LIB_INCIDENT_LIGHT_GLSL

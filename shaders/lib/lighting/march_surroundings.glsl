@@ -1,6 +1,8 @@
 // What a ray meets of the surroundings. The includer declares
 //   layout(std430, binding = n) readonly buffer Surroundings {
 //       FarFieldTexel far_field[kFarFieldTexels];
+//       SurroundingsCounts surroundings_counts;
+//       uint surroundings_blocks[kSurroundingsBlockWords];
 //       SurroundingsCell surroundings[];
 //   };
 #ifndef PATINA_LIB_MARCH_SURROUNDINGS_GLSL
@@ -8,7 +10,8 @@
 #include "lib/lighting/surroundings.glsl"
 #include "shared/reflectance/far_field.h"
 
-const uint kMostCrossings = 256u;    // cells of a ray: 7 m at least
+const float kReachCells = 256.0;     // 12.8 m
+const uint kMostSteps = 160u;        // through cells, and through empty blocks
 const float kOwnSurfaceCells = 1.5;  // what is no higher above the surface that a ray leaves is part of it
 
 // The mean colour of a cell; a is 0 where there is no surface in it.
@@ -32,19 +35,33 @@ struct MetSurroundings {
     vec3 at_m;   // the middle of the cell
 };
 
-// The first surface along a ray that leaves a surface with a normal.
+bool is_empty_block(ivec3 block) {
+    const uint bit = surroundings_bit(block);
+    return (surroundings_blocks[bit >> 5u] & 1u << (bit & 31u)) == 0u;
+}
+
+// The first surface along a ray that leaves a surface with a normal. Blocks without any cell are crossed in one step.
 MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction) {
     const vec3 start = point_m / kSurroundingsCellM;
-    const vec3 inverse = 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6)));
-    const ivec3 stride = ivec3(sign(inverse));
+    const vec3 way = mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))), inverse = 1.0 / way;
+    const ivec3 stride = ivec3(sign(way));
+    const vec3 ahead = max(vec3(stride), 0.0);
     ivec3 cell = ivec3(floor(start));
-    vec3 next = (vec3(cell) + max(vec3(stride), 0.0) - start) * inverse;  // along the ray, to each axis' next border
+    float along = 0.0;  // the ray, cells
     vec4 met = vec4(0.0);
-    for (uint i = 0u; i < kMostCrossings && met.a == 0.0; ++i) {
-        const bvec3 nearest = lessThanEqual(next, min(next.yzx, next.zxy));
+    for (uint i = 0u; i < kMostSteps && along < kReachCells && met.a == 0.0; ++i) {
+        const ivec3 block = surroundings_block(cell);
+        const bool empty = is_empty_block(block);
+        const float edge = empty ? float(kSurroundingsBlock) : 1.0;
+        const ivec3 corner = empty ? block * int(kSurroundingsBlock) : cell;
+        // To the border of the cell, or of the block, that the ray meets first.
+        const vec3 borders = (vec3(corner) + edge * ahead - start) * inverse;
+        const bvec3 nearest = lessThanEqual(borders, min(borders.yzx, borders.zxy));
         const ivec3 axis = nearest.x ? ivec3(1, 0, 0) : nearest.y ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
-        cell += axis * stride;
-        next += vec3(axis) * abs(inverse);
+        along = max(along, dot(vec3(axis), borders));
+        const ivec3 inside = clamp(ivec3(floor(start + along * way)), corner, corner + int(edge) - 1);
+        const ivec3 beyond = corner + ivec3(edge * ahead) + min(stride, 0);
+        cell = inside * (1 - axis) + beyond * axis;
         if (dot(vec3(cell) + 0.5 - start, normal) > kOwnSurfaceCells) met = look_up_surroundings(cell);
     }
     return MetSurroundings(met, (vec3(cell) + 0.5) * kSurroundingsCellM);

@@ -5,12 +5,17 @@
 #include "shared/input/camera.h"
 INTEROP_BEGIN
 
-INTEROP_CONST float kSurroundingsCellM = 0.05f;     // edge of a cell
-INTEROP_CONST uint kSurroundingsCells = 0x40000u;   // of the table, a power of two: 650 m^2 of surface
-INTEROP_CONST uint kSurroundingsProbes = 16u;       // places looked at, from the key's own on
-INTEROP_CONST float kSurroundingsSteps = 256.0f;    // of a linear pixel value, in whole numbers
-INTEROP_CONST float kSurroundingsRange = 64.0f;     // the largest of them
-INTEROP_CONST uint kLeastSurroundingsSamples = 3u;  // pixels that make a cell a surface
+INTEROP_CONST float kSurroundingsCellM = 0.05f;    // edge of a cell
+INTEROP_CONST uint kSurroundingsCells = 0x80000u;  // of the table, a power of two
+INTEROP_CONST uint kMostSurroundings = 0x20000u;   // cells in use, 330 m^2 of surface: in so empty a table each finds
+                                                   // its place, whatever the order of arrival
+INTEROP_CONST uint kSurroundingsBlock =
+    8u;  // cells along the side of a block, of which a bit says whether any is in use
+INTEROP_CONST uint kSurroundingsBlockWords = 0x10000u;  // 128^3 bits: the same 51 m as the keys of cells
+INTEROP_CONST uint kSurroundingsProbes = 16u;           // places looked at, from the key's own on
+INTEROP_CONST float kSurroundingsSteps = 256.0f;        // of a linear pixel value, in whole numbers
+INTEROP_CONST float kSurroundingsRange = 64.0f;         // the largest of them
+INTEROP_CONST uint kLeastSurroundingsSamples = 3u;      // pixels that make a cell a surface
 INTEROP_CONST uint kSurroundingsGroup = 8u;
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
@@ -25,6 +30,14 @@ struct SurroundingsCell {
     uint key;                // lib/lighting/surroundings.glsl; 0: nothing is here
     SurroundingsSums usual;  // as the recording shows it, clipped where it is bright
     SurroundingsSums low;    // at low exposure, in the recording's pixel values
+};
+
+// How many cells are in use. A frame sees the count before it, so that all its pixels find the same.
+struct SurroundingsCounts {
+    uint total;  // before the frame
+    uint fresh;  // that the frame adds
+    uint pad0;
+    uint pad1;
 };
 
 struct SurroundingsParams {

@@ -87,8 +87,7 @@ class CollectSurroundingsTest : public GpuTest {
         Cells cells;
         std::vector<gpu::SurroundingsCell> all(gpu::kSurroundingsCells);
         const std::vector<std::byte> bytes = read.as<std::byte>();
-        std::memcpy(all.data(), bytes.data() + gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel),
-                    all.size() * sizeof(all[0]));
+        std::memcpy(all.data(), bytes.data() + kSurroundingsCellsAt, all.size() * sizeof(all[0]));
         for (const gpu::SurroundingsCell& cell : all) {
             if (cell.key == 0) continue;
             const auto coordinate = [&](uint32_t shift) {
