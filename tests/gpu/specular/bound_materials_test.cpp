@@ -79,7 +79,7 @@ class BoundMaterials : public FitWardTest {
         }
         graph::FrameGraph frame = runner().begin();
         const WardFitIds ids{
-            frame.upload<gpu::WardFit>("fits", fits), frame.upload<gpu::FitCurve>("curves", curves), {}};
+            frame.upload<gpu::WardFit>("fits", fits), frame.upload<gpu::FitCurve>("curves", curves), {}, {}};
         const graph::BufferId sums = frame.upload<gpu::SegmentAlbedo>("albedo", albedo);
         return bounds_of(ids, sums, frame);
     }
