@@ -18,8 +18,8 @@ layout(std430, binding = 3) buffer Surroundings {
     SurroundingsCell surroundings[];
 };
 
-const int kSearchStepPx = 8;
-const uint kMostSearchSteps = 72u;
+const int kSearchStepPx = 3;
+const uint kMostSearchSteps = 192u;
 const float kLeastOpeningPx = 16.0;  // narrower gaps are shadows of the depth camera, or noise
 
 // How far the next reading is along a row or a column, pixels, and its inverse depth; 0 where there is none.
