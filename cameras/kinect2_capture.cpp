@@ -20,10 +20,12 @@ std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
 }
 
 void Kinect2Capture::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+    }
     newest_.end();
     device_.interrupt();
-    const std::lock_guard lock(mutex_);
-    stopped_ = true;
 }
 
 double Kinect2Capture::now_s() const {
@@ -45,13 +47,11 @@ void Kinect2Capture::run() {
 /// False once nobody takes frames any more.
 bool Kinect2Capture::hand_over(RecordedFrame frame) {
     const auto since = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.timestamp_s));
-    {
-        const std::lock_guard lock(mutex_);
-        if (stopped_) return false;
-        const Clock::time_point origin = Clock::now() - since;
-        origin_ = std::min(origin_.value_or(origin), origin);
-        if (tap_) tap_(frame);
-    }
+    const std::lock_guard lock(mutex_);  // what the tap has seen is counted as captured
+    if (stopped_) return false;
+    const Clock::time_point origin = Clock::now() - since;
+    origin_ = std::min(origin_.value_or(origin), origin);
+    if (tap_) tap_(frame);
     newest_.put(std::move(frame));
     return true;
 }
