@@ -31,6 +31,20 @@ Image<SrgbPixel> color_of(const sensor::kinect2::RawFrame& raw, const std::strin
     return picture;
 }
 
+SequenceInfo info_of(const std::string& name, const Intrinsics& depth, const FittedColorCamera& color,
+                     const kinect2::DecodeSettings& settings) {
+    SequenceInfo info;
+    info.name = name;
+    info.format = "kinect2";
+    info.fps = 30;
+    info.color = color.color;
+    info.depth = depth;
+    info.max_metres = settings.max_m;
+    info.color_from_depth = color.color_from_depth;
+    info.exposure_known = true;
+    return info;
+}
+
 }  // namespace
 
 kinect2::CameraModel camera_model(const sensor::kinect2::Calibration& calibration) {
@@ -44,6 +58,12 @@ kinect2::CameraModel camera_model(const sensor::kinect2::Calibration& calibratio
     std::copy(color.my.begin(), color.my.end(), model.color.my.begin());
     model.p0 = calibration.p0;
     return model;
+}
+
+SequenceInfo kinect2_info(const kinect2::CameraModel& model, const std::string& name,
+                          const kinect2::DecodeSettings& settings) {
+    const kinect2::HostTables tables = kinect2::make_tables(model);
+    return info_of(name, tables.depth, fit_color_camera(tables), settings);
 }
 
 Kinect2Decoder::Kinect2Decoder(vulkan::Device& device, const kinect2::CameraModel& model,
@@ -77,16 +97,7 @@ Kinect2Pictures Kinect2Decoder::decode(const sensor::kinect2::RawFrame& raw, con
 }
 
 SequenceInfo Kinect2Decoder::info(const std::string& name) const {
-    SequenceInfo info;
-    info.name = name;
-    info.format = "kinect2";
-    info.fps = 30;
-    info.color = color_.color;
-    info.depth = depth_camera();
-    info.max_metres = options_.settings.max_m;
-    info.color_from_depth = color_.color_from_depth;
-    info.exposure_known = true;
-    return info;
+    return info_of(name, depth_camera(), color_, options_.settings);
 }
 
 }  // namespace patina::cameras

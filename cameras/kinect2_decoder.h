@@ -16,6 +16,11 @@ namespace patina::cameras {
 /// A device's calibration as the passes take it.
 kinect2::CameraModel camera_model(const sensor::kinect2::Calibration& calibration);
 
+/// What holds for all frames of such a device's stream, computed on the host. It has no length and no poses. Throws
+/// Error as kinect2::make_tables and fit_color_camera.
+SequenceInfo kinect2_info(const kinect2::CameraModel& model, const std::string& name,
+                          const kinect2::DecodeSettings& settings = {});
+
 struct Kinect2DecoderOptions {
     kinect2::DecodeSettings settings;
     bool registered = false;  ///< whether Kinect2Pictures::registered is made
@@ -48,7 +53,7 @@ class Kinect2Decoder {
     /// frame is too short, or the JPEG is damaged or of another size; Error where the device fails.
     Kinect2Pictures decode(const sensor::kinect2::RawFrame& raw, const std::string& name);
 
-    /// What holds for all frames of a stream. It has no length and no poses.
+    /// As kinect2_info().
     SequenceInfo info(const std::string& name) const;
 
     const Intrinsics& depth_camera() const { return tables_.host().depth; }

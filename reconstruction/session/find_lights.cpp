@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cameras/open_sequence.h"
 #include "engine/core/expect_path.h"
 #include "engine/core/input_file.h"
 #include "engine/core/printable.h"
@@ -19,7 +20,6 @@
 #include "scenes/render/synthetic_source.h"
 #include "sensor/open.h"
 #include "sensor/output/output_file.h"
-#include "sensor/prefetch.h"
 #include "sensor/recentred_source.h"
 #include "sensor/truth.h"
 
@@ -40,8 +40,8 @@ struct LowExposure {
 double amount(const Exposure& exposure) { return exposure.exposure_s * exposure.gain; }
 
 /// The exposure of the first frame that can be read.
-double exposure_of(const fs::path& sequence) {
-    const auto source = sensor::open_sequence(sequence);
+double exposure_of(vulkan::Device& device, const fs::path& sequence) {
+    const auto source = cameras::open_sequence(device, sequence);
     std::string reason = "it has no frames";
     while (const auto reading = source->next()) {
         if (const auto* frame = std::get_if<Frame>(&*reading)) return amount(frame->exposure);
@@ -63,15 +63,16 @@ Folders folders_of(const LightsOptions& options) {
 }
 
 /// In the moved world, read ahead.
-std::unique_ptr<Source> opened(const std::string& sequence, const std::string& format, glm::dvec3 offset_m) {
-    auto source = std::make_unique<sensor::PrefetchSource>(sensor::open_sequence(sequence, format));
+std::unique_ptr<Source> opened(vulkan::Device& device, const std::string& sequence, const std::string& format,
+                               glm::dvec3 offset_m) {
+    auto source = cameras::open_sequence_ahead(device, sequence, format);
     return std::make_unique<sensor::RecentredSource>(std::move(source), offset_m);
 }
 
-LowExposure open_recorded(const Folders& folders, glm::dvec3 offset_m) {
+LowExposure open_recorded(vulkan::Device& device, const Folders& folders, glm::dvec3 offset_m) {
     LowExposure lighting;
-    lighting.source = opened(folders.lighting.string(), "", offset_m);
-    if (!folders.main.empty()) lighting.main_exposure = exposure_of(folders.main);
+    lighting.source = opened(device, folders.lighting.string(), "", offset_m);
+    if (!folders.main.empty()) lighting.main_exposure = exposure_of(device, folders.main);
     return lighting;
 }
 
@@ -135,7 +136,7 @@ std::unique_ptr<Source> open_main(const LightsOptions& options, vulkan::Device& 
             device, scenes::load_scene(*scene, {.seed = options.seed}),
             options.frames > 0 ? scenes::SyntheticOptions{.frames = options.frames} : scenes::SyntheticOptions{});
     }
-    return opened(options.sequence, options.format, offset_m);
+    return opened(device, options.sequence, options.format, offset_m);
 }
 
 /// Lamps that the main sequence shows are clipped: where they are is known, how bright they are not.
@@ -196,10 +197,11 @@ std::string main_of(const LightsOptions& options, const Folders& folders) {
 
 /// Whether poses of the lighting sequence, if it has some, are in the world of the reconstruction to come: that is the
 /// main sequence's first camera where this has no poses.
-bool in_main_world(const LightsOptions& options, const Folders& folders, const Source& lighting) {
+bool in_main_world(vulkan::Device& device, const LightsOptions& options, const Folders& folders,
+                   const Source& lighting) {
     if (!lighting.info().has_poses) return false;
     const std::string main = main_of(options, folders);
-    return main.empty() || sensor::open_sequence(main, options.main_format)->info().has_poses;
+    return main.empty() || cameras::open_sequence(device, main, options.main_format)->info().has_poses;
 }
 
 /// Poses of the frames of a lighting sequence, found in the main sequence's world.
@@ -211,8 +213,8 @@ FoundPoses located(const LightsOptions& options, const Folders& folders, vulkan:
             "' has no poses, and no main sequence holds it in whose world they could be found: a trajectory.txt "
             "with poses is needed");
     }
-    const std::unique_ptr<Source> room = opened(main, options.main_format, offset_m);
-    const std::unique_ptr<Source> lighting = sensor::open_sequence(folders.lighting);
+    const std::unique_ptr<Source> room = opened(device, main, options.main_format, offset_m);
+    const std::unique_ptr<Source> lighting = cameras::open_sequence(device, folders.lighting);
     LocaliseOptions find{options.reconstruction, options.main_frames, options.track, {}};
     find.on_frame = [&](const char* what, uint32_t done, uint32_t total) {
         if (stop_requested(options.callbacks))
@@ -226,19 +228,20 @@ FoundPoses located(const LightsOptions& options, const Folders& folders, vulkan:
 }
 
 /// Of the main sequence where it is known, else of the sequence that is looked at.
-glm::dvec3 offset_of(const LightsOptions& options, const Folders& folders, bool low_exposure) {
+glm::dvec3 offset_of(vulkan::Device& device, const LightsOptions& options, const Folders& folders, bool low_exposure) {
     if (options.world_offset_m) return *options.world_offset_m;
     if (scenes::scene_name(options.sequence)) return glm::dvec3(0);
-    if (!low_exposure) return world_offset_of(options.sequence, options.format);
+    if (!low_exposure) return world_offset_of(options.sequence, options.format, cameras::payload_decoders(device));
     const std::string main = main_of(options, folders);
-    return main.empty() ? world_offset_of(folders.lighting.string(), "") : world_offset_of(main, options.main_format);
+    return main.empty() ? world_offset_of(folders.lighting.string(), "", cameras::payload_decoders(device))
+                        : world_offset_of(main, options.main_format, cameras::payload_decoders(device));
 }
 
 Illumination find_at_low_exposure(const LightsOptions& options, const Folders& folders, vulkan::Device& device,
                                   glm::dvec3 offset_m) {
     const auto scene = scenes::scene_name(options.sequence);
-    LowExposure lighting = scene ? open_synthetic(options, *scene, device) : open_recorded(folders, offset_m);
-    if (!scene && !in_main_world(options, folders, *lighting.source))
+    LowExposure lighting = scene ? open_synthetic(options, *scene, device) : open_recorded(device, folders, offset_m);
+    if (!scene && !in_main_world(device, options, folders, *lighting.source))
         lighting.poses = located(options, folders, device, offset_m);
     const std::string name = scene ? options.sequence : folders.lighting.string();
     Illumination found = estimate(options, lighting, name, device);
@@ -282,18 +285,18 @@ Illumination find_lights(vulkan::Device& device, const LightsOptions& options) {
     const bool low_exposure = options.from == LightsFrom::kLightingSequence ||
                               (options.from == LightsFrom::kAny && (is_one || has_lighting_sequence(options.sequence)));
     const Folders folders = scenes::scene_name(options.sequence) ? Folders{} : folders_of(options);
-    const glm::dvec3 offset_m = offset_of(options, folders, low_exposure);
+    const glm::dvec3 offset_m = offset_of(device, options, folders, low_exposure);
     return low_exposure ? find_at_low_exposure(options, folders, device, offset_m) : fit(options, device, offset_m);
 }
 
-void for_each_low_exposure(const LightsOptions& options, const TakeLowExposure& take) {
+void for_each_low_exposure(vulkan::Device& device, const LightsOptions& options, const TakeLowExposure& take) {
     const Folders folders = folders_of(options);
     const std::string main = main_of(options, folders);
     if (main.empty()) return;
-    const LowExposure lighting = open_recorded(folders, offset_of(options, folders, true));
-    if (!in_main_world(options, folders, *lighting.source) || options.track) return;
+    const LowExposure lighting = open_recorded(device, folders, offset_of(device, options, folders, true));
+    if (!in_main_world(device, options, folders, *lighting.source) || options.track) return;
     const SequenceInfo& info = lighting.source->info();
-    const double main_exposure = lighting.main_exposure ? *lighting.main_exposure : exposure_of(main);
+    const double main_exposure = lighting.main_exposure ? *lighting.main_exposure : exposure_of(device, main);
     for_each_frame(options, *lighting.source, folders.lighting.string(), "surroundings", [&](const Frame& frame) {
         if (!frame.world_from_camera) return without_pose(frame);
         take(to_rgbd(info, frame), static_cast<float>(main_exposure / amount(frame.exposure)));

@@ -81,6 +81,6 @@ Illumination find_lights(vulkan::Device& device, const LightsOptions& options);
 /// sequence's world; the scale is the main sequence's exposure over the frame's. For none where that world is another,
 /// or the main sequence is not known. Throws Error when a file cannot be read; Interrupted when the caller stops it.
 using TakeLowExposure = std::function<void(const RgbdFrame& frame, float radiance_scale)>;
-void for_each_low_exposure(const LightsOptions& options, const TakeLowExposure& take);
+void for_each_low_exposure(vulkan::Device& device, const LightsOptions& options, const TakeLowExposure& take);
 
 }  // namespace patina

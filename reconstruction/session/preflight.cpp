@@ -53,7 +53,8 @@ sensor::ConventionCheck convention_check(const SessionOptions& options) {
     return uses_given_poses(options) ? sensor::ConventionCheck::kOn : sensor::ConventionCheck::kOff;
 }
 
-Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& options) {
+Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& options,
+                     const sensor::MakePayloadDecoder& make_decoder) {
     const SequenceInfo& info = source.info();
     const uint32_t frames = frames_to_take(options, info);
     const double far_m = std::min<double>(Access::values(options.settings).fusion.max_depth_m, info.max_metres);
@@ -83,7 +84,7 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
     }
     const auto goes_on = [&] { return (any_frame && !any_reading) || (info.has_poses && !any_pose); };
     if (frames > kFrames && goes_on()) {
-        const auto again = sensor::open_sequence(options.sequence, options.format);
+        const auto again = sensor::open_sequence(options.sequence, options.format, make_decoder);
         for (uint32_t i = 0; i < frames && (i < kFrames || goes_on()); ++i) {
             const auto reading = again->next();
             if (!reading) break;
@@ -95,8 +96,9 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
     return found;
 }
 
-glm::dvec3 world_offset_of(const std::string& sequence, const std::string& format) {
-    const auto source = sensor::open_sequence(sequence, format);
+glm::dvec3 world_offset_of(const std::string& sequence, const std::string& format,
+                           const sensor::MakePayloadDecoder& make_decoder) {
+    const auto source = sensor::open_sequence(sequence, format, make_decoder);
     if (!source->info().has_poses) return glm::dvec3(0);
     while (const auto reading = source->next()) {
         const auto* frame = std::get_if<Frame>(&*reading);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
@@ -15,8 +16,6 @@
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "sensor/look_ahead_source.h"
-#include "sensor/open.h"
-#include "sensor/prefetch.h"
 #include "sensor/recentred_source.h"
 
 namespace patina {
@@ -90,7 +89,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
     start_pipeline(std::move(network));
-    if (!earlier) add_low_exposure(*pipeline_, options_, world_offset_m_);
+    if (!earlier) add_low_exposure(device_, *pipeline_, options_, world_offset_m_);
     if (options_.resume) {
         resume();
     } else if (earlier) {
@@ -112,11 +111,10 @@ void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::d
         scene_ = rendered.get();
         source_ = std::move(rendered);
     } else {
-        auto recording = sensor::open_sequence(options_.sequence, options_.format);
+        auto recording = cameras::open_sequence_ahead(device_, options_.sequence, options_.format);
         expect_poses(options_, *recording);
-        auto ahead =
-            std::make_unique<sensor::LookAheadSource>(std::make_unique<sensor::PrefetchSource>(std::move(recording)));
-        const Preflight seen = look_ahead(*ahead, options_);
+        auto ahead = std::make_unique<sensor::LookAheadSource>(std::move(recording));
+        const Preflight seen = look_ahead(*ahead, options_, cameras::payload_decoders(device_));
         world_offset_m_ = world_offset_m.value_or(seen.world_offset_m);
         for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
         source_ = std::make_unique<sensor::RecentredSource>(std::move(ahead), world_offset_m_);

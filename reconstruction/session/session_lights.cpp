@@ -1,11 +1,11 @@
 #include "reconstruction/session/session_lights.h"
 
+#include "cameras/open_sequence.h"
 #include "engine/core/shader_light.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/surroundings.h"
 #include "scenes/files/scene_file.h"
-#include "sensor/open.h"
 #include "sensor/truth.h"
 
 namespace patina {
@@ -35,8 +35,8 @@ LightsOptions search_of(const SessionOptions& options, glm::dvec3 world_offset_m
 }
 
 /// A wrong path is an error at once, not the end of a search.
-void check_named(const std::string& sequence) {
-    if (!scenes::scene_name(sequence)) sensor::open_sequence(sequence);
+void check_named(vulkan::Device& device, const std::string& sequence) {
+    if (!scenes::scene_name(sequence)) cameras::open_sequence(device, sequence);
 }
 
 /// Looks for lights; what goes wrong becomes a shortfall. Empty where nothing shines.
@@ -103,7 +103,7 @@ SessionLight given_light(const SessionOptions& options, glm::dvec3 world_offset_
 std::optional<Illumination> searched(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m,
                                      SessionLight& light) {
     const auto* named = std::get_if<LightsFromSequence>(&options.lighting);
-    if (named) check_named(named->sequence);
+    if (named) check_named(device, named->sequence);
     std::optional<Illumination> found = search(device, search_of(options, world_offset_m, false), light);
     if (found || options.sequence.empty()) return found;
     if (light.shortfalls.empty())
@@ -141,7 +141,7 @@ SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm
         return light;
     }
     if (source == LightsSource::kSurroundings) {
-        light.illumination = light_of_surroundings(options, world_offset_m);
+        light.illumination = light_of_surroundings(device, options, world_offset_m);
         if (!shines(light.illumination)) light.none_because = "the recording is black; " + give_lights(options);
         return light;
     }
@@ -179,14 +179,15 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
     return json;
 }
 
-void add_low_exposure(Pipeline& pipeline, const SessionOptions& options, glm::dvec3 world_offset_m) {
+void add_low_exposure(vulkan::Device& device, Pipeline& pipeline, const SessionOptions& options,
+                      glm::dvec3 world_offset_m) {
     const bool recorded = !options.sequence.empty() && !synthetic_scene(options);
     if (!recorded || lights_source(options) != LightsSource::kLightingSequence) return;
     if (!pipeline.reflectance() || !pipeline.reflectance()->gathers()) return;
     const LightsOptions find = search_of(options, world_offset_m, false);
     if (scenes::scene_name(find.sequence)) return;
     try {
-        for_each_low_exposure(find, [&](const RgbdFrame& frame, float scale) {
+        for_each_low_exposure(device, find, [&](const RgbdFrame& frame, float scale) {
             pipeline.add_low_exposure(frame, scale, find.settings.find.threshold);
         });
     } catch (const Interrupted&) {

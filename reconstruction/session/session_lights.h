@@ -46,7 +46,8 @@ SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm
 
 /// Shows a pipeline what the session's lighting sequence shows, where that is where its lights come from
 /// (Pipeline::add_low_exposure). What goes wrong is left out. Throws Interrupted when the user stops it.
-void add_low_exposure(Pipeline& pipeline, const SessionOptions& options, glm::dvec3 world_offset_m);
+void add_low_exposure(vulkan::Device& device, Pipeline& pipeline, const SessionOptions& options,
+                      glm::dvec3 world_offset_m);
 
 /// For run.json: the lights, how they were found, and how sure that is.
 nlohmann::ordered_json lights_json(const Illumination& illumination);

@@ -1,9 +1,9 @@
 #include "reconstruction/session/surroundings.h"
 
+#include "cameras/open_sequence.h"
 #include "reconstruction/session/bright_surfaces.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/rgbd_frame.h"
-#include "sensor/open.h"
 
 namespace patina {
 
@@ -13,8 +13,8 @@ constexpr uint32_t kMostFrames = 60;  // two seconds of video, which decode in l
 
 }  // namespace
 
-Illumination light_of_surroundings(const SessionOptions& options, glm::dvec3 world_offset_m) {
-    const auto source = sensor::open_sequence(options.sequence, options.format);
+Illumination light_of_surroundings(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m) {
+    const auto source = cameras::open_sequence(device, options.sequence, options.format);
     BrightSurfaces bright;
     for (uint32_t looked_at = 0; looked_at < kMostFrames; ++looked_at) {
         if (stop_requested(options.callbacks)) throw Interrupted("interrupted while the brightness was measured");

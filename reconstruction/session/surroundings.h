@@ -10,6 +10,6 @@ namespace patina {
 /// reconstructed; from where nothing is seen, white light arrives under which the brightest surfaces of the recording's
 /// first frames have an albedo of 0.8 (BrightSurfaces). Throws Error when the recording cannot be opened; Interrupted
 /// when the user stops it.
-Illumination light_of_surroundings(const SessionOptions& options, glm::dvec3 world_offset_m);
+Illumination light_of_surroundings(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m);
 
 }  // namespace patina

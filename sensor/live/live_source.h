@@ -15,12 +15,13 @@ struct LiveCounts {
     uint64_t damaged = 0;
 };
 
-/// A source that takes frames by its own clock, whether they are asked for or not. The newest frame wins: one that has
-/// not been asked for when the next one comes is dropped, and next() yields it as Skipped with `dropped` set. So at
-/// most one frame waits, however late the consumer is.
-class LiveSource : public Source {
+/// What takes frames by its own clock, whether they are asked for or not, as its user steers it. All functions may be
+/// called from any thread.
+class LiveCapture {
   public:
-    /// Ends the source: next() yields what waits, then nothing. May be called from any thread, and more than once.
+    virtual ~LiveCapture() = default;
+
+    /// Ends the source: next() yields what waits, then nothing. May be called more than once.
     virtual void stop() = 0;
 
     /// Now, on the clock of Frame::timestamp_s, which is that of the exposures.
@@ -28,6 +29,11 @@ class LiveSource : public Source {
 
     virtual LiveCounts counts() const = 0;
 };
+
+/// A live capture as a source. The newest frame wins: one that has not been asked for when the next one comes is
+/// dropped, and next() yields it as Skipped with `dropped` set. So at most one frame waits, however late the consumer
+/// is.
+class LiveSource : public Source, public LiveCapture {};
 
 /// Sees every reading of a live source before any is dropped, on the camera's thread; must return before the next one.
 using ReadingTap = std::function<void(const Reading&)>;

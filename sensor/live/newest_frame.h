@@ -5,34 +5,87 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <utility>
+#include <variant>
 
 #include "sensor/live/live_source.h"
 
 namespace patina::sensor {
 
-/// Where a camera's thread leaves readings for the consumer: the newest frame, and before it, one after the other, what
-/// was dropped or damaged. Both sides may be on any thread.
-class NewestFrame {
+/// Where a camera's thread leaves readings for the consumer: the newest item, and before it, one after the other, what
+/// was dropped or damaged. Both sides may be on any thread. An Item is a frame, decoded or not, with an `index`.
+template <class Item>
+class Newest {
   public:
-    /// Takes the next reading; a frame that still waits becomes Skipped.
-    void put(Reading reading);
+    using ItemOrSkipped = std::variant<Item, Skipped>;
 
-    /// No more readings come; take() ends after those that wait. With a failure, it throws that then.
-    void end(std::exception_ptr failure = nullptr);
+    /// Takes the next item; one that still waits becomes Skipped.
+    void put(ItemOrSkipped reading) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (ended_) return;
+            ++counts_.captured;
+            drop_waiting();
+            if (auto* skipped = std::get_if<Skipped>(&reading)) {
+                before_.push_back(std::move(*skipped));
+                ++counts_.damaged;
+            } else {
+                item_ = std::get<Item>(std::move(reading));
+            }
+        }
+        changed_.notify_all();
+    }
 
-    /// Waits for a reading; empty at the end.
-    std::optional<Reading> take();
+    /// No more come; take() ends after those that wait. With a failure, it throws that then.
+    void end(std::exception_ptr failure = nullptr) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (ended_) return;
+            ended_ = true;
+            failure_ = std::move(failure);
+        }
+        changed_.notify_all();
+    }
 
-    LiveCounts counts() const;
+    /// Waits for the next one; empty at the end.
+    std::optional<ItemOrSkipped> take() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return !before_.empty() || item_ || ended_; });
+        if (!before_.empty()) {
+            Skipped skipped = std::move(before_.front());
+            before_.pop_front();
+            return skipped;
+        }
+        if (item_) {
+            ++counts_.delivered;
+            return std::exchange(item_, std::nullopt);
+        }
+        if (failure_) std::rethrow_exception(failure_);
+        return std::nullopt;
+    }
+
+    LiveCounts counts() const {
+        const std::lock_guard lock(mutex_);
+        return counts_;
+    }
 
   private:
+    void drop_waiting() {
+        if (!item_) return;
+        before_.push_back({item_->index, "dropped: a newer frame came before it was asked for", true});
+        item_.reset();
+        ++counts_.dropped;
+    }
+
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<Skipped> before_;  ///< dropped and damaged, older than frame_
-    std::optional<Frame> frame_;
+    std::deque<Skipped> before_;  ///< dropped and damaged, older than item_
+    std::optional<Item> item_;
     bool ended_ = false;
     std::exception_ptr failure_;
     LiveCounts counts_;
 };
+
+using NewestFrame = Newest<Frame>;
 
 }  // namespace patina::sensor

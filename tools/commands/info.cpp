@@ -1,6 +1,9 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 
+#include "cameras/open_sequence.h"
+#include "reconstruction/api/access.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/files/scene_report.h"
 #include "scenes/render/synthetic_source.h"
@@ -35,7 +38,12 @@ void add_info(CLI::App& app) {
             std::fputs(report.c_str(), stdout);
             return;
         }
-        sensor::PrefetchSource source(sensor::open_sequence(arguments->sequence, arguments->format));
+        std::optional<Device> device;  // for raw recordings alone
+        const auto give_device = [&]() -> vulkan::Device& {
+            return Access::vulkan(device ? *device : device.emplace());
+        };
+        sensor::PrefetchSource source(
+            sensor::open_sequence(arguments->sequence, arguments->format, cameras::payload_decoders(give_device)));
         std::fputs(sensor::format_report(sensor::inspect(source)).c_str(), stdout);
     });
 }

@@ -18,7 +18,7 @@ void add_live(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<Arguments>();
     LiveOptions& live_options = arguments->live;
     declare(*command, arguments->run);
-    command->get_option("sequence")->description("Camera");
+    command->get_option("sequence")->description("Camera: kinect2");
     command->add_option("--simulate", live_options.simulate, "Recording that plays by its clock, as a camera would");
     command->add_option("--record", live_options.record,
                         "Record all frames into this file, those that are dropped too");

@@ -10,7 +10,8 @@ namespace patina::tools {
 void add_record(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("record", "Record a sequence, and one of low exposure, into one file");
     const auto options = std::make_shared<RecordOptions>();
-    command->add_option("source", options->source, "Recording of any format that is recorded anew")->required();
+    command->add_option("source", options->source, "Camera (kinect2), or recording of any format that is recorded anew")
+        ->required();
     command->add_option("--out", options->out, "File to create, such as room.patina")->required();
     command->add_option("--lighting", options->lighting,
                         "Source of the sequence of low exposure; by default the one that belongs to the source");

@@ -1,12 +1,15 @@
 #include "tools/convert/export_native.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "cameras/open_sequence.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "reconstruction/api/access.h"
 #include "sensor/open.h"
 #include "sensor/output/apart.h"
 #include "sensor/prefetch.h"
@@ -59,13 +62,16 @@ void report(Outcome& outcome, const Written& written, const char* which) {
 Outcome export_native(const ExportNativeOptions& options) {
     const InterruptGuard interrupt;
     sensor::expect_apart(options.out, sequence_inputs(options.sequence));
-    sensor::PrefetchSource main(sensor::open_sequence(options.sequence, options.format));
+    std::optional<Device> device;  // for raw recordings alone; one sequence is read after the other
+    const auto decoders = cameras::payload_decoders(
+        [&]() -> vulkan::Device& { return Access::vulkan(device ? *device : device.emplace()); });
+    sensor::PrefetchSource main(sensor::open_sequence(options.sequence, options.format, decoders));
     sensor::SequenceWriter writer(options.out, main.info(), sensor::LinearColor::kExr);
     const Written written = write_all(main, writer, interrupt, options.quiet);
     Outcome outcome;
     report(outcome, written, "main");
     if (const auto lighting = sensor::lighting_of(options.sequence); !lighting.empty()) {
-        sensor::PrefetchSource dark(sensor::open_sequence(lighting));
+        sensor::PrefetchSource dark(sensor::open_sequence(lighting, "", decoders));
         sensor::SequenceWriter dark_writer(writer.partial_folder() / "lighting", dark.info(),
                                            sensor::LinearColor::kExr);
         report(outcome, write_all(dark, dark_writer, interrupt, options.quiet), "lighting");

@@ -37,6 +37,10 @@ LatencySummary latest(const std::vector<float>& latencies_s) {
 
 }  // namespace
 
+LiveInput live_input(std::shared_ptr<sensor::LiveSource> source) {
+    return {source, [source](vulkan::Device&) { return std::make_unique<SharedSource>(source); }};
+}
+
 sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder) {
     if (!recorder) return {};
     return [recorder = std::move(recorder)](const Reading& reading) {
@@ -45,13 +49,13 @@ sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder) {
     };
 }
 
-LiveRun::LiveRun(std::shared_ptr<sensor::LiveSource> source, std::shared_ptr<sensor::Recorder> recorder,
-                 std::filesystem::path record, double seconds)
-    : source_(std::move(source)), recorder_(std::move(recorder)), record_(std::move(record)), seconds_(seconds) {}
+LiveRun::LiveRun(LiveInput input, std::shared_ptr<sensor::Recorder> recorder, std::filesystem::path record,
+                 double seconds)
+    : input_(std::move(input)), recorder_(std::move(recorder)), record_(std::move(record)), seconds_(seconds) {}
 
 LiveRun::~LiveRun() = default;
 
-std::unique_ptr<Source> LiveRun::source() { return std::make_unique<SharedSource>(source_); }
+std::unique_ptr<Source> LiveRun::source(vulkan::Device& device) { return input_.open(device); }
 
 void LiveRun::adjust(SessionCallbacks& callbacks) {
     // Before the first frame an interrupt stops the search for lights; later it ends the source, and the run is whole.
@@ -72,13 +76,13 @@ void LiveRun::watch(std::stop_token stop) {
         if (!started) started = std::chrono::steady_clock::now();
         const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - *started).count();
         if (!interrupt_.requested() && (seconds_ <= 0 || passed_s < seconds_)) continue;
-        source_->stop();
+        input_.capture->stop();
         return;
     }
 }
 
 void LiveRun::after_step(SessionCore& session) {
-    const double now_s = source_->now_s();
+    const double now_s = input_.capture->now_s();
     begun_ = true;
     const Frame* frame = session.fused();
     if (!first_s_) first_s_ = frame ? frame->timestamp_s : now_s;
@@ -90,7 +94,7 @@ void LiveRun::after_step(SessionCore& session) {
 /// One picture is on its way at a time, so that a device that is slow renders fewer.
 void LiveRun::look(SessionCore& session) {
     if (picture_ && picture_->view.ready()) {
-        to_picture_s_.push_back(static_cast<float>(source_->now_s() - picture_->exposed_s));
+        to_picture_s_.push_back(static_cast<float>(input_.capture->now_s() - picture_->exposed_s));
         picture_.reset();
     }
     const Frame* frame = session.fused();
@@ -105,8 +109,8 @@ void LiveRun::look(SessionCore& session) {
 void LiveRun::end() {
     if (std::exchange(ended_, true)) return;
     watcher_.request_stop();
-    source_->stop();
-    counts_ = source_->counts();
+    input_.capture->stop();
+    counts_ = input_.capture->counts();
     picture_.reset();
     if (!recorder_) return;
     try {
@@ -127,7 +131,7 @@ std::vector<std::string> LiveRun::shortfalls() const {
 }
 
 std::string LiveRun::detail() const {
-    const sensor::LiveCounts counts = source_->counts();
+    const sensor::LiveCounts counts = input_.capture->counts();
     const LatencySummary pose = latest(to_pose_s_), picture = latest(to_picture_s_);
     return fmt::format("{} captured, {} dropped  pose {:.0f}/{:.0f} ms, picture {:.0f}/{:.0f} ms (median/95 %)",
                        counts.captured, counts.dropped, pose.median_ms, pose.p95_ms, picture.median_ms, picture.p95_ms);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,16 @@
 
 namespace patina::tools {
 
+/// What a live run reads: what its user steers, and how the device's thread reads the frames.
+struct LiveInput {
+    std::shared_ptr<sensor::LiveCapture> capture;
+    /// Opens the source; called once. The device outlives the source, but not the capture.
+    std::function<std::unique_ptr<Source>(vulkan::Device&)> open;
+};
+
+/// A source that needs no device.
+LiveInput live_input(std::shared_ptr<sensor::LiveSource> source);
+
 /// Hands every reading to a recorder, where there is one.
 sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder);
 
@@ -24,11 +35,10 @@ sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder);
 class LiveRun : public RunCompanion {
   public:
     /// `recorder` may be null; `record` is its file. `seconds`: of the source; 0: no limit.
-    LiveRun(std::shared_ptr<sensor::LiveSource> source, std::shared_ptr<sensor::Recorder> recorder,
-            std::filesystem::path record, double seconds);
+    LiveRun(LiveInput input, std::shared_ptr<sensor::Recorder> recorder, std::filesystem::path record, double seconds);
     ~LiveRun() override;
 
-    std::unique_ptr<Source> source() override;
+    std::unique_ptr<Source> source(vulkan::Device& device) override;
     void adjust(SessionCallbacks& callbacks) override;
     void after_step(SessionCore& session) override;
     void end() override;
@@ -41,7 +51,7 @@ class LiveRun : public RunCompanion {
     std::string detail() const;
 
     InterruptGuard interrupt_;
-    std::shared_ptr<sensor::LiveSource> source_;  ///< the session shares it
+    LiveInput input_;
     std::shared_ptr<sensor::Recorder> recorder_;
     std::filesystem::path record_;
     double seconds_;

@@ -1,7 +1,9 @@
 #include "tools/record/record.h"
 
+#include <chrono>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +15,9 @@
 #include "sensor/output/apart.h"
 #include "sensor/prefetch.h"
 #include "sensor/recording/exposure_check.h"
+#include "sensor/recording/payload_codec.h"
 #include "sensor/recording/recorder.h"
+#include "tools/program/cameras.h"
 #include "tools/program/inputs.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/progress.h"
@@ -28,6 +32,20 @@ using sensor::SequenceRole;
 
 double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
+/// Stops a camera when the user asks, also one that has fallen silent.
+class Watch {
+  public:
+    Watch(sensor::LiveCapture& capture, const InterruptGuard& interrupt)
+        : thread_([&capture, &interrupt](std::stop_token stop) {
+              while (!stop.stop_requested() && !interrupt.requested()) std::this_thread::sleep_for(kWatch);
+              if (!stop.stop_requested()) capture.stop();
+          }) {}
+
+  private:
+    static constexpr std::chrono::milliseconds kWatch{50};
+    std::jthread thread_;
+};
+
 /// One recording from its first sequence to its last.
 class Recording {
   public:
@@ -35,8 +53,28 @@ class Recording {
         : options_(options),
           recorder_(std::make_shared<sensor::Recorder>(
               options.out,
-              sensor::Recorder::Options{.when_full = options.simulate ? sensor::Recorder::WhenFull::kDrop
+              sensor::Recorder::Options{.when_full = is_live(options) ? sensor::Recorder::WhenFull::kDrop
                                                                       : sensor::Recorder::WhenFull::kWait})) {}
+
+    /// Records what a camera sends, as it sends it, until the user or the time ends it.
+    void add(cameras::Kinect2Capture& capture) {
+        recorder_->begin(SequenceRole::kMain, capture.sequence());
+        if (!options_.quiet) print_error("{}\n", sensor::instruction(SequenceRole::kMain));
+        capture.set_tap([recorder = recorder_](const sensor::RecordedFrame& frame) { recorder->record(frame); });
+        sensor::ExposureCheck exposure(SequenceRole::kMain);
+        const Watch watch(capture, interrupt_);
+        Progress progress(std::nullopt, options_.quiet);
+        while (const auto frame = capture.next()) {
+            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
+                if (is_over(raw->timestamp_s)) break;
+                check(*raw, capture.sequence(), exposure);
+            }
+            if (interrupted() || !recorder_->problem().empty()) break;
+            progress.update(static_cast<uint32_t>(capture.counts().captured), detail(exposure));
+        }
+        capture.stop();
+        advise(SequenceRole::kMain, exposure);
+    }
 
     /// Records one sequence to its end.
     void add(SequenceRole role, const std::string& path, const std::string& format, const std::string& place) {
@@ -52,8 +90,7 @@ class Recording {
         } else {
             copy(std::move(recording), exposure);
         }
-        if (std::string advice = exposure.advice(); !advice.empty())
-            advice_.push_back(fmt::format("{} sequence: {}", name_of(role), advice));
+        advise(role, exposure);
     }
 
     bool interrupted() const { return interrupt_.requested(); }
@@ -75,7 +112,7 @@ class Recording {
         }
         const sensor::RecorderCounts counts = recorder_->counts();
         Outcome outcome;
-        if (interrupted() && !options_.simulate)
+        if (interrupted() && !is_live(options_))
             outcome.fall_short(fmt::format("interrupted after {} frames", counts.given));
         if (counts.dropped > 0)
             outcome.fall_short(fmt::format("{} of {} frames are missing: the disk did not keep pace with the camera",
@@ -90,6 +127,14 @@ class Recording {
     }
 
   private:
+    /// Cameras take frames whether they are written or not.
+    static bool is_live(const RecordOptions& options) { return options.simulate || is_camera(options.source); }
+
+    void advise(SequenceRole role, const sensor::ExposureCheck& exposure) {
+        if (std::string advice = exposure.advice(); !advice.empty())
+            advice_.push_back(fmt::format("{} sequence: {}", name_of(role), advice));
+    }
+
     /// As fast as it can be read.
     void copy(std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
         sensor::PrefetchSource source(std::move(recording));
@@ -126,13 +171,30 @@ class Recording {
 
     bool is_over(const Reading& reading) {
         const auto* frame = std::get_if<Frame>(&reading);
-        if (!frame || options_.seconds <= 0) return false;
-        if (!first_s_) first_s_ = frame->timestamp_s;
-        return frame->timestamp_s - *first_s_ >= options_.seconds;
+        return frame && is_over(frame->timestamp_s);
+    }
+
+    bool is_over(double timestamp_s) {
+        if (options_.seconds <= 0) return false;
+        if (!first_s_) first_s_ = timestamp_s;
+        return timestamp_s - *first_s_ >= options_.seconds;
     }
 
     static void check(const Reading& reading, sensor::ExposureCheck& exposure) {
         if (const auto* frame = std::get_if<Frame>(&reading)) exposure.add(frame->color);
+    }
+
+    /// What cannot be decoded is told when the recording is read.
+    static void check(const sensor::RecordedFrame& raw, const sensor::RecordedSequence& sequence,
+                      sensor::ExposureCheck& exposure) {
+        for (const sensor::Payload& payload : raw.payloads) {
+            const sensor::RecordedStream& stream = sequence.streams[payload.stream];
+            if (stream.name != "color") continue;
+            try {
+                exposure.add(sensor::decode_color(stream.encoding, payload.content, sequence.info.color.extent, ""));
+            } catch (const Error&) {
+            }
+        }
     }
 
     std::string detail(const sensor::ExposureCheck& exposure) const {
@@ -150,9 +212,23 @@ class Recording {
     std::vector<std::string> advice_;
 };
 
+Outcome record_camera(const RecordOptions& options) {
+    if (!options.lighting.empty())
+        throw Error("--lighting is for recordings: a camera's sequence of low exposure cannot be recorded yet");
+    const auto capture = open_kinect2();
+    Recording recording(options);
+    try {
+        recording.add(*capture);
+    } catch (const std::exception& error) {  // it was unplugged, perhaps
+        recording.keep(reason_of(error));
+    }
+    return recording.finish();
+}
+
 }  // namespace
 
 Outcome record(const RecordOptions& options) {
+    if (is_camera(options.source)) return record_camera(options);
     const std::string lighting =
         options.lighting.empty() ? sensor::lighting_of(options.source).string() : options.lighting;
     std::vector<fs::path> inputs = sequence_inputs(options.source);

@@ -9,7 +9,7 @@ namespace patina::tools {
 
 /// What `patina record` was asked to do.
 struct RecordOptions {
-    std::string source;         ///< a recording
+    std::string source;         ///< a camera (is_camera), or a recording
     std::string format;         ///< of it; empty: recognised
     std::string lighting;       ///< the sequence of low exposure; empty: the one that belongs to the source, if any
     std::filesystem::path out;  ///< a new file

@@ -79,7 +79,7 @@ class Run {
           folder_(folder),
           companion_(companion),
           device_(options.device),
-          session_(Access::vulkan(device_), options, companion ? companion->source() : nullptr),
+          session_(Access::vulkan(device_), options, companion ? companion->source(Access::vulkan(device_)) : nullptr),
           pipeline_(session_.pipeline()),
           dumps_(folder, session_.info().frames, options.dump_every) {
         session_.bring_back([this](graph::StateVisitor& visitor, MapFile& map) {

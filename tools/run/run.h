@@ -34,8 +34,8 @@ class RunCompanion {
   public:
     virtual ~RunCompanion() = default;
 
-    /// The source; called once.
-    virtual std::unique_ptr<Source> source() = 0;
+    /// The source; called once. `device` outlives it.
+    virtual std::unique_ptr<Source> source(vulkan::Device& device) = 0;
     /// Changes what the session calls while it works.
     virtual void adjust(SessionCallbacks& callbacks) = 0;
     /// After each step of the session.

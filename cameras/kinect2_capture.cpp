@@ -1,0 +1,59 @@
+#include "cameras/kinect2_capture.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace patina::cameras {
+
+using sensor::RecordedFrame;
+
+Kinect2Capture::Kinect2Capture(std::unique_ptr<sensor::kinect2::Transport> transport) : device_(std::move(transport)) {
+    device_.start();
+    sequence_ = kinect2_sequence(device_.pages(), device_.name());
+}
+
+Kinect2Capture::~Kinect2Capture() { stop(); }
+
+std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
+    if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
+    return newest_.take();
+}
+
+void Kinect2Capture::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+    }
+    newest_.end();
+    device_.interrupt();
+}
+
+double Kinect2Capture::now_s() const {
+    const std::lock_guard lock(mutex_);
+    return origin_ ? std::chrono::duration<double>(Clock::now() - *origin_).count() : 0;
+}
+
+void Kinect2Capture::run() {
+    std::exception_ptr failure;
+    try {
+        sensor::kinect2::RawFrame raw;
+        while (device_.next(raw) && hand_over(packer_.pack(std::move(raw)))) raw = {};
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    newest_.end(failure);
+}
+
+/// False once nobody takes frames any more.
+bool Kinect2Capture::hand_over(RecordedFrame frame) {
+    const auto since = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.timestamp_s));
+    const std::lock_guard lock(mutex_);  // what the tap has seen is counted as captured
+    if (stopped_) return false;
+    const Clock::time_point origin = Clock::now() - since;
+    origin_ = std::min(origin_.value_or(origin), origin);
+    if (tap_) tap_(frame);
+    newest_.put(std::move(frame));
+    return true;
+}
+
+}  // namespace patina::cameras

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "cameras/kinect2_recorded.h"
+#include "sensor/kinect2/device.h"
+#include "sensor/live/newest_frame.h"
+
+namespace patina::cameras {
+
+/// A Kinect v2 that runs: a thread takes its raw frames as they come. The newest one waits to be asked for; the tap
+/// sees all. Nothing is decoded.
+class Kinect2Capture : public sensor::LiveCapture {
+  public:
+    /// Sees every frame before any is dropped, on the capturing thread; must return before the next one.
+    using Tap = std::function<void(const sensor::RecordedFrame&)>;
+
+    /// Starts the device. Throws Error as sensor::kinect2::Device.
+    explicit Kinect2Capture(std::unique_ptr<sensor::kinect2::Transport> transport);
+    ~Kinect2Capture() override;
+
+    /// What holds for all frames.
+    const sensor::RecordedSequence& sequence() const { return sequence_; }
+    /// "Kinect v2 at 2-1".
+    const std::string& name() const { return device_.name(); }
+    /// What works less well than it should; empty: nothing.
+    std::string warning() const { return device_.warning(); }
+
+    /// To be called before the first next().
+    void set_tap(Tap tap) { tap_ = std::move(tap); }
+
+    /// The next frame, or why there is none; waits for it. Empty after stop(). Frames are taken from the first call on.
+    /// Throws Error where the device fails or is unplugged, after the frames that came before.
+    std::optional<std::variant<sensor::RecordedFrame, Skipped>> next();
+
+    /// Once this returns, the tap is not called any more.
+    void stop() override;
+
+    /// The device's clock is known by its frames alone: the one that came soonest after its time stamp counts as
+    /// without delay. So latencies lack what the quickest frame took from its exposure to the host. 0 before the first
+    /// frame.
+    double now_s() const override;
+
+    sensor::LiveCounts counts() const override { return newest_.counts(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    void run();
+    bool hand_over(sensor::RecordedFrame frame);
+
+    sensor::kinect2::Device device_;
+    sensor::RecordedSequence sequence_;
+    Kinect2Packer packer_;  ///< of the capturing thread alone
+    Tap tap_;
+    sensor::Newest<sensor::RecordedFrame> newest_;
+    mutable std::mutex mutex_;                 ///< of what follows, and held while the tap runs
+    std::optional<Clock::time_point> origin_;  ///< when the device's clock was at 0, at the latest
+    bool stopped_ = false;
+    std::jthread thread_;  // last: joins before what it uses is destroyed
+};
+
+}  // namespace patina::cameras

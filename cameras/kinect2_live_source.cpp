@@ -1,0 +1,28 @@
+#include "cameras/kinect2_live_source.h"
+
+#include <utility>
+
+namespace patina::cameras {
+
+Kinect2LiveSource::Kinect2LiveSource(vulkan::Device& device, std::shared_ptr<Kinect2Capture> capture)
+    : capture_(std::move(capture)),
+      decoder_([&device]() -> vulkan::Device& { return device; }, capture_->sequence(), capture_->name()) {}
+
+std::optional<Reading> Kinect2LiveSource::next() {
+    auto taken = capture_->next();
+    if (!taken) return std::nullopt;
+    if (auto* skipped = std::get_if<Skipped>(&*taken)) return std::move(*skipped);
+    const auto& recorded = std::get<sensor::RecordedFrame>(*taken);
+    Frame frame;
+    frame.index = recorded.index;
+    frame.timestamp_s = recorded.timestamp_s;
+    frame.exposure = recorded.exposure;
+    try {
+        decoder_.decode(recorded, frame);
+    } catch (const DamagedFrame& error) {
+        return Skipped{recorded.index, error.what()};
+    }
+    return frame;
+}
+
+}  // namespace patina::cameras

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <string>
+
+#include "cameras/kinect2_decoder.h"
+#include "scenes/kinect2/infrared_frame.h"
+#include "sensor/recording/container.h"
+#include "tests/cli/run_folder.h"
+#include "tests/simulated_kinect2/pages.h"
+
+// patina live and record with a Kinect v2: the stand-in for libusb sends what the forward model makes of a corner of a
+// room.
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr float kWall_m = 2;
+constexpr float kBox_m = 1.4f;
+
+/// A wall with a box before it, as depths along the axis; a floor and a ceiling hold the camera in place.
+float depth_at(const Intrinsics& camera, uint32_t x, uint32_t y) {
+    const double rx = (x - camera.cx) / camera.fx, ry = (y - camera.cy) / camera.fy;
+    const double box = std::abs(rx) < 0.25 && std::abs(ry) < 0.2 ? kBox_m : kWall_m;
+    const double floor = ry != 0 ? 0.9 / std::abs(ry) : 100;
+    const double side = rx != 0 ? 1.1 / std::abs(rx) : 100;
+    return static_cast<float>(std::min({box, floor, side}));
+}
+
+/// One infrared frame, which the stand-in repeats.
+void write_infrared(const fs::path& file) {
+    const kinect2::CameraModel model = cameras::camera_model(sensor::kinect2::testing::simulated_calibration());
+    Image<float> depth_m(model.depth.extent);
+    for (uint32_t y = 0; y < depth_m.extent().height; ++y)
+        for (uint32_t x = 0; x < depth_m.extent().width; ++x) depth_m.at(x, y) = depth_at(model.depth, x, y);
+    const Image<float> amplitude = scenes::kinect2::lit_amplitude(depth_m, Image<float>(depth_m.extent(), 0.5f), 2000);
+    const std::vector<uint8_t> frame = scenes::kinect2::infrared_frame({model.depth, model.p0}, {depth_m, amplitude});
+    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(frame.data()), std::ssize(frame));
+}
+
+void write_color(const fs::path& folder) {
+    fs::create_directories(folder);
+    Image<SrgbPixel> picture(Extent2D{1920, 1080});
+    for (uint32_t y = 0; y < 1080; ++y)
+        for (uint32_t x = 0; x < 1920; ++x) picture.at(x, y) = SrgbPixel(60 + x / 16, 60 + y / 12, 90 + (x + y) / 24);
+    sensor::testing::write_jpeg(folder / "000000.jpg", picture);
+}
+
+class Kinect2Commands : public RunFolderTest {
+  protected:
+    Kinect2Commands() {
+        write_infrared(beside("infrared.bin"));
+        write_color(beside("color"));
+    }
+
+    /// `changes`: variables of the stand-in, without their prefix. At 5 frames a second a busy machine loses nothing.
+    Program::Environment with_kinect(const Program::Environment& changes = {}) const {
+        Program::Environment environment{{"LD_LIBRARY_PATH", PATINA_STAND_IN_FOLDER},
+                                         {"PATINA_KINECT2_RATE", "5"},
+                                         {"PATINA_KINECT2_INFRARED", beside("infrared.bin")},
+                                         {"PATINA_KINECT2_COLOR", beside("color")}};
+        for (const auto& [name, value] : changes) environment.emplace_back("PATINA_KINECT2_" + name, value);
+        return environment;
+    }
+
+    const fs::path file_ = beside("room.patina");
+};
+
+TEST_F(Kinect2Commands, LiveReconstructsWhatTheKinectSees) {
+    const Outcome outcome =
+        patina({"live", "kinect2", "--seconds", "3", "--out", out(), "--record", file_, "--quiet"}, with_kinect());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json summary = summary_of(out());
+    EXPECT_EQ(summary["finished"], true);
+    EXPECT_GE(summary["frames"]["used"], 2u);
+    EXPECT_GE(summary["live"]["captured"], summary["frames"]["used"]);
+    EXPECT_GT(summary["live"]["exposure_to_pose"]["median_ms"], 0);
+    EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
+    // All frames were recorded, those that were dropped too.
+    EXPECT_EQ(summary["live"]["recording"]["frames"], summary["live"]["captured"]);
+    sensor::RecordingFile recording(file_);
+    EXPECT_EQ(recording.sequence(sensor::SequenceRole::kMain).info.frames, summary["live"]["captured"].get<uint32_t>());
+}
+
+TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
+    const Outcome recorded = patina({"record", "kinect2", "--seconds", "1", "--out", file_, "--quiet"}, with_kinect());
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+    {
+        sensor::RecordingFile recording(file_);
+        EXPECT_TRUE(recording.ended(sensor::SequenceRole::kMain));
+        EXPECT_EQ(recording.sequence(sensor::SequenceRole::kMain).attachments.size(), 5u);
+        const auto frame = std::get<sensor::RecordedFrame>(recording.read(sensor::SequenceRole::kMain, 1));
+        const std::vector<uint8_t>& infrared = frame.payloads.at(0).content;
+        EXPECT_TRUE(std::string(infrared.begin(), infrared.end()) ==
+                    sensor::testing::read_text(beside("infrared.bin")));
+        // 5 frames a second by the device's clock, whose ticks are 125 us.
+        EXPECT_NEAR(frame.timestamp_s, 0.2, 0.05);
+    }
+    const Outcome info = patina({"info", file_});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_THAT(info.out, HasSubstr(" 0 skipped"));
+    // Nothing is farther than the wall, which fills more than a twentieth; 11-bit codes cost less than a centimetre.
+    std::smatch farthest;
+    ASSERT_TRUE(std::regex_search(info.out, farthest, std::regex("95 % below ([0-9.]+) m"))) << info.out;
+    EXPECT_NEAR(std::stod(farthest[1]), kWall_m, 0.01);
+    const nlohmann::json summary = run_quietly(file_, {"--frames", "3", "--lighting", "none"});
+    EXPECT_EQ(summary["frames"]["used"], 3u);
+    EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
+}
+
+TEST_F(Kinect2Commands, AnUnpluggedKinectLeavesWhatWasFused) {
+    const Outcome outcome =
+        patina({"live", "kinect2", "--out", out(), "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
+    EXPECT_THAT(expect_failure(outcome), AllOf(HasSubstr("unplugged"), HasSubstr("holds what could still be written")));
+    EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
+    const Outcome recorded =
+        patina({"record", "kinect2", "--out", file_, "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
+    EXPECT_THAT(expect_failure(recorded), AllOf(HasSubstr("unplugged"), HasSubstr("frames")));
+    EXPECT_GT(*sensor::RecordingFile(file_).sequence(sensor::SequenceRole::kMain).info.frames, 1u);
+}
+
+TEST_F(Kinect2Commands, WithoutAKinectThereIsOneSentenceAndNoFile) {
+    const Program::Environment none = with_kinect({{"DEVICE", "none"}});
+    expect_failure(patina({"record", "kinect2", "--out", file_}, none));
+    expect_failure(patina({"live", "kinect2", "--out", out()}, none));
+    EXPECT_FALSE(fs::exists(file_));
+    EXPECT_FALSE(fs::exists(out()));
+}
+
+}  // namespace
+}  // namespace patina::testing
