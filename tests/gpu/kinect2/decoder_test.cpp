@@ -131,8 +131,7 @@ TEST_F(Kinect2DecoderTest, ADamagedFrameIsSkippedAndTheNextOneIsNot) {
     size_t given = 0;
     cameras::Kinect2Source source(device(), calibration(), "kinect", [&] { return std::optional(raws[given++]); });
     const char* reasons[] = {"kinect frame 0 has an infrared frame of 1000 bytes, but 2686464 are needed",
-                             "kinect frame 1",
-                             "kinect frame 2 is 64 x 48 pixels, but the sequence says 1920 x 1080"};
+                             "kinect frame 1", "kinect frame 2 is 64 x 48 pixels, but the sequence says 1920 x 1080"};
     for (uint32_t i = 0; i < 3; ++i) {
         const auto reading = source.next();
         ASSERT_TRUE(reading && std::holds_alternative<Skipped>(*reading)) << i;
