@@ -18,7 +18,7 @@ constexpr double kFinerPages = 1.03;      // texels grow by a little more than t
 
 glm::uvec2 box_of(const Chart& chart, double texel_m) {
     const auto texels = [&](float size_m) { return static_cast<uint32_t>(std::ceil(double{size_m} / texel_m)) + 1; };
-    return glm::uvec2(texels(chart.size_m.x), texels(chart.size_m.y)) + 2 * kGutter;
+    return glm::uvec2(texels(chart.size_m.x), texels(chart.size_m.y)) + 2 * kTextureGutter;
 }
 
 /// A segment's part of a piece, as a mesh of its own, in charts.
@@ -77,7 +77,7 @@ class SurfaceBuilder {
         append(surface.reflectance.kd, piece_.reflectance.kd, vertex);
         if (!piece_.reflectance.labels.empty()) surface.reflectance.labels.push_back(label);
         const glm::vec2 in_plane_m(glm::dot(position_m, chart.right), glm::dot(position_m, chart.down));
-        surface.place_px.push_back(glm::vec2(place.at + kGutter) + 0.5f + (in_plane_m - chart.low_m) / texel_m_);
+        surface.place_px.push_back(glm::vec2(place.at + kTextureGutter) + 0.5f + (in_plane_m - chart.low_m) / texel_m_);
         surface.pages.push_back(place.page);
         return number;
     }
@@ -102,7 +102,7 @@ TextureLayout lay_out_texture(std::vector<TidyPiece> pieces, const TextureOption
     TextureLayout layout;
     layout.texel_m = options.texel_m;
     std::vector<std::vector<ChartedPart>> charted;
-    const double most_m = options.texel_m * (options.page - 2 * kGutter - 2);
+    const double most_m = options.texel_m * (options.page - 2 * kTextureGutter - 2);
     for (const TidyPiece& piece : pieces) charted.push_back(charts_of(piece, most_m));
     std::vector<glm::uvec2> boxes = boxes_of(charted, layout.texel_m);
     PackedBoxes packed = pack_boxes(boxes, options.page);

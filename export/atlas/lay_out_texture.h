@@ -15,9 +15,6 @@ struct TextureOptions {
     uint32_t page = 4096;  ///< texels along a side
 };
 
-/// Texels around a chart that show what is at its border, so that filters find nothing else there.
-inline constexpr uint32_t kGutter = 3;
-
 /// Lays a surface out in the pages of a texture, chart by chart (find_charts). Triangles without area are left out. The
 /// same surface gives the same layout.
 TextureLayout lay_out_texture(std::vector<TidyPiece> pieces, const TextureOptions& options);

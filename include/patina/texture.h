@@ -19,6 +19,9 @@ struct TexturedSurface {
     std::vector<uint32_t> pages;      ///< by vertex
 };
 
+/// Texels around a chart that show what is at its border, so that filters find nothing else there.
+inline constexpr uint32_t kTextureGutter = 3;
+
 /// A part of a page that belongs to one segment.
 struct TextureBox {
     uint32_t page = 0;

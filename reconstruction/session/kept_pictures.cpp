@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/core/luminance.h"
+#include "sensor/recording/payload_codec.h"
 
 namespace patina {
 namespace {
@@ -59,7 +60,11 @@ float finest_pixel_m(const SequenceInfo& info, const DepthImage& depth) {
     return *tenth / static_cast<float>(info.color.fx);
 }
 
-size_t words_of(Extent2D extent, bool linear) { return linear ? 3 * extent.area() : (3 * extent.area() + 3) / 4; }
+std::vector<std::byte> packed(const ColorImage& color) {
+    const std::vector<uint8_t> bytes = sensor::encode(color);
+    const std::span<const std::byte> whole = std::as_bytes(std::span(bytes));
+    return {whole.begin(), whole.end()};
+}
 
 }  // namespace
 
@@ -88,7 +93,7 @@ void KeptPictures::add(const SequenceInfo& info, const Frame& frame, uint32_t or
 
 /// The stretch at hand has come to its end.
 void KeptPictures::settle() {
-    kept_.push_back({current_->picture, pack(current_->color)});
+    kept_.push_back({current_->picture, packed(current_->color)});
     current_.reset();
     const auto bytes = [&] {
         uint64_t sum = 0;
@@ -112,46 +117,11 @@ void KeptPictures::thin() {
     kept_ = std::move(fewer);
 }
 
-/// Bytes become their difference from the pixel before, which compresses to about half.
-std::vector<std::byte> KeptPictures::pack(const ColorImage& color) {
-    const Extent2D extent = extent_of(color);
-    if (const auto* linear = std::get_if<Image<glm::vec3>>(&color)) {
-        std::vector<uint32_t> words(words_of(extent, true));
-        std::memcpy(words.data(), linear->pixels().data(), words.size() * sizeof(uint32_t));
-        return packer_.pack(words);
-    }
-    std::vector<uint32_t> words(words_of(extent, false));
-    auto* bytes = reinterpret_cast<uint8_t*>(words.data());
-    SrgbPixel before(0);
-    for (const SrgbPixel pixel : std::get<Image<SrgbPixel>>(color).pixels()) {
-        for (glm::length_t channel = 0; channel < 3; ++channel)
-            *bytes++ = static_cast<uint8_t>(pixel[channel] - before[channel]);
-        before = pixel;
-    }
-    return packer_.pack(words);
-}
-
 ColorImage KeptPictures::unpack(const Kept& kept) {
-    const Extent2D extent = kept.picture.extent;
-    const bool linear = kept.picture.linear != 0;
-    const size_t expected = words_of(extent, linear);
-    const std::vector<uint32_t> words = packer_.unpack(kept.packed, expected);
-    if (words.size() != expected)
-        throw Error("a kept picture has ", words.size(), " words, ", expected, " were expected");
-    if (linear) {
-        Image<glm::vec3> image(extent);
-        std::memcpy(image.pixels().data(), words.data(), words.size() * sizeof(uint32_t));
-        return image;
-    }
-    Image<SrgbPixel> image(extent);
-    const auto* bytes = reinterpret_cast<const uint8_t*>(words.data());
-    SrgbPixel before(0);
-    for (SrgbPixel& pixel : image.pixels()) {
-        for (glm::length_t channel = 0; channel < 3; ++channel)
-            pixel[channel] = static_cast<uint8_t>(before[channel] + *bytes++);
-        before = pixel;
-    }
-    return image;
+    const std::string_view encoding = kept.picture.linear != 0 ? sensor::kRgbFloat : sensor::kRgb8;
+    const auto* bytes = reinterpret_cast<const uint8_t*>(kept.packed.data());
+    return sensor::decode_color(encoding, {bytes, bytes + kept.packed.size()}, kept.picture.extent,
+                                fmt::format("the picture of frame {} that was kept", kept.picture.order));
 }
 
 void KeptPictures::give(const SequenceInfo& info, std::span<const gpu::ColorGains> gains,
@@ -185,7 +155,7 @@ void KeptPictures::visit(graph::StateVisitor& visitor) {
     uint32_t at_hand = current_ ? 1 : 0;  // its pixels are kept as those of the others
     if (current_) {
         pictures.push_back(current_->picture);
-        kept_.push_back({current_->picture, pack(current_->color)});
+        kept_.push_back({current_->picture, packed(current_->color)});
         current_.reset();
     }
     visitor.value("pictures.spacing", spacing_);

@@ -9,7 +9,6 @@
 
 #include "engine/graph/state_visitor.h"
 #include "patina/frame.h"
-#include "reconstruction/streaming/packer.h"
 #include "reconstruction/texture/bake_texture.h"
 #include "shared/photometry/color_gains.h"
 
@@ -59,13 +58,11 @@ class KeptPictures {
     bool is_apart(const RigidTransform& a, const RigidTransform& b) const;
     void settle();
     void thin();
-    std::vector<std::byte> pack(const ColorImage& color);
-    ColorImage unpack(const Kept& kept);
+    static ColorImage unpack(const Kept& kept);
 
     float spacing_ = 1;  ///< how long stretches are, over kStep_m and kStep_rad
     std::vector<Kept> kept_;
     std::optional<Current> current_;  ///< the best one so far of the stretch at hand
-    Packer packer_;
 };
 
 }  // namespace patina

@@ -9,6 +9,7 @@ namespace {
 
 using Corners = std::array<glm::vec2, 3>;
 
+static_assert(gpu::kGutterTexels == kTextureGutter);
 constexpr float kTile = gpu::kTextureTile;
 constexpr float kReach_px = gpu::kGutterTexels + 1.0f;  // of a triangle beyond its border, and what rounding needs
 

@@ -213,7 +213,7 @@ TEST(LayOutTexture, TexelsAreSquareAndSegmentsApart) {
     EXPECT_NE(layout.boxes[0].label, layout.boxes[1].label);
     for (size_t i = 0; i < surface.place_px.size(); ++i) {
         const TextureBox& box = layout.boxes[surface.reflectance.labels[i] == layout.boxes[0].label ? 0 : 1];
-        const glm::vec2 place = surface.place_px[i], gutter(kGutter);
+        const glm::vec2 place = surface.place_px[i], gutter(kTextureGutter);
         EXPECT_TRUE(glm::all(glm::greaterThanEqual(place, glm::vec2(box.low) + gutter)));
         EXPECT_TRUE(glm::all(glm::lessThanEqual(place, glm::vec2(box.high) - gutter)));
     }
