@@ -40,9 +40,8 @@ TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const Tid
 /// Takes out the triangles of stray parts, such as those that collapsing cut off.
 void leave_out_stray_parts(TidyPiece& piece, const TidyOptions& options);
 
-/// Leaves so large a part of the triangles, those that bend least first, whatever the distance is.
-/// Of options what is said of brightness and borders counts.
-/// `most_error_m`: distance beyond which none is collapsed.
+/// Collapses edges until about `part` of the triangles are left, or the surface would be farther than `most_error_m`
+/// from what it was; those that bend least go first. Of the options, white_m and in_pieces count.
 TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part, const TidyOptions& options = {},
                   double most_error_m = 1e9);
 

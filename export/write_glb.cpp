@@ -363,6 +363,7 @@ void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance) {
 
 void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<TexturePage>& pages) {
     for (const TexturedSurface& surface : layout.pieces) state_->add_textured(surface, layout.pages);
+    if (pages.empty()) return;
     tinygltf::Sampler sampler;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
     sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;

@@ -109,6 +109,7 @@ void Pipeline::give_surface(const std::vector<SegmentReflectance>& segments, con
 
 std::vector<TexturePage> Pipeline::bake_texture(const TextureLayout& layout,
                                                 const std::function<void(const TakePicture&)>& give) {
+    if (layout.pages.empty()) return {};
     refine_all();
     TextureBake bake(runner_, stages_, layout);
     give([&](const TexturePicture& picture) {

@@ -178,6 +178,7 @@ class ChartFinder {
             for (const glm::vec2 corner : corners) reach.add(corner);
             return fits(reach);
         });
+        if (last_grown_.empty()) last_grown_.push_back(seed);  // it is larger than most_m itself
         const bool turned = glm::length(mean) > 0 && glm::dot(glm::normalize(mean), first) > kLeastUnfolded;
         const Plane plane(turned ? mean : first);
         Box wanted = box_of(last_grown_, plane);

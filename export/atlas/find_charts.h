@@ -17,9 +17,9 @@ struct Chart {
 };
 
 /// Divides a mesh into charts. A chart grows from the largest triangle that is left over its neighbours, as long as
-/// they face within 60 degrees of its plane, lie beside what it has, and fit into a square of `most_m`. Then the plane
-/// is turned to what the chart faces on average, and it grows once more. A box around a chart has the least area. The
-/// same mesh gives the same charts.
+/// they face within 60 degrees of its plane, lie beside what it has, and fit into a square of `most_m`; a larger
+/// triangle is a chart of its own. Then the plane is turned to what the chart faces on average, and it grows once more.
+/// A box around a chart has the least area. The same mesh gives the same charts.
 std::vector<Chart> find_charts(const Mesh& mesh, double most_m);
 
 }  // namespace patina

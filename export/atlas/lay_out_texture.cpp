@@ -96,13 +96,26 @@ std::vector<glm::uvec2> boxes_of(const std::vector<std::vector<ChartedPart>>& pi
     return boxes;
 }
 
+/// A triangle must fit into a page, however it is turned.
+double longest_edge_m(const std::vector<TidyPiece>& pieces) {
+    float longest_m = 0;
+    for (const TidyPiece& piece : pieces) {
+        const std::vector<glm::vec3>& at_m = piece.mesh.positions_m;
+        for (const auto& t : piece.mesh.triangles)
+            for (size_t i = 0; i < 3; ++i)
+                longest_m = std::max(longest_m, glm::distance(at_m[t[i]], at_m[t[(i + 1) % 3]]));
+    }
+    return double{longest_m};
+}
+
 }  // namespace
 
 TextureLayout lay_out_texture(std::vector<TidyPiece> pieces, const TextureOptions& options) {
     TextureLayout layout;
-    layout.texel_m = options.texel_m;
     std::vector<std::vector<ChartedPart>> charted;
-    const double most_m = options.texel_m * (options.page - 2 * kTextureGutter - 2);
+    const double side = options.page - 2.0 * kTextureGutter - 2;
+    layout.texel_m = std::max(options.texel_m, 1.001 * longest_edge_m(pieces) / side);
+    const double most_m = layout.texel_m * side;
     for (const TidyPiece& piece : pieces) charted.push_back(charts_of(piece, most_m));
     std::vector<glm::uvec2> boxes = boxes_of(charted, layout.texel_m);
     PackedBoxes packed = pack_boxes(boxes, options.page);

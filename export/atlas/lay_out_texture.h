@@ -10,7 +10,8 @@ namespace patina {
 
 /// How fine a texture is.
 struct TextureOptions {
-    double texel_m = 0.002;  ///< edge of a texel on the surface; larger where the pages do not suffice
+    double texel_m =
+        0.002;  ///< edge of a texel on the surface; larger where the pages, or one for a triangle, do not suffice
     uint32_t most_pages = 4;
     uint32_t page = 4096;  ///< texels along a side
 };

@@ -24,7 +24,7 @@ gpu::SurroundingsParams make_params(const SurroundingsInputs& inputs, Extent2D e
 }  // namespace
 
 void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& state, const SurroundingsInputs& inputs) {
-    if (inputs.frame_index >= kMostSurroundingsFrames) return;
+    if (inputs.frame_index >= (inputs.radiance_scale > 0 ? kMostLowExposures : kMostSurroundingsFrames)) return;
     const gpu::SurroundingsParams params = make_params(inputs, frame.common_extent({inputs.depth_m}));
     auto count = frame.compute("reflectance.count_surroundings", spirv::count_surroundings);
     state.surroundings = count.modify("Surroundings", state.surroundings);

@@ -20,12 +20,15 @@ struct SurroundingsInputs {
 /// Adds what a frame shows to state.surroundings: the mean colour of each cell of gpu::kSurroundingsCellM with a
 /// surface in it. A pixel without depth between readings left and right of it, or above and below, 16 pixels apart or
 /// more, shows an opening: a window, which lies in the plane of its rim, so that a mirror shows it there. One pixel of
-/// 16 looks in a frame, others in each; frames after the first kMostSurroundingsFrames add nothing, so that no sum
-/// overflows. Once gpu::kMostSurroundings cells are in use, no others are added. Frames of low exposure are summed up
-/// apart: they tell what is clipped in the others. Their lamps, whose light counts by itself, are left out.
+/// 16 looks in a frame, others in each; frames after the first kMostSurroundingsFrames, or kMostLowExposures, add
+/// nothing, so that no sum overflows. Once gpu::kMostSurroundings cells are in use, no others are added. Frames of low
+/// exposure are summed up apart: they tell what is clipped in the others. Their lamps, whose light counts by itself,
+/// are left out.
 void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& state, const SurroundingsInputs& inputs);
 
-/// A sum of 32 bits holds as many frames that show a cell at 0.3 m: 250 pixels of 16, of kSurroundingsRange each.
-constexpr uint32_t kMostSurroundingsFrames = 16384;
+/// So that no sum of 32 bits overflows. A cell at 0.3 m fills 150 x 150 pixels of a camera with a focal length of 900;
+/// one of 16 looks, so that a frame adds 1400 samples. Each is kSurroundingsSteps at most, where pixel values end at 1,
+/// and kSurroundingsRange times as much at low exposure.
+constexpr uint32_t kMostSurroundingsFrames = 8192, kMostLowExposures = 700;
 
 }  // namespace patina

@@ -17,7 +17,7 @@ struct FitMirrorsInputs {
     const SegmentSampleIds& sample_ids;
     uint32_t materials = 0;  ///< entries of the table of materials
     uint32_t stamp = 0;      ///< the frame's index + 1
-    float memory = 0.93f;    ///< what is left of the frames before when a segment is looked at again
+    float memory = 0;        ///< what is left of the frames before when a segment is looked at again
 };
 
 /// Looks which segments of a batch reflect what is around them: metals and mirrors. Of each voxel that a segment keeps,

@@ -24,10 +24,9 @@ graph::BufferId add_average_texels(graph::FrameGraph& frame, const TextureBand& 
 }
 
 TextureBalance add_balance_blocks(graph::FrameGraph& frame, graph::BufferId blocks, Extent2D page, double texel_m) {
-    constexpr double kTaps = 4;  // of the shader, on each side
     const glm::uvec2 count = blocks_of(page);
     const double block_m = texel_m * gpu::kTextureBlock;
-    const auto stride = static_cast<uint32_t>(std::max(std::lround(kBalanceReach_m / kTaps / block_m), 1L));
+    const auto stride = static_cast<uint32_t>(std::max(std::lround(kBalanceReach_m / gpu::kBalanceTaps / block_m), 1L));
     auto pass = frame.compute("texture.balance_blocks", spirv::balance_blocks);
     pass.read("Blocks", blocks);
     const graph::BufferId balance = pass.create("Balance", uint64_t{count.x} * count.y * sizeof(glm::vec4));

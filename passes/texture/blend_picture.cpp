@@ -24,7 +24,6 @@ BlendPictureInputs::Reflected nothing(graph::FrameGraph& frame) {
 
 TextureBandIds add_blend_picture(graph::FrameGraph& frame, const TextureBand& band, const TextureBandIds& ids,
                                  const BlendPictureInputs& inputs) {
-    const Extent2D cast = frame.shape(inputs.position_m).extent;
     auto pass = frame.compute("texture.blend_picture", spirv::blend_picture);
     pass.specialise("kReflects", inputs.reflected ? 1u : 0u);
     pass.read("Texels", ids.texels);
@@ -33,9 +32,7 @@ TextureBandIds add_blend_picture(graph::FrameGraph& frame, const TextureBand& ba
     pass.read("color", inputs.color).read("position_m", inputs.position_m);
     const BlendPictureInputs::Reflected reflected = inputs.reflected ? *inputs.reflected : nothing(frame);
     pass.read("kd", reflected.kd).read("rgb", reflected.rgb).read("light", reflected.light);
-    const float scale = static_cast<float>(cast.width) / static_cast<float>(inputs.camera.extent.x);
-    pass.push(
-        gpu::BlendPictureParams{inputs.camera, glm::vec4(inputs.gain, scale), band.texels(), inputs.voxel_m, 0, 0});
+    pass.push(gpu::BlendPictureParams{inputs.camera, glm::vec4(inputs.gain, 0), band.texels(), inputs.voxel_m, 0, 0});
     pass.dispatch_covering(band.texels());
     return blended;
 }

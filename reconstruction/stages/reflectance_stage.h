@@ -53,7 +53,7 @@ struct SpecularInputs {
     const ObservationMap& map;
     ObservationMapIds records;
     graph::BufferId status;                       ///< gpu::RecordStatus per record
-    std::optional<graph::BufferId> surroundings;  ///< gpu::SurroundingsCell; empty where no light is gathered from them
+    std::optional<graph::BufferId> surroundings;  ///< of ReflectanceStateIds; empty where no light is gathered
     graph::BufferId lights;                       ///< Lights::upload
     uint32_t position_version;                    ///< of the lights
     graph::BufferId materials;                    ///< gpu::SegmentMaterial per label; to be kept once replaced

@@ -19,7 +19,8 @@ constexpr uint32_t kMostCast_px = 640;
 Extent2D cast_extent(Extent2D picture) {
     const uint32_t longest = std::max(picture.width, picture.height);
     if (longest <= kMostCast_px) return picture;
-    return {picture.width * kMostCast_px / longest, picture.height * kMostCast_px / longest};
+    const auto scaled = [&](uint32_t px) { return std::max((px * kMostCast_px + longest / 2) / longest, 1u); };
+    return {scaled(picture.width), scaled(picture.height)};
 }
 
 void copy_rows(const TextureBand& band, std::span<const uint32_t> words, TexturePage& page) {
@@ -110,6 +111,7 @@ TexturePage TextureBake::finish_page(uint32_t number) {
     runner_.submit(std::move(graph));
     runner_.wait();
     for (const auto& [band, read] : reads) copy_rows(*band, read.as<uint32_t>(), page);
+    std::erase_if(bands_, [&](const TextureBand& band) { return band.page() == number; });  // they are large
     return page;
 }
 

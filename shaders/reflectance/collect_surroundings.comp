@@ -11,12 +11,7 @@ layout(local_size_x = kSurroundingsGroup, local_size_y = kSurroundingsGroup) in;
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
 layout(binding = 1, rgba16f) uniform readonly image2D color_linear;
 layout(std140, binding = 2) uniform Params { SurroundingsParams params; };
-layout(std430, binding = 3) buffer Surroundings {
-    FarFieldTexel far_field[kFarFieldTexels];
-    SurroundingsCounts surroundings_counts;
-    uint surroundings_blocks[kSurroundingsBlockWords];
-    SurroundingsCell surroundings[];
-};
+layout(std430, binding = 3) buffer Surroundings{SURROUNDINGS_MEMBERS};
 
 const int kSearchStepPx = 3;
 const uint kMostSearchSteps = 192u;

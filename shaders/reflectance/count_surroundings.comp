@@ -5,12 +5,7 @@
 #include "shared/reflectance/surroundings.h"
 
 layout(local_size_x = 1) in;
-layout(std430, binding = 0) buffer Surroundings {
-    FarFieldTexel far_field[kFarFieldTexels];
-    SurroundingsCounts surroundings_counts;
-    uint surroundings_blocks[kSurroundingsBlockWords];
-    SurroundingsCell surroundings[];
-};
+layout(std430, binding = 0) buffer Surroundings{SURROUNDINGS_MEMBERS};
 
 void main() {
     surroundings_counts.total += surroundings_counts.fresh;

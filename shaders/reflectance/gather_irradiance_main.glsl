@@ -19,12 +19,7 @@ layout(std140, binding = 0) uniform Lights {
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer March { uint listed[]; };
 layout(std430, binding = 3) buffer Gathered { uvec2 gathered[]; };
-layout(std430, binding = 16) readonly buffer Surroundings {
-    FarFieldTexel far_field[kFarFieldTexels];
-    SurroundingsCounts surroundings_counts;
-    uint surroundings_blocks[kSurroundingsBlockWords];
-    SurroundingsCell surroundings[];
-};
+layout(std430, binding = 16) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { ReflectanceParams params; };
 #include "lib/lighting/incident_light.glsl"
 

@@ -13,12 +13,7 @@ layout(local_size_x = kMirrorGroup) in;
 layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer Pairs { MirrorPair pairs[]; };  // kSegmentSamples per segment
-layout(std430, binding = 3) readonly buffer Surroundings {
-    FarFieldTexel far_field[kFarFieldTexels];
-    SurroundingsCounts surroundings_counts;
-    uint surroundings_blocks[kSurroundingsBlockWords];
-    SurroundingsCell surroundings[];
-};
+layout(std430, binding = 3) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(std430, binding = 4) buffer Mirrors { MirrorFit mirrors[]; };
 layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { MirrorParams params; };
@@ -28,6 +23,7 @@ const float kLobeAlpha = 0.06;  // of the mirrors that are looked for
 const uint kRaysOfSet = 2u;
 const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
+const uint kLeastPairs = 8u;     // of a look, of kSegmentSamples
 const float kErrors = 2.0;       // from the estimate down to what is sure
 const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat views,
 const float kMetalKs = 0.25;     // and no metal less
@@ -91,7 +87,8 @@ void main() {
         if (pair.record != kNoRecord) add_pair(pair);
     }
     barrier();
-    if (lane != 0u || label >= params.labels) return;
+    // A look that finds next to nothing tells nothing, and is no reason to doubt the ones before.
+    if (lane != 0u || label >= params.labels || sum_pairs < kLeastPairs) return;
     const MirrorFit before = mirrors[label];
     const MirrorFit fit = MirrorFit(params.memory * before.product + float(sum_product) / kSteps,
                                     params.memory * before.square + float(sum_square) / kSteps,
@@ -99,7 +96,7 @@ void main() {
                                     params.memory * before.pairs + float(sum_pairs));
     mirrors[label] = fit;
     if (label >= params.materials) return;
-    const float mirror = mirror_of(fit, fit.pairs / float(max(sum_pairs, 1u)));
+    const float mirror = mirror_of(fit, fit.pairs / float(sum_pairs));
     if (abs(mirror - materials[label].mirror) < kMirrorStep) return;
     materials[label].mirror = mirror;
     materials[label].version = materials[label].version % 0xffffu + 1u;

@@ -9,7 +9,7 @@ layout(std430, binding = 0) readonly buffer Blocks { TextureBlock blocks[]; };
 layout(std430, binding = 1) writeonly buffer Balance { vec4 balance[]; };  // rgb: factor; a: 1 where it is known
 layout(push_constant) uniform Push { BalanceBlocksParams params; };
 
-const int kTaps = 4;          // on each side, along each axis
+const int kTaps = int(kBalanceTaps);
 const float kDarkest = 0.01;  // added to both means: what is black says nothing of a factor
 const float kMostFactor = 4.0;
 

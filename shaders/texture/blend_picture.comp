@@ -70,8 +70,9 @@ void main() {
     if (cosine < kLeastCosine) return;
 
     // All four pixels of the cast images around must show this surface. Depth may change by as much as its slope asks.
-    const vec2 cast_at = (at + 0.5) * params.gain.w - 0.5;
-    const float pixel_m = point_m.z / (params.camera.focal_center_px.x * params.gain.w);
+    const vec2 scale = vec2(imageSize(position_m)) / vec2(params.camera.extent);
+    const vec2 cast_at = (at + 0.5) * scale - 0.5;
+    const float pixel_m = point_m.z / (params.camera.focal_center_px.x * scale.x);
     const float tolerance_m = kOffVox * params.voxel_m + 2.0 * pixel_m * sqrt(1.0 - cosine * cosine) / cosine;
     const ivec2 low = ivec2(floor(cast_at));
     const vec2 t = cast_at - vec2(low);

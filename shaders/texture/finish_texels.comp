@@ -19,16 +19,16 @@ layout(push_constant) uniform Push { FinishTexelsParams params; };
 const float kFillReach_m = 0.03;
 
 // What the blocks around a place of the page agree on; a: 0 where none is of this surface.
-struct Surroundings {
+struct Around {
     vec4 factor;  // rgb: of pictures
     vec4 albedo;  // rgb: by pictures, balanced; of blocks nearer than kFillReach_m
 };
 
-Surroundings surroundings_of(vec2 place, vec3 position_m) {
+Around around_of(vec2 place, vec3 position_m) {
     const vec2 at = place / float(kTextureBlock) - 0.5;
     const ivec2 low = ivec2(floor(at));
     const vec2 t = at - vec2(low);
-    Surroundings sums = Surroundings(vec4(0.0), vec4(0.0));
+    Around sums = Around(vec4(0.0), vec4(0.0));
     for (int i = 0; i < 4; ++i) {
         const ivec2 step = ivec2(i & 1, i >> 1);
         const ivec2 block = clamp(low + step, ivec2(0), ivec2(params.blocks_x, params.blocks_y) - 1);
@@ -56,7 +56,7 @@ void main() {
     const vec4 sum = sums[index];
     const vec3 by_records = unpack_albedo(known[index]);
     const vec3 position_m = uintBitsToFloat(uvec3(own.x, own.y, own.z));
-    const Surroundings around = surroundings_of(vec2(texel) + vec2(0.5, float(params.first_row) + 0.5), position_m);
+    const Around around = around_of(vec2(texel) + vec2(0.5, float(params.first_row) + 0.5), position_m);
     if (sum.a <= 0.0) {
         albedo[index] = pack_albedo(around.albedo.a > 0.0 ? around.albedo.rgb : by_records, 1u);
     } else {

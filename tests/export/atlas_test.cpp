@@ -228,6 +228,20 @@ TEST(LayOutTexture, TexelsGrowWherePagesDoNotSuffice) {
     EXPECT_LT(layout.texel_m, 0.003);
 }
 
+TEST(LayOutTexture, ATriangleLargerThanAPageMakesTexelsLarger) {
+    Mesh wall;
+    for (const glm::vec3 corner : {glm::vec3(0, 0, 0), glm::vec3(3, 0, 0), glm::vec3(0, 3, 0), glm::vec3(3, 3, 0)}) {
+        wall.positions_m.push_back(corner);
+        wall.normals.emplace_back(0, 0, 1);
+        wall.colors.emplace_back(0.5f);
+    }
+    wall.triangles = {{0, 1, 2}, {1, 3, 2}};
+    EXPECT_EQ(find_charts(wall, 0.5).size(), 2u) << "each is larger than asked, and a chart of its own";
+    const TextureLayout layout = lay_out_texture({TidyPiece{wall, {}, 0, 0}}, {.texel_m = 0.0005, .page = 512});
+    EXPECT_EQ(layout.pieces[0].mesh.triangles.size(), 2u);
+    EXPECT_GT(layout.texel_m, 3.0 * std::sqrt(2.0) / 512);
+}
+
 TEST(LayOutTexture, ASurfaceWithoutReflectanceHasNoLabels) {
     const TextureLayout layout = lay_out_texture({TidyPiece{flat_sheet(5, 5), {}, 0, 0}, TidyPiece{}}, {});
     ASSERT_EQ(layout.pieces.size(), 2u);

@@ -4,10 +4,7 @@
 //   COLOR(C, i)     uint, the colour of voxel i of the literal chunk C
 //   layout(std140, binding = n) uniform Lights { LightHeader header; PointLight lights[kMaxPointLights]; };
 //   layout(std430, binding = n) readonly buffer Surroundings {
-//       FarFieldTexel far_field[kFarFieldTexels];
-//       SurroundingsCounts surroundings_counts;
-//       uint surroundings_blocks[kSurroundingsBlockWords];
-//       SurroundingsCell surroundings[];
+//       SURROUNDINGS_MEMBERS
 //   };
 #ifndef PATINA_LIB_INCIDENT_LIGHT_GLSL
 #define PATINA_LIB_INCIDENT_LIGHT_GLSL
@@ -61,12 +58,14 @@ Incident incident_light(vec3 point_vox, vec3 normal, vec3 direction, vec4 ball_m
     const float hit = find_hit(start, direction, skipped, to_ball_end(start, direction, ball_m));
     vec3 at_m = (start + hit * direction) * grid.voxel_m;
     vec4 color = hit < 0.0 ? vec4(0.0) : surface_color(start + hit * direction, direction);
-    if (hit < 0.0) {
+    bool met_surface = hit >= 0.0;
+    if (!met_surface) {
         const MetSurroundings met = march_surroundings(point_vox * grid.voxel_m, normal, direction);
+        met_surface = met.color.a > 0.0;
         at_m = met.at_m;
-        color = met.color.a > 0.0 ? met.color : far_radiance(far_field[far_field_texel(direction)]);
+        color = met_surface ? met.color : far_radiance(far_field[far_field_texel(direction)]);
     }
-    if (max(max(color.r, color.g), color.b) > kLeastEmittedRadiance) {
+    if (met_surface && max(max(color.r, color.g), color.b) > kLeastEmittedRadiance) {
         if (is_lamp(at_m)) return Incident(vec3(0.0), true, true);
         const vec4 cell = look_up_surroundings(surroundings_cell(at_m));
         color.rgb = max(color.rgb, cell.rgb);

@@ -1,9 +1,6 @@
 // What a ray meets of the surroundings. The includer declares
 //   layout(std430, binding = n) readonly buffer Surroundings {
-//       FarFieldTexel far_field[kFarFieldTexels];
-//       SurroundingsCounts surroundings_counts;
-//       uint surroundings_blocks[kSurroundingsBlockWords];
-//       SurroundingsCell surroundings[];
+//       SURROUNDINGS_MEMBERS
 //   };
 #ifndef PATINA_LIB_MARCH_SURROUNDINGS_GLSL
 #define PATINA_LIB_MARCH_SURROUNDINGS_GLSL

@@ -7,14 +7,14 @@ INTEROP_BEGIN
 
 INTEROP_CONST float kSurroundingsCellM = 0.05f;    // edge of a cell
 INTEROP_CONST uint kSurroundingsCells = 0x80000u;  // of the table, a power of two
-INTEROP_CONST uint kMostSurroundings = 0x20000u;   // cells in use, 330 m^2 of surface: in so empty a table each finds
-                                                   // its place, whatever the order of arrival
-INTEROP_CONST uint kSurroundingsBlock =
-    8u;  // cells along the side of a block, of which a bit says whether any is in use
+// Cells in use, 330 m^2 of surface: in so empty a table each finds its place, whatever the order of arrival.
+INTEROP_CONST uint kMostSurroundings = 0x20000u;
+// Cells along the side of a block, of which a bit says whether any cell is in use.
+INTEROP_CONST uint kSurroundingsBlock = 8u;
 INTEROP_CONST uint kSurroundingsBlockWords = 0x10000u;  // 128^3 bits: the same 51 m as the keys of cells
-INTEROP_CONST uint kSurroundingsProbes = 16u;           // places looked at, from the key's own on
+INTEROP_CONST uint kSurroundingsProbes = 32u;           // places looked at, from the key's own on
 INTEROP_CONST float kSurroundingsSteps = 256.0f;        // of a linear pixel value, in whole numbers
-INTEROP_CONST float kSurroundingsRange = 64.0f;         // the largest of them
+INTEROP_CONST float kSurroundingsRange = 16.0f;         // the largest of them
 INTEROP_CONST uint kLeastSurroundingsSamples = 3u;      // pixels that make a cell a surface
 INTEROP_CONST uint kSurroundingsGroup = 8u;
 
@@ -53,4 +53,13 @@ struct SurroundingsParams {
 };
 
 INTEROP_END
+
+// The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h).
+#ifndef __cplusplus
+#define SURROUNDINGS_MEMBERS                           \
+    FarFieldTexel far_field[kFarFieldTexels];          \
+    SurroundingsCounts surroundings_counts;            \
+    uint surroundings_blocks[kSurroundingsBlockWords]; \
+    SurroundingsCell surroundings[];
+#endif
 #endif

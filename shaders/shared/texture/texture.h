@@ -8,6 +8,7 @@ INTEROP_CONST uint kTextureTile = 16u;        // texels along the side of a tile
 INTEROP_CONST uint kGutterTexels = 3u;        // around a triangle, that show its border
 INTEROP_CONST uint kNoSurface = 0x80008000u;  // SurfaceTexel::normal where no surface lies; no normal is packed to that
 
+INTEROP_CONST uint kBalanceTaps = 4u;   // on each side of a block, along each axis
 INTEROP_CONST uint kTextureBlock = 8u;  // texels along the side of a block, whose mean is balanced
 
 // A vertex of the surface.
@@ -39,7 +40,7 @@ struct PlaceTexelsParams {
 
 struct BlendPictureParams {
     Camera camera;  // the colour camera, of the pictures' extent
-    vec4 gain;      // rgb: of the picture over the first one's; w: pixels of the cast images per pixel of the picture
+    vec4 gain;      // rgb: of the picture over the first one's; w unused
     uint texels;    // of the band
     float voxel_m;  // of the surface
     uint pad0;

@@ -65,11 +65,16 @@ using Cells = std::map<Cell, Sums>;
 
 class CollectSurroundingsTest : public GpuTest {
   protected:
-    /// All 16 phases of a frame, so that every pixel looks once.
-    Cells collect(const Room& room, float radiance_scale = 0) {
+    static constexpr uint64_t kCountsAt = gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel);
+    gpu::SurroundingsCounts counts{};  ///< after the last collect()
+
+    /// All 16 phases of a frame, so that every pixel looks once. `before`: how full the table is said to be.
+    Cells collect(const Room& room, float radiance_scale = 0, const gpu::SurroundingsCounts& before = {}) {
         graph::FrameGraph frame = runner().begin();
         ReflectanceStateIds state;
         state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        state.surroundings =
+            frame.upload_bytes(state.surroundings, kCountsAt, std::as_bytes(std::span(&before, 1)), false);
         SurroundingsInputs inputs;
         inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
                                       std::as_bytes(std::span(room.depth_m.pixels())));
@@ -87,6 +92,9 @@ class CollectSurroundingsTest : public GpuTest {
         Cells cells;
         std::vector<gpu::SurroundingsCell> all(gpu::kSurroundingsCells);
         const std::vector<std::byte> bytes = read.as<std::byte>();
+        std::memcpy(&counts, bytes.data() + kCountsAt, sizeof(counts));
+        std::vector<uint32_t> blocks(gpu::kSurroundingsBlockWords);
+        std::memcpy(blocks.data(), bytes.data() + kCountsAt + sizeof(counts), blocks.size() * sizeof(uint32_t));
         std::memcpy(all.data(), bytes.data() + kSurroundingsCellsAt, all.size() * sizeof(all[0]));
         for (const gpu::SurroundingsCell& cell : all) {
             if (cell.key == 0) continue;
@@ -94,6 +102,9 @@ class CollectSurroundingsTest : public GpuTest {
                 const auto low = static_cast<int>(cell.key >> shift & 1023u);
                 return low >= 512 ? low - 1024 : low;
             };
+            const std::array<uint32_t, 3> block{cell.key >> 3 & 127u, cell.key >> 13 & 127u, cell.key >> 23 & 127u};
+            const uint32_t bit = block[0] | block[1] << 7 | block[2] << 14;
+            EXPECT_TRUE(blocks[bit / 32] >> bit % 32 & 1) << "rays would cross its block";
             Sums& sums = cells[{coordinate(0), coordinate(10), coordinate(20)}];
             EXPECT_EQ(sums.samples, 0u) << "a cell has one place";
             const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.low : cell.usual;
@@ -179,6 +190,21 @@ TEST_F(CollectSurroundingsTest, PixelsWithoutAColourDoNotCount) {
     Room room;
     for (glm::vec4& pixel : room.color.pixels()) pixel.a = 0;
     EXPECT_TRUE(collect(room).empty());
+}
+
+// A frame that finds the table full adds to the cells that there are, and no others.
+TEST_F(CollectSurroundingsTest, AFullTableTakesNoNewCells) {
+    const Room room;
+    EXPECT_TRUE(collect(room, 0, {gpu::kMostSurroundings, 0, 0, 0}).empty());
+    // The first of the sixteen frames, every fourth pixel of every fourth row, still finds room; then it is full.
+    const Cells found = collect(room, 0, {gpu::kMostSurroundings - 5, 4, 0, 0});
+    const Cells first = expected(room, [](uint32_t x, uint32_t y) { return x % 4 == 0 && y % 4 == 0; });
+    EXPECT_NEAR(static_cast<double>(found.size()), static_cast<double>(first.size()), 4) << "some lie on borders";
+    EXPECT_GT(collect(room).size(), found.size() + 10);
+    EXPECT_GT(first.size(), 50u);
+    collect(room, 0, {gpu::kMostSurroundings - 5, 4, 0, 0});
+    EXPECT_EQ(counts.total, gpu::kMostSurroundings - 1 + found.size());
+    EXPECT_EQ(counts.fresh, 0u);
 }
 
 }  // namespace

@@ -6,7 +6,12 @@
 #include <cmath>
 #include <functional>
 #include <span>
+#include <utility>
 
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/shader_camera.h"
+#include "passes/reflectance/collect_surroundings.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
@@ -69,6 +74,44 @@ class GatherIrradianceTest : public GpuTest {
         return frame;
     }
 
+    /// What a camera in the middle sees of the room all around, at the usual exposure or at a low one.
+    static void collect_surroundings(Model& model, const Radiance& radiance, float radiance_scale = 0) {
+        for (const glm::dvec3 direction : kAll) {
+            const RigFrame seen = view(radiance, direction);
+            model.reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
+                SurroundingsInputs inputs;
+                inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
+                                              std::as_bytes(std::span(seen.depth_m.pixels())));
+                std::vector<uint64_t> halves;
+                for (const glm::vec4& pixel : seen.color.linear.pixels()) halves.push_back(glm::packHalf4x16(pixel));
+                inputs.color_linear =
+                    frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
+                inputs.depth_camera = inputs.color_camera = make_camera(kCamera, seen.world_from_camera);
+                inputs.radiance_scale = radiance_scale;
+                inputs.lamp_luminance = 1e6f;
+                for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
+                    add_collect_surroundings(frame, state, inputs);
+            });
+        }
+    }
+
+    /// What records in the middle of the wall z = kHalf_m gathered: the mean of all rays that met something, and the
+    /// share of those that met nothing.
+    static std::pair<double, double> gathered_by_far_wall(Model& model) {
+        ReflectanceSettings settings;
+        settings.gathered_rays = kRays / kRaysAtTheEnd;
+        model.reflectance.update_all(settings);
+        double sum = 0, met = 0, missed = 0;
+        for (const RefinedRecord& record : model.reflectance.records()) {
+            if (record.observations == 0 || glm::distance(record.point_m, {0, 0, kHalf_m}) > 0.08) continue;
+            sum += record.gathered.met * record.gathered.mean.r;
+            met += record.gathered.met;
+            missed += record.gathered.missed;
+        }
+        EXPECT_GT(met + missed, 20.0 * kRays);
+        return {sum / std::max(met, 1.0), missed / (met + missed)};
+    }
+
     static constexpr std::array<glm::dvec3, 6> kAll{glm::dvec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
                                                     {0, -1, 0},          {0, 0, 1},  {0, 0, -1}};
 };
@@ -113,6 +156,33 @@ TEST_F(GatherIrradianceTest, AFurnaceSendsItsRadianceToEveryPoint) {
     }
     EXPECT_GT(checked, 2000u);
     EXPECT_LT(missed, 0.03 * kRays * checked) << "the room is closed but for its seams";
+}
+
+// The map has one wall; of the other five the surroundings tell.
+TEST_F(GatherIrradianceTest, WhatTheMapDoesNotShowComesFromTheSurroundings) {
+    const std::array<glm::dvec3, 1> one_wall{glm::dvec3(0, 0, 1)};
+    const auto alone = fused(grey, one_wall);
+    EXPECT_GT(gathered_by_far_wall(*alone).second, 0.8) << "next to nothing faces the wall in the map";
+    const auto model = fused(grey, one_wall);
+    collect_surroundings(*model, grey);
+    const auto [mean, missed] = gathered_by_far_wall(*model);
+    EXPECT_NEAR(mean, 0.4, kColorStep);
+    // Cells less than 7.5 cm above the wall's own plane count as part of it: sin^2(10.6 degrees) of the rays at 40 cm.
+    EXPECT_LT(missed, 0.08);
+}
+
+TEST_F(GatherIrradianceTest, WhatIsClippedIsAsBrightAsLowExposureShowsIt) {
+    const std::array<glm::dvec3, 1> one_wall{glm::dvec3(0, 0, 1)};
+    const auto clipped = [](glm::dvec3) { return glm::dvec3(0.95); };
+    const auto low = [](glm::dvec3) { return glm::dvec3(0.375); };
+    const auto model = fused(grey, one_wall);
+    collect_surroundings(*model, clipped);
+    collect_surroundings(*model, low, 8);
+    EXPECT_NEAR(gathered_by_far_wall(*model).first, 3, 0.1) << "the map's own wall is grey";
+    const auto dim = fused(grey, one_wall);
+    collect_surroundings(*dim, grey);
+    collect_surroundings(*dim, low, 8);
+    EXPECT_NEAR(gathered_by_far_wall(*dim).first, 0.4, kColorStep) << "the usual exposure shows it well";
 }
 
 TEST_F(GatherIrradianceTest, TheMeanIsThatOfTheReference) {

@@ -87,14 +87,14 @@ class RefineAlbedoTest : public GpuTest {
 
     /// What the reference makes of a record, whose colours it takes as they are stored.
     reference::RefinedAlbedo expected(const FilledRecord& record, const Ward& material,
-                                      const reference::GatheredRays& gathered = {}) const {
+                                      const reference::GatheredRays& gathered = {}, double mirror = 0) const {
         std::vector<reference::SeenColor> observations;
         for (const FilledObservation& seen : record.observations) {
             observations.push_back({glm::dvec3(seen.to_viewer),
                                     glm::dvec3(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(seen.rgb))), seen.clipped});
         }
-        return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material,
-                                        gathered);
+        return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material, gathered,
+                                        mirror);
     }
 
     std::mt19937 random_{1};
@@ -278,6 +278,60 @@ TEST_F(RefineAlbedoTest, GatheredLightAgreesWithTheReference) {
         diffuse += max_of(expected.kd) > 0.05;
     }
     EXPECT_GT(diffuse, 100);
+}
+
+// Of a mirror nothing that scatters is diffuse, and what is always clipped is unknown: a lamp or a window.
+TEST_F(RefineAlbedoTest, AMirrorHasNoDiffusePartAndTellsNothingWhereItIsClipped) {
+    ambient_ = glm::dvec3(0.5);
+    rig_.lights.set({}, ambient_);
+    rig_.materials.set(5, glm::vec3(0.9f), 0.05f);
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 5, {}};
+    for (int k = 0; k < 20; ++k) {
+        const double turn = 2 * std::numbers::pi * k / 20;
+        const glm::vec3 direction(0.6 * std::cos(turn), -0.8, 0.6 * std::sin(turn));
+        record.observations.push_back({direction, glm::vec3(k % 2 == 0 ? 0.9f : 0.6f), {}});
+    }
+    rig_.set_incident(1, {ambient_, 64, 0});
+    EXPECT_GT(refine(record).kd.r, 0.2) << "what it shows beyond its gloss, while nobody knows better";
+    rig_.set_mirror(5, 1);
+    rig_.set_incident(1, {ambient_, 64, 0});
+    const RefinedRecord mirror = refine(record);
+    EXPECT_EQ(mirror.kd, glm::dvec3(0));
+    EXPECT_GT(mirror.certainty.r, 0.5);
+    for (FilledObservation& seen : record.observations) seen.clipped = {true, true, true};
+    rig_.set_incident(1, {ambient_, 64, 0});
+    EXPECT_EQ(refine(record).certainty, glm::dvec3(0));
+}
+
+TEST_F(RefineAlbedoTest, MirrorsAgreeWithTheReference) {
+    std::uniform_real_distribution<float> share(0, 1);
+    const Ward material{{0.3, 0.4, 0.2}, {0.2, 0.1, 0.15}, 0.3};
+    rig_.materials.set(5, glm::vec3(material.ks), static_cast<float>(material.alpha));
+    const reference::GatheredRays around{glm::dvec3(0.25, 0.5, 0.125), 45, 19};
+    std::vector<FilledRecord> records;
+    for (int i = 0; i < 100; ++i) {
+        records.push_back(random_record(5));
+        observe(records.back(), material);
+        for (FilledObservation& seen : records.back().observations) {
+            seen.rgb *= 0.93f + 0.14f * share(random_);
+            if (share(random_) < 0.2f) seen.clipped = {true, false, false};
+        }
+    }
+    for (const float mirror : {0.3f, 1.0f}) {
+        rig_.set_mirror(5, mirror);
+        rig_.set_incident(100, around);
+        const std::vector<RefinedRecord> refined = refine(records);
+        int diffuse = 0;
+        for (size_t i = 0; i < records.size(); ++i) {
+            const reference::RefinedAlbedo expected = this->expected(records[i], material, around, double{mirror});
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(refined[i].kd[c], expected.kd[c], kPacking + 0.02 * expected.kd[c]) << i << ' ' << c;
+                ASSERT_NEAR(refined[i].certainty[c], expected.certainty[c], 0.02) << i << ' ' << c;
+            }
+            diffuse += max_of(expected.kd) > 0.05;
+        }
+        EXPECT_GT(diffuse, 50) << mirror;
+    }
 }
 
 TEST_F(RefineAlbedoTest, OneObservationIsEnough) {

@@ -1,6 +1,7 @@
 #include "tests/gpu/reflectance/reflectance_rig.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
 
 #include <glm/gtc/packing.hpp>
@@ -73,6 +74,23 @@ void ReflectanceRig::set_incident(uint32_t count, const reference::GatheredRays&
     ReflectanceStateIds state = state_.import(frame);
     state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
     ReflectanceState::keep(frame, state);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+}
+
+void ReflectanceRig::change(const std::function<void(graph::FrameGraph&, ReflectanceStateIds&)>& add) {
+    graph::FrameGraph frame = runner_.begin();
+    ReflectanceStateIds state = state_.import(frame);
+    add(frame, state);
+    ReflectanceState::keep(frame, state);
+    runner_.submit(std::move(frame));
+    runner_.wait();
+}
+
+void ReflectanceRig::set_mirror(uint32_t label, float mirror) {
+    graph::FrameGraph frame = runner_.begin();
+    const uint64_t at = label * sizeof(gpu::SegmentMaterial) + offsetof(gpu::SegmentMaterial, mirror);
+    frame.keep(frame.upload_bytes(materials.import(frame), at, std::as_bytes(std::span(&mirror, 1)), false));
     runner_.submit(std::move(frame));
     runner_.wait();
 }

@@ -33,6 +33,12 @@ class ReflectanceRig {
     /// Gives the first `count` records this light from all around; what else they have stays.
     void set_incident(uint32_t count, const reference::GatheredRays& rays);
 
+    /// Lets a pass add to the state, such as to its surroundings.
+    void change(const std::function<void(graph::FrameGraph&, ReflectanceStateIds&)>& add);
+
+    /// Sets how sure a label's segment is to have no diffuse part, beside its material.
+    void set_mirror(uint32_t label, float mirror);
+
     struct Counts {
         uint32_t marched = 0, refined = 0;
     };

@@ -253,6 +253,36 @@ TEST_F(BakeTest, BalancingAgreesWithTheReference) {
     }
 }
 
+/// Beside a chart that a picture shows lies one that none shows, in the same blocks but far behind.
+TEST_F(BakeTest, ChartsThatShareABlockKeepTheirOwnColours) {
+    TextureLayout layout = facing_page(0.3, glm::vec3(0.4f), glm::vec3(0.4f));
+    TexturedSurface& piece = layout.pieces[0];
+    for (const size_t corner : {1u, 3u}) {
+        piece.place_px[corner].x = 36;
+        piece.mesh.positions_m[corner].x = static_cast<float>(kTexel_m * (36 - 37.5));
+    }
+    for (const glm::vec2 place : {glm::vec2(43, 4), glm::vec2(70, 4), glm::vec2(43, 48), glm::vec2(70, 48)}) {
+        piece.mesh.positions_m.emplace_back(glm::dvec3(kTexel_m * (glm::dvec2(place) - glm::dvec2(37.5, 26.5)), 0.8));
+        piece.mesh.normals.emplace_back(0, 0, -1);
+        piece.mesh.colors.emplace_back(0.5f);
+        piece.reflectance.kd.emplace_back(0.1f, 0.1f, 0.1f, 1.0f);
+        piece.reflectance.labels.push_back(1);
+        piece.place_px.push_back(place);
+        piece.pages.push_back(0);
+    }
+    piece.mesh.triangles.push_back({4, 6, 5});
+    piece.mesh.triangles.push_back({5, 6, 7});
+    bake(layout, {picture_of_wall(0.3, glm::dvec3(0.5), [](auto, auto) { return glm::dvec3(0.4); })});
+    for (uint32_t row = 6; row < 46; ++row) {
+        for (uint32_t column = 5; column < 70; ++column) {
+            const uint32_t word = words[at(column, row)];
+            if (column > 35 && column < 44) continue;  // the gutters
+            EXPECT_EQ(state_of(word), column < 40 ? 2u : 1u) << column << ", " << row;
+            EXPECT_NEAR(unpack_albedo(word).r, column < 40 ? 0.4f : 0.1f, 0.01f) << column << ", " << row;
+        }
+    }
+}
+
 TEST_F(BakeTest, PicturesAgreeWithTheReferenceAtEveryTexel) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> some(0.05, 0.95);

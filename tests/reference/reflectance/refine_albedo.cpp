@@ -70,7 +70,7 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
 
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
                             const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
-                            const GatheredRays& gathered) {
+                            const GatheredRays& gathered, double mirror) {
     const Ward gloss{glm::dvec3(0), material.ks, material.alpha}, white{glm::dvec3(1), glm::dvec3(0), 1};
     double brightness = 0;
     std::vector<Rest> rests;
@@ -101,8 +101,9 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     if (rays > 0) {
         around = (double(gathered.met) * gathered.mean + double(gathered.missed) * ambient) / rays;
         around_error = around * std::min(0.5 / std::sqrt(rays) + 0.3 * gathered.missed / rays, 1.0);
+        const double spreads = 1.5 * (1 - mirror) + 8 * mirror;
         if (gathered.met > 0)
-            unreflected = std::clamp(1 - 1.5 * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0);
+            unreflected = std::clamp(1 - spreads * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0);
     }
     const glm::dvec3 gloss_of_all = rays > 0 ? material.ks * around : glm::dvec3(0);
     const glm::dvec3 irradiance = shade(white, point, lights, around, point.normal);
@@ -113,6 +114,13 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         doubtful.push_back(light);
     }
     const glm::dvec3 uncertain = shade(white, point, doubtful, glm::dvec3(0), point.normal);
+    double trusted = 0, unclipped = 0;
+    for (size_t k = 0; k < rests.size(); ++k) {
+        const auto& clipped = observations[k].clipped;
+        trusted += rests[k].trust;
+        if (!clipped[0] && !clipped[1] && !clipped[2]) unclipped += rests[k].trust;
+    }
+    const double known = 1 - mirror + mirror * unclipped / trusted;
     RefinedAlbedo result;
     for (int c = 0; c < 3; ++c) {
         if (irradiance[c] <= 0.004) continue;
@@ -125,12 +133,13 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
             robust_weights += robust;
             spread += robust * std::pow(rest.brightness() - center, 2);
         }
-        const double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
+        double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
+        variance *= 1 - mirror + mirror * unreflected * unreflected;
         result.kd[c] = std::clamp(unreflected * (sum / weights - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
         const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
         const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
         const double all = variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error;
-        result.certainty[c] = 1 / (1 + all / (0.05 * 0.05));
+        result.certainty[c] = known / (1 + all / (0.05 * 0.05));
     }
     return result;
 }

@@ -41,9 +41,10 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
 
 /// The diffuse albedo of a surface point from its observations (paper, Eq. 7), the robust mean of
 /// passes/reflectance/refine_albedo.h; `material`'s kd is not used. With rays that were gathered, what they met takes
-/// the ambient term's place, in the share of those that met something.
+/// the ambient term's place, in the share of those that met something. `mirror`: how sure the segment is to have no
+/// diffuse part, 0 to 1.
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
                             const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
-                            const GatheredRays& gathered = {});
+                            const GatheredRays& gathered = {}, double mirror = 0);
 
 }  // namespace patina::reference

@@ -74,10 +74,11 @@ glm::dvec4 blend_picture(const BakePicture& picture, const glm::dvec3& position_
     const double cosine = glm::dot(glm::normalize(normal), eye_m - position_m) / range_m;
     if (cosine < 0.2) return none;
 
-    const double scale = static_cast<double>(picture.position_m.extent().width) / camera.extent.width;
+    const glm::dvec2 scale(static_cast<double>(picture.position_m.extent().width) / camera.extent.width,
+                           static_cast<double>(picture.position_m.extent().height) / camera.extent.height);
     const glm::dvec2 cast_at = (at + 0.5) * scale - 0.5;
     const double tolerance_m =
-        1.5 * picture.voxel_m + 2 * p.z / (camera.fx * scale) * std::tan(std::acos(std::min(cosine, 1.0)));
+        1.5 * picture.voxel_m + 2 * p.z / (camera.fx * scale.x) * std::tan(std::acos(std::min(cosine, 1.0)));
     const glm::dvec2 low = glm::floor(cast_at), t = cast_at - low;
     glm::dvec3 light(0), highlight(0);
     for (int y = 0; y < 2; ++y) {
