@@ -115,6 +115,7 @@ graph::BufferId add_return_records(graph::FrameGraph& frame, StreamedMap streame
     ids.albedo = enter.modify("Albedo", ids.albedo);
     ids.visibility = enter.modify("Visibility", ids.visibility);
     streamed.state.status = enter.modify("Status", streamed.state.status);
+    streamed.state.gathered = enter.modify("Gathered", streamed.state.gathered);
     streamed.away = enter.modify("Away", streamed.away);
     const graph::BufferId entered = enter.create("Entered", returning.record_count * sizeof(uint32_t));
     enter.dispatch_covering(returning.record_count);

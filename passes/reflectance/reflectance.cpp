@@ -7,6 +7,7 @@
 #include "passes/reflectance/gather_irradiance.h"
 #include "passes/reflectance/refine_albedo.h"
 #include "passes/reflectance/smooth_irradiance.h"
+#include "passes/reflectance/surface_albedo.h"
 
 namespace patina {
 
@@ -60,6 +61,8 @@ RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels&
     }
     add_find_visibility(frame, reflectance, due);
     if (settings.albedo) add_refine_albedo(frame, reflectance, due.refine);
+    if (settings.albedo && params.all != 0)
+        add_surface_albedo(frame, models.observation_map, records, state, reflectance.lights, params.cube_m);
     ReflectanceState::keep(frame, state);
     return {due.march, due.refine};
 }

@@ -56,7 +56,8 @@ RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const Reflec
                                           const RecordList& changed, const ReflectanceAccess& access,
                                           const ReflectanceSettings& settings);
 
-/// The same for all records at once, as at the end of a reconstruction; they gather 8 times as many rays each.
+/// The same for all records at once, as at the end of a reconstruction. They gather 8 times as many rays each, and tell
+/// each other of their albedo (surface_albedo.h).
 RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings);

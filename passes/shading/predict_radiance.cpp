@@ -49,7 +49,7 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
                                  : inputs.most_lights <= gpu::kLightsOfOneWord ? gpu::kLightsOfOneWord
                                                                                : gpu::kMaxPointLights;
     pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
-    pass.read("Status", state.status);
+    pass.read("Status", state.status).read("Gathered", state.gathered);
     PredictedImages out;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});

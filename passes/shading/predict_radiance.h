@@ -23,7 +23,7 @@ struct PredictRadianceInputs {
     uint32_t most_lights = gpu::kMaxPointLights;  ///< no fewer than `lights` has; few take a faster shader
     bool shadows = true;                          ///< false: every light reaches every surface, as in the paper
     MapAccess access = MapAccess::kStorage;
-    bool gathers = false;  ///< records gathered light from all around (reflectance/gather_irradiance.h)
+    bool gathers = false;  ///< records gathered light from all around (reflectance/gather_irradiance.h), which arrives
 };
 
 /// What the model looks like. All zero where nothing was hit.

@@ -14,6 +14,7 @@ struct SampleReflectanceInputs {
     graph::BufferId normals;      ///< float[3 * points]: world, unit length; 0 where it is not known
     graph::BufferId packed;       ///< uvec4 per record (add_pack_records)
     graph::BufferId segments;     ///< gpu::SegmentAlbedo[material_count] (add_average_segments)
+    graph::BufferId gathered;     ///< gpu::RecordSurroundings per record
     uint32_t points = 0;          ///< above 0
     uint32_t material_count = 0;
 };

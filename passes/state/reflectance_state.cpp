@@ -7,8 +7,8 @@ namespace patina {
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
     : status_(device.create_buffer(
           {.name = "reflectance.status", .bytes = map.capacity_records() * sizeof(gpu::RecordStatus)})),
-      gathered_(
-          device.create_buffer({.name = "reflectance.gathered", .bytes = map.capacity_records() * sizeof(glm::uvec2)})),
+      gathered_(device.create_buffer(
+          {.name = "reflectance.gathered", .bytes = map.capacity_records() * sizeof(gpu::RecordSurroundings)})),
       windows_(
           device.create_buffer({.name = "reflectance.windows", .bytes = gpu::kWindows * sizeof(gpu::RefreshWindow)})),
       surroundings_(device.create_buffer({.name = "reflectance.surroundings", .bytes = kSurroundingsBytes})) {}
@@ -31,7 +31,7 @@ graph::BufferId ReflectanceState::import_surroundings(graph::FrameGraph& frame) 
 
 void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {
     enlargement.add(status_, records * sizeof(gpu::RecordStatus), {.fill = 0});
-    enlargement.add(gathered_, records * sizeof(glm::uvec2), {.fill = 0});
+    enlargement.add(gathered_, records * sizeof(gpu::RecordSurroundings), {.fill = 0});
 }
 
 ReflectanceStateIds ReflectanceState::import(graph::FrameGraph& frame) const {

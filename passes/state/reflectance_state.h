@@ -15,7 +15,7 @@ namespace patina {
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
     graph::BufferId status;        ///< gpu::RecordStatus per record
-    graph::BufferId gathered;      ///< uvec2 per record: its own rays, lib/records/gathered_light.glsl
+    graph::BufferId gathered;      ///< gpu::RecordSurroundings per record
     graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
     graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], gpu::SurroundingsCounts, u32 of
                                    ///< blocks, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
@@ -27,8 +27,8 @@ constexpr uint64_t kSurroundingsCellsAt =
 constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
-/// next, and the light that reaches them from what is around, 40 bytes a record; and light from far away. Lives as long
-/// as the map.
+/// next, the light that reaches them from what is around, and the albedo of the surface around, 48 bytes a record; and
+/// light from far away. Lives as long as the map.
 class ReflectanceState {
   public:
     /// Throws Error when memory runs out.

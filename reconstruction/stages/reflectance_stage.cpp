@@ -5,6 +5,7 @@
 #include "passes/observation/reclaim_records.h"
 #include "passes/reflectance/collect_far_field.h"
 #include "passes/reflectance/collect_surroundings.h"
+#include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -192,8 +193,12 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     inputs.shadows = settings_.refine.shadows;
     inputs.gathers = settings_.refine.gathered_rays > 0;
     inputs.access = access_.voxels;
-    return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
-            inputs.segments};
+    ReflectanceStateIds state = state_.import(graph);
+    if (inputs.gathers) {
+        add_surface_albedo(graph, observations_, records, state, inputs.lights, RefinedPart{}.cube_m);
+        graph.keep(state.gathered);
+    }
+    return {add_predict_radiance(graph, map_, voxels, observations_, records, state, inputs), inputs.segments};
 }
 
 SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {
@@ -203,10 +208,12 @@ SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {
 graph::BufferId ReflectanceStage::add_sample(graph::FrameGraph& graph, graph::BufferId positions_m,
                                              graph::BufferId normals, uint32_t points) {
     const ObservationMapIds records = observations_.import(graph);
+    const ReflectanceStateIds state = state_.import(graph);
     const SampleReflectanceInputs inputs{positions_m,
                                          normals,
-                                         add_pack_records(graph, observations_, records, state_.import(graph)),
+                                         add_pack_records(graph, observations_, records, state),
                                          add_average(graph, records),
+                                         state.gathered,
                                          points,
                                          materials_.capacity()};
     return add_sample_reflectance(graph, observations_, records, inputs);

@@ -12,9 +12,16 @@ layout(std430, binding = 2) writeonly buffer Found { FoundLight found[]; };
 // Bearings closer together than this cannot tell a distance: 3 degrees, where an error of a pixel is some 5 %.
 const float kLeastParallax = 0.05;
 
+// The image of another lamp in a mirror, which is none: it moves with the camera, and the half vector of the ways to
+// the camera and to that lamp stays. A lamp's own turns by half as much as the way to the camera, or more.
+const float kLeastTurn = 0.02;  // of the way to the camera, from which on sightings tell
+const float kImageTurn = 0.4;   // of the half vector, over that
+const float kImageMove = 0.15;  // the spread over the radius
+
 shared float values[kMaxSightings];
 shared float middle;
 shared vec4 triangulated;  // w: 1 when there is a point
+shared uint turns_like_image;
 
 // The lower median of the values that the first `count` invocations hold.
 float median(float own, uint count) {
@@ -50,6 +57,34 @@ void triangulate(uint light, uint count) {
     triangulated = enough ? vec4(origin_m + inverse(normal) * right, 1.0) : vec4(0.0);
 }
 
+// The point of its surface that faces the camera.
+vec3 front_m(LightSighting s) {
+    return s.center_radius.xyz + s.center_radius.w * normalize(s.camera_m.xyz - s.center_radius.xyz);
+}
+
+vec3 to_camera(LightSighting s) { return normalize(s.camera_m.xyz - s.center_radius.xyz); }
+
+// Between the ways to the camera and to another light: the normal of a mirror that shows it here.
+vec3 half_vector(LightSighting s, vec3 other_m) { return normalize(to_camera(s) + normalize(other_m - front_m(s))); }
+
+bool turns_like_image_of(uint light, uint count, uint other) {
+    vec3 view = vec3(0.0), middle_way = vec3(0.0);
+    for (uint i = 0u; i < count; ++i) {
+        const LightSighting s = history[light * kMaxSightings + i];
+        view += to_camera(s);
+        middle_way += half_vector(s, tracks[other].place.xyz);
+    }
+    view /= float(count);
+    middle_way /= float(count);
+    float view_turns = 0.0, middle_turns = 0.0;
+    for (uint i = 0u; i < count; ++i) {
+        const LightSighting s = history[light * kMaxSightings + i];
+        view_turns += distance(view, to_camera(s));
+        middle_turns += distance(middle_way, half_vector(s, tracks[other].place.xyz));
+    }
+    return view_turns > kLeastTurn * float(count) && middle_turns < kImageTurn * view_turns;
+}
+
 void main() {
     const uint lane = gl_LocalInvocationIndex, light = gl_WorkGroupID.x;
     const LightTrack track = tracks[light];
@@ -59,7 +94,13 @@ void main() {
     if (lane == 0u) {
         triangulated = vec4(0.0);
         middle = 0.0;
+        turns_like_image = 0u;
         if (!has_depth && count > 1u) triangulate(light, count);
+    }
+    barrier();
+    for (uint other = lane; has_depth && other < kMaxLights; other += kMaxSightings) {
+        const bool is_lamp = other != light && tracks[other].sightings > 0u && tracks[other].has_depth != 0u;
+        if (is_lamp && turns_like_image_of(light, count, other)) atomicOr(turns_like_image, 1u);
     }
     barrier();
     const vec3 position_m = has_depth ? median(s.center_radius.xyz, count) : triangulated.xyz;
@@ -67,10 +108,11 @@ void main() {
     const vec3 intensity = median(has_depth ? s.intensity.rgb : s.intensity.rgb * distance_m * distance_m, count);
     const float radius_m = median(has_depth ? s.center_radius.w : distance_m * sine_of_cone(s.bearing.w), count);
     const vec3 off_m = position_m - s.camera_m.xyz;
-    const float spread_m =
-        median(has_depth ? distance(s.center_radius.xyz, position_m) : length(cross(off_m, s.bearing.xyz)), count);
+    const float miss_m = length(cross(off_m, s.bearing.xyz));
+    const float spread_m = median(has_depth ? distance(s.center_radius.xyz, position_m) : miss_m, count);
     if (lane != 0u) return;
-    const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0);
+    const bool image = turns_like_image != 0u && spread_m > kImageMove * radius_m;
+    const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0) && !image;
     found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0)), spread_m,
                               found_one ? track.sightings : 0u, track.has_depth, track.clipped);
 }

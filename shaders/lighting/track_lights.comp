@@ -28,34 +28,52 @@ bool is_known(LightSighting s) {
     return false;
 }
 
-void join(LightSighting s) {
-    uint best = kNone;
-    float least = 1.0;
-    uint count = 0u;
-    for (; count < kMaxLights && tracks[count].sightings > 0u; ++count) {
-        const float m = mismatch(s, tracks[count]);
-        if (m < least) {
-            least = m;
-            best = count;
-        }
-    }
-    if (best == kNone) {
-        if (count == kMaxLights) return;
-        best = count;
-        tracks[best] = LightTrack(vec4(0.0), 0u, s.has_depth, 0u, 0u);
-    }
-    const uint seen = tracks[best].sightings;
+void add_to_track(LightSighting s, uint track) {
+    const uint seen = tracks[track].sightings;
     const float share = s.has_depth != 0u ? 1.0 / float(seen + 1u) : 1.0;
     const vec3 place = s.has_depth != 0u ? s.center_radius.xyz : s.bearing.xyz;
-    tracks[best].place.xyz += share * (place - tracks[best].place.xyz);
-    tracks[best].sightings = seen + 1u;
-    tracks[best].clipped += s.clipped;
-    history[best * kMaxSightings + seen % kMaxSightings] = s;
+    tracks[track].place.xyz += share * (place - tracks[track].place.xyz);
+    tracks[track].sightings = seen + 1u;
+    tracks[track].clipped += s.clipped;
+    history[track * kMaxSightings + seen % kMaxSightings] = s;
+}
+
+uint open_sightings = 0u;  // of the frame, that belong to no light yet; a bit each
+uvec2 joined = uvec2(0u);  // lights that have one already: what a frame shows apart are two lamps, however near
+
+bool is_joined(uint track) { return (joined[track >> 5u] >> (track & 31u) & 1u) != 0u; }
+
+// Joins the sighting and the light that are nearest to each other. False where none are near.
+bool join_nearest(uint lights) {
+    uint best_sighting = kNone, best_track = kNone;
+    float least = 1.0;
+    for (uint k = 0u; k < kMaxLightCandidates; ++k) {
+        if ((open_sightings >> k & 1u) == 0u) continue;
+        for (uint i = 0u; i < lights; ++i) {
+            const float m = is_joined(i) ? least : mismatch(sightings[k], tracks[i]);
+            if (m >= least) continue;
+            least = m;
+            best_sighting = k;
+            best_track = i;
+        }
+    }
+    if (best_sighting == kNone) return false;
+    add_to_track(sightings[best_sighting], best_track);
+    open_sightings &= ~(1u << best_sighting);
+    joined[best_track >> 5u] |= 1u << (best_track & 31u);
+    return true;
 }
 
 void main() {
-    for (uint k = 0u; k < kMaxLightCandidates; ++k) {
-        const LightSighting s = sightings[k];
-        if (s.valid != 0u && !is_known(s)) join(s);
+    for (uint k = 0u; k < kMaxLightCandidates; ++k)
+        if (sightings[k].valid != 0u && !is_known(sightings[k])) open_sightings |= 1u << k;
+    uint lights = 0u;
+    while (lights < kMaxLights && tracks[lights].sightings > 0u) ++lights;
+    while (join_nearest(lights)) {
+    }
+    for (uint k = 0u; k < kMaxLightCandidates && lights < kMaxLights; ++k) {
+        if ((open_sightings >> k & 1u) == 0u) continue;
+        tracks[lights] = LightTrack(vec4(0.0), 0u, sightings[k].has_depth, 0u, 0u);
+        add_to_track(sightings[k], lights++);
     }
 }

@@ -21,6 +21,7 @@ layout(std430, binding = 9) writeonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 10) writeonly buffer Status { RecordStatus status[]; };
 layout(std430, binding = 11) buffer Away { SegmentAlbedo away[]; };
 layout(std430, binding = 12) writeonly buffer Entered { uint entered[]; };
+layout(std430, binding = 13) writeonly buffer Gathered { RecordSurroundings gathered[]; };
 layout(push_constant) uniform Push { ReturnRecordsParams params; };
 #include "lib/records/away_albedo.glsl"
 
@@ -43,5 +44,6 @@ void main() {
     albedo[id] = came.albedo;
     visibility[id] = came.visibility;
     status[id] = came.status;
+    gathered[id] = RecordSurroundings(uvec2(0u), came.around, 0u);
     entered[item] = id;
 }

@@ -14,7 +14,7 @@ layout(std430, binding = 5) readonly buffer Albedo { uvec2 albedo[]; };
 layout(std430, binding = 6) readonly buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 7) buffer Status { RecordStatus status[]; };
 layout(std430, binding = 8) buffer Away { SegmentAlbedo away[]; };
-layout(std430, binding = 10) writeonly buffer Gathered { uvec2 gathered[]; };
+layout(std430, binding = 10) buffer Gathered { RecordSurroundings gathered[]; };
 layout(std430, binding = 9) writeonly buffer Packed { StreamedRecord packed_records[]; };
 layout(push_constant) uniform Push { CopyRecordsParams params; };
 #include "lib/records/away_albedo.glsl"
@@ -24,10 +24,11 @@ void main() {
     if (item >= min(listed.records, params.count)) return;
     const uint id = streamed_records[item];
     const VoxelRecord record = records[id];
-    packed_records[item] = StreamedRecord(record, seen[id], changed[id], albedo[id], visibility[id], status[id]);
+    packed_records[item] = StreamedRecord(record, seen[id], changed[id], albedo[id], visibility[id], status[id],
+                                          gathered[id].around, 0u, 0u, 0u);
     count_away(record.block_key, record, albedo[id], true);
     // As of a record that was given back.
     records[id] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
     status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
-    gathered[id] = uvec2(0u);
+    gathered[id] = RecordSurroundings(uvec2(0u), 0u, 0u);
 }

@@ -23,7 +23,7 @@ layout(std430, binding = 11) writeonly buffer Records { VoxelRecord records[]; }
 layout(std430, binding = 12) writeonly buffer FreeBlocks { uint free_blocks[]; };
 layout(std430, binding = 13) writeonly buffer FreeRecords { uint free_records[]; };
 layout(std430, binding = 14) writeonly buffer Status { RecordStatus status[]; };
-layout(std430, binding = 15) writeonly buffer Gathered { uvec2 gathered[]; };
+layout(std430, binding = 15) writeonly buffer Gathered { RecordSurroundings gathered[]; };
 layout(push_constant) uniform Push { ReclaimParams params; };
 
 #define KEYS(bucket) voxel_keys[bucket]
@@ -62,7 +62,7 @@ bool holds_surface(uint voxel_block, uint number) {
 void give_back_record(uint record) {
     records[record] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
     status[record] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
-    gathered[record] = uvec2(0u);
+    gathered[record] = RecordSurroundings(uvec2(0u), 0u, 0u);
     free_records[atomicAdd(counted.free_blocks, 1u)] = record;
     atomicAdd(counted.deleted_blocks, 1u);
 }

@@ -18,7 +18,7 @@ layout(std140, binding = 0) uniform Lights {
 };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 2) readonly buffer March { uint listed[]; };
-layout(std430, binding = 3) buffer Gathered { uvec2 gathered[]; };
+layout(std430, binding = 3) buffer Gathered { RecordSurroundings gathered[]; };
 layout(std430, binding = 16) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { ReflectanceParams params; };
 #include "lib/lighting/incident_light.glsl"
@@ -48,6 +48,6 @@ void main() {
         sum += light.radiance;
         met += light.known ? 1.0 : 0.0;
     }
-    const GatheredLight light = unpack_gathered(gathered[record]);
-    gathered[record] = pack_gathered(with_rays(light, sum, met, float(kRays) - met));
+    const GatheredLight light = unpack_gathered(gathered[record].rays);
+    gathered[record].rays = pack_gathered(with_rays(light, sum, met, float(kRays) - met));
 }

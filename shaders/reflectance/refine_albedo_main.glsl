@@ -201,8 +201,8 @@ Estimate robust_mean(Center center, float noise) {
 uvec2 packed_albedo(Estimate estimate, Irradiance irradiance, float sureness) {
     const bvec3 lit = greaterThan(irradiance.sum, vec3(kLeastIrradiance));
     const vec3 inverse = 1.0 / max(irradiance.sum, kLeastIrradiance);
-    const vec3 kd = mix(vec3(0.0), clamp(estimate.diffuse * inverse, 0.0, 1.0), lit);
-    const vec3 doubt = kd * min(irradiance.uncertain * inverse, 1.0);
+    const vec3 kd = mix(vec3(0.0), clamp(estimate.diffuse * inverse, 0.0, kMostRawKd), lit);
+    const vec3 doubt = min(kd, 1.0) * min(irradiance.uncertain * inverse, 1.0);
     // Of an albedo that is usual, not of kd: else dark records were surer than bright ones, and means too dark.
     const vec3 noise = kUsualKd * min(irradiance.noise * inverse, 1.0);
     const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise;

@@ -11,7 +11,7 @@ layout(std430, binding = 1) readonly buffer Blocks { uint blocks[]; };
 layout(std430, binding = 2) readonly buffer RecordTable { uint record_table[]; };
 layout(std430, binding = 3) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 4) readonly buffer March { uint listed[]; };
-layout(std430, binding = 6) readonly buffer Gathered { uvec2 gathered[]; };
+layout(std430, binding = 6) readonly buffer Gathered { RecordSurroundings gathered[]; };
 layout(std430, binding = 5) writeonly buffer Status { RecordStatus status[]; };
 layout(push_constant) uniform Push { ReflectanceParams params; };
 #define KEYS(bucket) keys[bucket]
@@ -48,7 +48,7 @@ void main() {
         const VoxelRecord beside = records[other];
         const float off_vox = abs(dot(normal, surface_at_vox(beside, voxel) - point_vox));
         if (dot(normal, surface_normal(beside)) < kSameCosine || off_vox > kOffPlaneVox) continue;
-        const GatheredLight light = unpack_gathered(gathered[other]);
+        const GatheredLight light = unpack_gathered(gathered[other].rays);
         sum.mean += light.met * light.mean;
         sum.met += light.met;
         sum.missed += light.missed;

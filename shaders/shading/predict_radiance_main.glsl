@@ -31,6 +31,7 @@ layout(binding = 13, rgba16f) uniform writeonly image2D rgb;  // linear pixel va
 layout(binding = 15, rgba16f) uniform writeonly image2D
     light;  // irradiance / pi; a: the part that shadows leave, kNotMarched where it is not known
 layout(std430, binding = 16) readonly buffer Status { RecordStatus status[]; };
+layout(std430, binding = 17) readonly buffer Gathered { RecordSurroundings gathered[]; };
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
@@ -78,7 +79,9 @@ Reflectance interpolate(SurfacePoint point) {
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
-        const float weight = add_record(sums, point, record, content, t - vec3(corner), share.x * share.y * share.z);
+        const uint alike = gathered[have ? record : 0u].around;
+        const float weight =
+            add_record(sums, point, record, content, alike, t - vec3(corner), share.x * share.y * share.z);
         near_record[i] = have ? record : 0u;
         share_of[i] = packed_marched(content) ? weight : 0.0;
         visible_from[i] = uvec2(content.w, 0u);

@@ -14,6 +14,7 @@ layout(std430, binding = 5) readonly buffer Segments { SegmentAlbedo segments[];
 layout(std430, binding = 6) readonly buffer Positions { float positions_m[]; };  // three per point
 layout(std430, binding = 7) readonly buffer Normals { float normals[]; };
 layout(std430, binding = 8) writeonly buffer Samples { SampledReflectance samples[]; };
+layout(std430, binding = 9) readonly buffer Gathered { RecordSurroundings gathered[]; };
 layout(push_constant) uniform Push { SampleReflectanceParams params; };
 #define KEYS(bucket) keys[bucket]
 #define BLOCK(slot) blocks[slot]
@@ -30,7 +31,8 @@ Reflectance interpolate(SurfacePoint point) {
         const uint record = find_record(params.grid, params.edge_shift, voxel);
         const vec3 away = point.at_vox - vec3(voxel), share = 1.0 - abs(away);
         if (record != kNoRecord)
-            add_record(sums, point, record, packed_records[record], away, share.x * share.y * share.z);
+            add_record(sums, point, record, packed_records[record], gathered[record].around, away,
+                       share.x * share.y * share.z);
     }
     return mean_of(sums);
 }

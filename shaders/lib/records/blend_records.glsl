@@ -39,6 +39,7 @@ float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
 
 struct Reflectance {
     vec3 kd;
+    vec4 around;   // the albedo of the surface around; a: 1 where it is known
     vec3 weights;  // of kd's channels, 1 where all records that there are are certain
     bool known;
     vec3 normal;    // of the records
@@ -48,21 +49,24 @@ struct Reflectance {
 // The mean over records of the point's surface while it is summed up.
 struct RecordSums {
     vec3 kd, weights, normals;
+    vec4 around;
     float shares;
     float nearest2;  // of those with a label
     uint labelled;
 };
-RecordSums no_records() { return RecordSums(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, kNowhere2, kNoRecord); }
+RecordSums no_records() { return RecordSums(vec3(0.0), vec3(0.0), vec3(0.0), vec4(0.0), 0.0, kNowhere2, kNoRecord); }
 
-// Adds a record, or kNoRecord with any content; `share` is its trilinear part. Returns its weight, 0 where it is of
-// another surface.
-float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 content, vec3 away_vox, float share) {
+// Adds a record, or kNoRecord with any content; `around`: the albedo of the surface around it, shared exponent, 0 where
+// it is not known; `share` is its trilinear part. Returns its weight, 0 where it is of another surface.
+float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 content, uint around, vec3 away_vox,
+                 float share) {
     const vec4 surface = packed_surface(content);
     const float same = record != kNoRecord ? same_surface(point, away_vox, surface) : 0.0;
     const float weight = same * max(share, kLeastWeight);
     const vec3 certain = weight * packed_certainty(content);
     sums.kd += certain * packed_kd(content);
     sums.weights += certain;
+    sums.around += around != 0u ? weight * vec4(unpack_shared_exponent(around), 1.0) : vec4(0.0);
     sums.shares += weight;
     sums.normals += weight * surface.xyz;
     const float distance2 = same > 0.0 && packed_has_label(content) ? dot(away_vox, away_vox) : kNowhere2;
@@ -73,8 +77,9 @@ float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 c
 
 Reflectance mean_of(RecordSums sums) {
     const bool known = max(max(sums.weights.r, sums.weights.g), sums.weights.b) > 0.0;
-    return Reflectance(sums.kd / max(sums.weights, 1e-20), sums.weights / max(sums.shares, 1e-20), known, sums.normals,
-                       sums.labelled);
+    const vec4 around = sums.around.a > 0.0 ? vec4(sums.around.rgb / sums.around.a, 1.0) : vec4(0.0);
+    return Reflectance(sums.kd / max(sums.weights, 1e-20), around, sums.weights / max(sums.shares, 1e-20), known,
+                       sums.normals, sums.labelled);
 }
 
 // The nearest records of the point's surface: that which knows kd, and that with a label.
@@ -104,18 +109,22 @@ void look_at_record(inout NearestRecords nearest, SurfacePoint point, uint recor
 Reflectance filled(Reflectance found, NearestRecords nearest, uvec4 content) {
     found.labelled = nearest.labelled;
     if (nearest.known == kNoRecord) return found;
-    return Reflectance(packed_kd(content), packed_certainty(content), true, packed_surface(content).xyz,
+    return Reflectance(packed_kd(content), vec4(0.0), packed_certainty(content), true, packed_surface(content).xyz,
                        nearest.labelled);
 }
 
-// What the records do not know, or not surely, is what the rest of their segment has; `segment` is segment_kd.
+// What the records do not know, or not surely, is what the surface around has, or the rest of their segment;
+// `segment` is segment_kd.
 Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
+    const bool alike = found.around.a > 0.0;
+    const vec4 others = alike ? found.around : segment;
+    const float deviation = alike ? kSurfaceDeviation : kTextureDeviation;
     // Certainty is 1 / (1 + variance), in units of kKdDeviation squared.
     const vec3 sureness = found.weights / max(1.0 - found.weights, 1e-3);
-    const float weight = segment.a * kKdDeviation * kKdDeviation / (kTextureDeviation * kTextureDeviation);
-    const vec3 kd = (sureness * found.kd + weight * segment.rgb) / max(sureness + weight, 1e-20);
-    return Reflectance(kd, found.weights, found.known || segment.a > 0.0, found.known ? found.normal : normal,
-                       found.labelled);
+    const float weight = others.a * kKdDeviation * kKdDeviation / (deviation * deviation);
+    const vec3 kd = (sureness * found.kd + weight * others.rgb) / max(sureness + weight, 1e-20);
+    return Reflectance(kd, found.around, found.weights, found.known || others.a > 0.0,
+                       found.known ? found.normal : normal, found.labelled);
 }
 
 #endif

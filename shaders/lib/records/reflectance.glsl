@@ -47,7 +47,9 @@ uint pack_certainty(vec3 certainty) {
 vec3 albedo_certainty(uvec2 albedo) {
     return vec3(albedo.y & 0x3ffu, albedo.y >> 10 & 0x3ffu, albedo.y >> 20 & 0x3ffu) * (1.0 / 1023.0);
 }
-vec3 albedo_kd(uvec2 albedo) { return unpack_shared_exponent(albedo.x); }
+// What the light explains, up to kMostRawKd, and what can be.
+vec3 albedo_raw_kd(uvec2 albedo) { return unpack_shared_exponent(albedo.x); }
+vec3 albedo_kd(uvec2 albedo) { return min(albedo_raw_kd(albedo), 1.0); }
 
 // A segment's kd; a is 0 where too few of its records know it.
 vec4 segment_kd(SegmentAlbedo segment) {

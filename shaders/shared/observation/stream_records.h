@@ -13,6 +13,10 @@ struct StreamedRecord {
     uvec2 albedo;
     uvec2 visibility;
     RecordStatus status;
+    uint around;  // as RecordSurroundings
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 // What leaves; a pass that lists it appends to both lists.

@@ -27,6 +27,8 @@ struct SegmentAlbedo {
 INTEROP_CONST float kAlbedoSteps = 1023.0f;  // 32 bits hold the sums of 1.3 M records
 INTEROP_CONST float kCertaintySteps = 3.0f;
 INTEROP_CONST float kTextureDeviation = 0.1f;    // of a record's albedo from its segment's mean
+INTEROP_CONST float kMostRawKd = 4.0f;           // of a stored albedo: above 1 the light is taken for too weak
+INTEROP_CONST float kSurfaceDeviation = 0.015f;  // and from that of the surface around that looks the same
 INTEROP_CONST float kLeastSegmentWeight = 3.0f;  // records, certain ones, that a segment's albedo takes
 
 // What a record's visibility and albedo were computed from.
@@ -37,6 +39,13 @@ struct RecordStatus {
     uint refine_stamp;  // for refinement
     uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
     uvec2 incident;     // light from what is around: lib/records/gathered_light.glsl; 0: none was gathered
+};
+
+// What a record gathered and heard from those around.
+struct RecordSurroundings {
+    uvec2 rays;   // its own: lib/records/gathered_light.glsl
+    uint around;  // albedo of the surface around (passes/reflectance/surface_albedo.h), shared exponent; 0: not known
+    uint pad0;
 };
 
 // Which records had their turn in one update: those of blocks whose keys' hashes lie in a window of kWindowSteps steps.

@@ -316,7 +316,7 @@ TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {
     run(std::move(frame));
     const auto gathered = gathered_read.as<uint32_t>();
     EXPECT_EQ(static_cast<size_t>(std::count(gathered.begin(), gathered.end(), 0u)) * sizeof(uint32_t),
-              (before - rig.content().size()) * sizeof(glm::uvec2));
+              (before - rig.content().size()) * sizeof(gpu::RecordSurroundings));
     const auto words = read.as<uint32_t>();
     const size_t zeros = static_cast<size_t>(std::count(words.begin(), words.end(), 0u));
     EXPECT_EQ(zeros * sizeof(uint32_t), (before - rig.content().size()) * sizeof(gpu::RecordStatus));

@@ -96,6 +96,7 @@ class StreamRecordsTest : public GpuTest {
         const uint32_t capacity = rig.observations.map().capacity_records();
         std::vector<glm::uvec2> albedo(capacity), visibility(capacity);
         std::vector<gpu::RecordStatus> status(capacity);
+        std::vector<gpu::RecordSurroundings> around(capacity);
         for (uint32_t i = 0; i < capacity; ++i) {
             // Mantissas are odd: no sum falls between two steps.
             const auto odd = [&] { return random_() % 256 * 2 + 1; };
@@ -103,6 +104,7 @@ class StreamRecordsTest : public GpuTest {
             visibility[i] = {random_(), random_()};
             const auto word = [&] { return static_cast<uint32_t>(random_()); };
             status[i] = {word(), word(), word(), word(), {word(), word()}, {word(), word()}};
+            around[i].around = word();
         }
         graph::FrameGraph frame = runner().begin();
         ObservationMapIds ids = rig.observations.map().import(frame);
@@ -110,6 +112,7 @@ class StreamRecordsTest : public GpuTest {
         ids.visibility = frame.upload_bytes(ids.visibility, 0, std::as_bytes(std::span(visibility)), false);
         ReflectanceStateIds state = rig.state.import(frame);
         state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
+        state.gathered = frame.upload_bytes(state.gathered, 0, std::as_bytes(std::span(around)), false);
         ObservationMap::keep(frame, ids);
         ReflectanceState::keep(frame, state);
         run(std::move(frame));
@@ -125,7 +128,8 @@ class StreamRecordsTest : public GpuTest {
         const auto changed_read = frame.read_back(ids.changed), albedo_read = frame.read_back(ids.albedo);
         const auto visible_read = frame.read_back(ids.visibility), directions_read = frame.read_back(ids.directions);
         const auto colors_read = frame.read_back(ids.colors);
-        const auto status_read = frame.read_back(rig.state.import(frame).status);
+        const ReflectanceStateIds state = rig.state.import(frame);
+        const auto status_read = frame.read_back(state.status), around_read = frame.read_back(state.gathered);
         run(std::move(frame));
         const auto keys = keys_read.as<uint32_t>(), table = table_read.as<uint32_t>(), seen = seen_read.as<uint32_t>();
         const auto changed = changed_read.as<uint32_t>(), directions = directions_read.as<uint32_t>(),
@@ -133,6 +137,7 @@ class StreamRecordsTest : public GpuTest {
         const auto records = records_read.as<gpu::VoxelRecord>();
         const auto albedo = albedo_read.as<glm::uvec2>(), visible = visible_read.as<glm::uvec2>();
         const auto status = status_read.as<gpu::RecordStatus>();
+        const auto around = around_read.as<gpu::RecordSurroundings>();
         const uint32_t per_block = 1u << 3 * map.edge_shift();
         WholeRecords all;
         for (uint32_t entry = 0; entry < keys.size() * per_block; ++entry) {
@@ -140,7 +145,8 @@ class StreamRecordsTest : public GpuTest {
             if (key == gpu::kEmptyKey || id >= gpu::kNewRecord) continue;
             EXPECT_EQ(records[id].block_key, key);
             EXPECT_EQ(voxel_of(records[id]), entry % per_block);
-            const gpu::StreamedRecord own{records[id], seen[id], changed[id], albedo[id], visible[id], status[id]};
+            const gpu::StreamedRecord own{records[id], seen[id],          changed[id], albedo[id], visible[id],
+                                          status[id],  around[id].around, 0,           0,          0};
             all[{key, entry % per_block}] = whole_of(own, &directions[size_t{id} * 32], &colors[size_t{id} * 32]);
         }
         return all;

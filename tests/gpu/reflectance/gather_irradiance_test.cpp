@@ -167,8 +167,9 @@ TEST_F(GatherIrradianceTest, WhatTheMapDoesNotShowComesFromTheSurroundings) {
     collect_surroundings(*model, grey);
     const auto [mean, missed] = gathered_by_far_wall(*model);
     EXPECT_NEAR(mean, 0.4, kColorStep);
-    // Cells less than 7.5 cm above the wall's own plane count as part of it: sin^2(10.6 degrees) of the rays at 40 cm.
-    EXPECT_LT(missed, 0.08);
+    // Cells whose middle is less than 7.5 cm above the wall's own plane count as part of it, so that what lies up to
+    // 12.5 cm above may be missed: sin^2(17 degrees) = 0.09 of the rays at 40 cm.
+    EXPECT_LT(missed, 0.12);
 }
 
 TEST_F(GatherIrradianceTest, WhatIsClippedIsAsBrightAsLowExposureShowsIt) {

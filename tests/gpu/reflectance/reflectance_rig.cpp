@@ -6,6 +6,8 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "passes/reflectance/surface_albedo.h"
+
 namespace patina {
 
 namespace {
@@ -31,6 +33,7 @@ RefinedRecord unpack(const gpu::VoxelRecord& record, const ObservationMap& map) 
     const double offset = static_cast<int16_t>(record.state >> 16) / 32767.0;
     result.point_m = (glm::dvec3(result.voxel) + 0.5 + result.normal * offset) * double{map.settings().voxel_m};
     result.observations = record.state & 31;
+    result.label = record.label & 0xffff;
     return result;
 }
 
@@ -64,18 +67,26 @@ glm::uvec2 pack_rays(const reference::GatheredRays& rays) {
 }
 
 void ReflectanceRig::set_incident(uint32_t count, const reference::GatheredRays& rays) {
+    set_incident(std::vector(count, rays));
+}
+
+void ReflectanceRig::set_incident(const std::vector<reference::GatheredRays>& rays) {
     graph::FrameGraph before = runner_.begin();
     const graph::Readback read = before.read_back(state_.import(before).status);
     runner_.submit(std::move(before));
     runner_.wait();
     auto status = read.as<gpu::RecordStatus>();
-    for (uint32_t i = 0; i < count; ++i) status[i].incident = pack_rays(rays);
-    graph::FrameGraph frame = runner_.begin();
-    ReflectanceStateIds state = state_.import(frame);
-    state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
-    ReflectanceState::keep(frame, state);
-    runner_.submit(std::move(frame));
-    runner_.wait();
+    for (size_t i = 0; i < rays.size(); ++i) status[i].incident = pack_rays(rays[i]);
+    change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
+        state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
+    });
+}
+
+void ReflectanceRig::share_albedo(const glm::vec4& cube_m) {
+    change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
+        add_surface_albedo(frame, observation_map_, observation_map_.import(frame), state, lights.upload(frame),
+                           cube_m);
+    });
 }
 
 void ReflectanceRig::change(const std::function<void(graph::FrameGraph&, ReflectanceStateIds&)>& add) {
@@ -88,6 +99,9 @@ void ReflectanceRig::change(const std::function<void(graph::FrameGraph&, Reflect
 }
 
 void ReflectanceRig::set_mirror(uint32_t label, float mirror) {
+    graph::FrameGraph upload = runner_.begin();
+    materials.import(upload);
+    runner_.submit(std::move(upload));
     graph::FrameGraph frame = runner_.begin();
     const uint64_t at = label * sizeof(gpu::SegmentMaterial) + offsetof(gpu::SegmentMaterial, mirror);
     frame.keep(frame.upload_bytes(materials.import(frame), at, std::as_bytes(std::span(&mirror, 1)), false));
@@ -134,17 +148,19 @@ std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
     const auto stored = records_read.as<gpu::VoxelRecord>();
     const auto albedo = albedo_read.as<glm::uvec2>(), visibility = visibility_read.as<glm::uvec2>();
     const auto status = status_read.as<gpu::RecordStatus>();
-    const auto gathered = gathered_read.as<glm::uvec2>();
+    const auto gathered = gathered_read.as<gpu::RecordSurroundings>();
     const auto bits = [](glm::uvec2 words) { return words.x | uint64_t{words.y} << 32; };
     std::vector<RefinedRecord> records;
     for (uint32_t i = 0; i < count; ++i) {
         RefinedRecord record = unpack(stored[i], observation_map_);
         record.albedo = albedo[i];
-        record.kd = glm::dvec3(glm::unpackF3x9_E1x5(albedo[i].x));
+        record.raw_kd = glm::dvec3(glm::unpackF3x9_E1x5(albedo[i].x));
+        record.kd = glm::min(record.raw_kd, 1.0);
         record.certainty = unpack_certainty(albedo[i].y);
         record.visible = bits(visibility[i]);
         record.uncertain = bits(status[i].uncertain);
-        record.gathered = unpack_rays(gathered[i]);
+        record.gathered = unpack_rays(gathered[i].rays);
+        record.around = glm::dvec3(glm::unpackF3x9_E1x5(gathered[i].around));
         record.incident = unpack_rays(status[i].incident);
         records.push_back(record);
     }

@@ -17,6 +17,9 @@ struct RefinedRecord {
     glm::dvec3 kd{0}, certainty{0};
     uint64_t visible = 0, uncertain = 0;  ///< a bit per light
     glm::uvec2 albedo{0};                 ///< as stored
+    uint32_t label = 0;                   ///< of its segment; 0: none
+    glm::dvec3 raw_kd{0};                 ///< kd where the light explains more than 1
+    glm::dvec3 around{0};                 ///< albedo of the surface around; 0: not known
     reference::GatheredRays gathered;     ///< its own rays
     reference::GatheredRays incident;     ///< and of the records beside it
 };
@@ -32,6 +35,12 @@ class ReflectanceRig {
 
     /// Gives the first `count` records this light from all around; what else they have stays.
     void set_incident(uint32_t count, const reference::GatheredRays& rays);
+
+    /// The same with light of their own for the first records.
+    void set_incident(const std::vector<reference::GatheredRays>& rays);
+
+    /// Lets records tell each other of their albedo (passes/reflectance/surface_albedo.h).
+    void share_albedo(const glm::vec4& cube_m = RefinedPart{}.cube_m);
 
     /// Lets a pass add to the state, such as to its surroundings.
     void change(const std::function<void(graph::FrameGraph&, ReflectanceStateIds&)>& add);

@@ -176,6 +176,7 @@ std::vector<gpu::SampledReflectance> ShadingRig::sample(const std::vector<glm::v
                                          upload("normals", normals),
                                          add_pack_records(frame, map, records, state_.import(frame)),
                                          add_average_segments(frame, map, records, materials.capacity()),
+                                         state_.import(frame).gathered,
                                          static_cast<uint32_t>(points_m.size()),
                                          materials.capacity()};
     const graph::Readback samples = frame.read_back(add_sample_reflectance(frame, map, records, inputs));
