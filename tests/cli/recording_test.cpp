@@ -134,20 +134,11 @@ void slow_down(const fs::path& from, double times, const fs::path& to) {
     recorder.finish();
 }
 
-/// How many frames a recording holds that is being written.
-uint32_t frames_so_far(const fs::path& file) {
-    try {
-        return *sensor::RecordingFile(file).sequence(sensor::SequenceRole::kMain).info.frames;
-    } catch (const Error&) {  // it has not begun
-        return 0;
-    }
-}
-
 TEST_F(RecordingCommands, AnInterruptEndsARecordingThatIsWhole) {
     synthesise("90");
     slow_down(folder_, 20, beside("slow.patina"));  // a minute
     Program program({"record", beside("slow.patina"), "--simulate", "--out", file_});
-    while (program.running() && frames_so_far(file_) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    await_frames(program, file_, sensor::SequenceRole::kMain);
     program.send(SIGINT);
     const Outcome outcome = program.wait();
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

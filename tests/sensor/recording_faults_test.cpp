@@ -134,7 +134,9 @@ TEST(RecordingFaults, AKillCostsHalfASecondAtMost) {
     EXPECT_GT(frames, 0u);
     EXPECT_LT(losses_s[losses_s.size() / 2], Recorder::kMostAtRisk_s);
     // The most is bound by hand, on an idle machine: beside other work the writing thread waits for a processor.
-    if (std::getenv("PATINA_KILLS")) EXPECT_LT(losses_s.back(), Recorder::kMostAtRisk_s);
+    if (std::getenv("PATINA_KILLS")) {
+        EXPECT_LT(losses_s.back(), Recorder::kMostAtRisk_s);
+    }
 }
 
 void write_bytes_of(const fs::path& file, const std::string& bytes) {
