@@ -1,6 +1,11 @@
 #include "tests/cli/run_folder.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "sensor/recording/container.h"
 
 namespace patina::testing {
 
