@@ -14,6 +14,11 @@ Kinect2Capture::Kinect2Capture(std::unique_ptr<sensor::kinect2::Transport> trans
 
 Kinect2Capture::~Kinect2Capture() { stop(); }
 
+void Kinect2Capture::fix_exposure(const sensor::kinect2::ManualExposure& exposure) {
+    device_.set_white_balance(device_.white_balance());
+    device_.set_exposure(exposure);
+}
+
 std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
     return newest_.take();
@@ -21,7 +26,7 @@ std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
 
 void Kinect2Capture::stop() {
     {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(tap_mutex_);
         stopped_ = true;
     }
     newest_.end();
@@ -29,7 +34,7 @@ void Kinect2Capture::stop() {
 }
 
 double Kinect2Capture::now_s() const {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(clock_mutex_);
     return origin_ ? std::chrono::duration<double>(Clock::now() - *origin_).count() : 0;
 }
 
@@ -44,13 +49,18 @@ void Kinect2Capture::run() {
     newest_.end(failure);
 }
 
+void Kinect2Capture::note_time(double timestamp_s) {
+    const auto since = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timestamp_s));
+    const Clock::time_point origin = Clock::now() - since;
+    const std::lock_guard lock(clock_mutex_);
+    origin_ = std::min(origin_.value_or(origin), origin);
+}
+
 /// False once nobody takes frames any more.
 bool Kinect2Capture::hand_over(RecordedFrame frame) {
-    const auto since = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.timestamp_s));
-    const std::lock_guard lock(mutex_);  // what the tap has seen is counted as captured
+    const std::lock_guard lock(tap_mutex_);  // what the tap has seen is counted as captured
     if (stopped_) return false;
-    const Clock::time_point origin = Clock::now() - since;
-    origin_ = std::min(origin_.value_or(origin), origin);
+    note_time(frame.timestamp_s);
     if (tap_) tap_(frame);
     newest_.put(std::move(frame));
     return true;

@@ -33,6 +33,9 @@ class Kinect2Capture : public sensor::LiveCapture {
     /// What works less well than it should; empty: nothing.
     std::string warning() const { return device_.warning(); }
 
+    /// Fixes the exposure, and the white balance as it is. From any thread. Throws as sensor::kinect2::Device.
+    void fix_exposure(const sensor::kinect2::ManualExposure& exposure);
+
     /// To be called before the first next().
     void set_tap(Tap tap) { tap_ = std::move(tap); }
 
@@ -53,6 +56,7 @@ class Kinect2Capture : public sensor::LiveCapture {
   private:
     using Clock = std::chrono::steady_clock;
     void run();
+    void note_time(double timestamp_s);
     bool hand_over(sensor::RecordedFrame frame);
 
     sensor::kinect2::Device device_;
@@ -60,10 +64,11 @@ class Kinect2Capture : public sensor::LiveCapture {
     Kinect2Packer packer_;  ///< of the capturing thread alone
     Tap tap_;
     sensor::Newest<sensor::RecordedFrame> newest_;
-    mutable std::mutex mutex_;                 ///< of what follows, and held while the tap runs
-    std::optional<Clock::time_point> origin_;  ///< when the device's clock was at 0, at the latest
-    bool stopped_ = false;
-    std::jthread thread_;  // last: joins before what it uses is destroyed
+    std::mutex tap_mutex_;  ///< held while the tap runs
+    bool stopped_ = false;  ///< of tap_mutex_
+    mutable std::mutex clock_mutex_;
+    std::optional<Clock::time_point> origin_;  ///< of clock_mutex_: when the device's clock was at 0, at the latest
+    std::jthread thread_;                      // last: joins before what it uses is destroyed
 };
 
 }  // namespace patina::cameras

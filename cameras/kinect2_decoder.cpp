@@ -4,45 +4,34 @@
 #include <utility>
 #include <variant>
 
-#include "engine/core/error.h"
 #include "passes/kinect2/decode.h"
 #include "passes/kinect2/measure_phases.h"
 #include "passes/kinect2/register_color.h"
 #include "sensor/files/picture_file.h"
+#include "sensor/kinect2/raw_frame.h"
+#include "sensor/recording/recording_source.h"
 
 namespace patina::cameras {
 
 namespace {
 
+static_assert(kinect2::kSubImageBytes == sensor::kinect2::kSubImageBytes);
+
 /// The picture in a JPEG, as the world is.
-Image<SrgbPixel> color_of(const sensor::kinect2::RawFrame& raw, const std::string& name) {
+Image<SrgbPixel> color_of(std::span<const uint8_t> jpeg, const std::string& name) {
     ColorImage decoded;
     try {
-        decoded = sensor::decode_color(name, raw.color, kinect2::kColorExtent);
+        decoded = sensor::decode_color(name, jpeg, kinect2::kColorExtent);
     } catch (const Error& error) {
-        throw DamagedFrame(error.what());
+        throw sensor::DamagedFrame(error.what());
     }
     if (!std::holds_alternative<Image<SrgbPixel>>(decoded))
-        throw DamagedFrame(name, " has a colour picture in OpenEXR, not in JPEG");
+        throw sensor::DamagedFrame(name, " has a colour picture in OpenEXR, not in JPEG");
     Image<SrgbPixel> picture = std::get<Image<SrgbPixel>>(std::move(decoded));
     const auto width = static_cast<ptrdiff_t>(picture.extent().width);
     auto row = picture.pixels().begin();
     for (uint32_t y = 0; y < picture.extent().height; ++y, row += width) std::reverse(row, row + width);
     return picture;
-}
-
-SequenceInfo info_of(const std::string& name, const Intrinsics& depth, const FittedColorCamera& color,
-                     const kinect2::DecodeSettings& settings) {
-    SequenceInfo info;
-    info.name = name;
-    info.format = "kinect2";
-    info.fps = 30;
-    info.color = color.color;
-    info.depth = depth;
-    info.max_metres = settings.max_m;
-    info.color_from_depth = color.color_from_depth;
-    info.exposure_known = true;
-    return info;
 }
 
 }  // namespace
@@ -60,44 +49,42 @@ kinect2::CameraModel camera_model(const sensor::kinect2::Calibration& calibratio
     return model;
 }
 
-SequenceInfo kinect2_info(const kinect2::CameraModel& model, const std::string& name,
-                          const kinect2::DecodeSettings& settings) {
+SequenceInfo kinect2_info(const kinect2::CameraModel& model, const std::string& name) {
     const kinect2::HostTables tables = kinect2::make_tables(model);
-    return info_of(name, tables.depth, fit_color_camera(tables), settings);
+    const FittedColorCamera color = fit_color_camera(tables);
+    SequenceInfo info;
+    info.name = name;
+    info.format = "kinect2";
+    info.fps = 30;
+    info.color = color.color;
+    info.depth = tables.depth;
+    info.max_metres = kinect2::DecodeSettings{}.max_m;
+    info.color_from_depth = color.color_from_depth;
+    info.exposure_known = true;
+    return info;
 }
 
-Kinect2Decoder::Kinect2Decoder(vulkan::Device& device, const kinect2::CameraModel& model,
-                               const Kinect2DecoderOptions& options)
-    : runner_(device), options_(options), tables_(device, model), color_(fit_color_camera(tables_.host())) {}
+Kinect2Decoder::Kinect2Decoder(vulkan::Device& device, const kinect2::CameraModel& model, bool with_infrared)
+    : runner_(device), tables_(device, model), with_infrared_(with_infrared) {}
 
-Kinect2Pictures Kinect2Decoder::decode(const sensor::kinect2::RawFrame& raw, const std::string& name) {
-    constexpr size_t kInfraredBytes = gpu::kPhaseImages * kinect2::kSubImageBytes;
-    if (raw.infrared.size() < kInfraredBytes)
-        throw DamagedFrame(name, " has an infrared frame of ", raw.infrared.size(), " bytes, but ", kInfraredBytes,
-                           " are needed");
-    Kinect2Pictures pictures;
-    if (options_.registered) pictures.color = color_of(raw, name);  // the device needs it, too
-
+Kinect2Pictures Kinect2Decoder::decode(std::span<const uint8_t> infrared, std::span<const uint8_t> jpeg,
+                                       const std::string& name) {
+    constexpr size_t kNeeded = gpu::kPhaseImages * kinect2::kSubImageBytes;
+    if (infrared.size() < kNeeded)
+        throw sensor::DamagedFrame(name, " has an infrared frame of ", infrared.size(), " bytes, but ", kNeeded,
+                                   " are needed");
     graph::FrameGraph frame = runner_.begin();
-    const kinect2::TableIds tables = tables_.import(frame);
-    const auto images = kinect2::add_decode(frame, tables, raw.infrared, options_.settings);
-    const graph::Readback depth_m = frame.read_back(images.depth_m), infrared = frame.read_back(images.infrared);
-    graph::Readback registered;
-    if (options_.registered)
-        registered = frame.read_back(
-            kinect2::add_register_color(frame, tables_, tables, images.depth_m, pictures.color.pixels()));
+    const auto images = kinect2::add_decode(frame, tables_.import(frame), infrared);
+    const graph::Readback depth_m = frame.read_back(images.depth_m);
+    graph::Readback light;
+    if (with_infrared_) light = frame.read_back(images.infrared);
     runner_.submit(std::move(frame));
-    if (!options_.registered) pictures.color = color_of(raw, name);
+    Kinect2Pictures pictures;
+    pictures.color = color_of(jpeg, name);
     runner_.wait();
-
     pictures.depth_m = depth_m.image<float>();
-    pictures.infrared = infrared.image<float>();
-    if (options_.registered) pictures.registered = registered.image<uint32_t>();
+    if (with_infrared_) pictures.infrared = light.image<float>();
     return pictures;
-}
-
-SequenceInfo Kinect2Decoder::info(const std::string& name) const {
-    return info_of(name, depth_camera(), color_, options_.settings);
 }
 
 }  // namespace patina::cameras

@@ -19,7 +19,7 @@ std::optional<Reading> Kinect2LiveSource::next() {
     frame.exposure = recorded.exposure;
     try {
         decoder_.decode(recorded, frame);
-    } catch (const DamagedFrame& error) {
+    } catch (const sensor::DamagedFrame& error) {
         return Skipped{recorded.index, error.what()};
     }
     return frame;

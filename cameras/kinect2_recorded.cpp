@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -43,12 +45,17 @@ CalibrationPages pages_in(const sensor::RecordedSequence& sequence, const std::s
     return pages;
 }
 
+bool is_known(float value) { return std::isfinite(value) && value > 0; }
+
 Exposure exposure_of(const RawFrame& raw) {
     Exposure exposure;
-    if (raw.color_exposure_ms > 0) exposure.exposure_s = 0.001 * raw.color_exposure_ms;
-    if (raw.color_gain > 0) exposure.gain = raw.color_gain;
+    if (is_known(raw.color_exposure_ms)) exposure.exposure_s = 0.001 * raw.color_exposure_ms;
+    if (is_known(raw.color_gain)) exposure.gain = raw.color_gain;
     return exposure;
 }
+
+/// JSON has no number that is not finite.
+std::string json_number(float value) { return std::isfinite(value) ? text(value) : "null"; }
 
 }  // namespace
 
@@ -67,26 +74,28 @@ sensor::RecordedFrame Kinect2Packer::pack(RawFrame raw) {
     frame.index = next_++;
     frame.timestamp_s = clock_.seconds(raw.timestamp);
     frame.exposure = exposure_of(raw);
-    const std::string said = text(R"({"exposure_ms": )", raw.color_exposure_ms, R"(, "gain": )", raw.color_gain,
-                                  R"(, "gamma": )", raw.color_gamma, "}");
+    const std::string said = text(R"({"exposure_ms": )", json_number(raw.color_exposure_ms), R"(, "gain": )",
+                                  json_number(raw.color_gain), R"(, "gamma": )", json_number(raw.color_gamma), "}");
     frame.payloads.push_back({kInfrared, raw.sequence, raw.timestamp, "", std::move(raw.infrared)});
     frame.payloads.push_back({kColor, raw.color_sequence, raw.color_timestamp, said, std::move(raw.color)});
     return frame;
 }
 
 Kinect2PayloadDecoder::Kinect2PayloadDecoder(GiveDevice give_device, const sensor::RecordedSequence& sequence,
-                                             std::string where)
+                                             std::string where, OnInfrared on_infrared)
     : give_device_(std::move(give_device)),
+      on_infrared_(std::move(on_infrared)),
       where_(std::move(where)),
       streams_(sequence.streams),
       model_(camera_model(sensor::kinect2::parse_calibration(pages_in(sequence, where_), where_))) {}
 
 void Kinect2PayloadDecoder::decode(const sensor::RecordedFrame& recorded, Frame& frame) {
-    if (!decoder_) decoder_ = std::make_unique<Kinect2Decoder>(give_device_(), model_);
-    RawFrame raw;
+    if (!decoder_) decoder_ = std::make_unique<Kinect2Decoder>(give_device_(), model_, on_infrared_ != nullptr);
+    std::span<const uint8_t> infrared, jpeg;
     for (const sensor::Payload& payload : recorded.payloads)
-        (streams_.at(payload.stream).name == "color" ? raw.color : raw.infrared) = payload.content;
-    Kinect2Pictures pictures = decoder_->decode(raw, text(where_, ": frame ", recorded.index));
+        (streams_.at(payload.stream).name == "color" ? jpeg : infrared) = payload.content;
+    Kinect2Pictures pictures = decoder_->decode(infrared, jpeg, text(where_, ": frame ", recorded.index));
+    if (on_infrared_) on_infrared_(std::move(pictures.infrared));
     frame.color = std::move(pictures.color);
     frame.depth = std::move(pictures.depth_m);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cameras/kinect2_decoder.h"
+#include "sensor/kinect2/raw_frame.h"
 #include "sensor/kinect2/tick_clock.h"
 #include "sensor/recording/recording_source.h"
 
@@ -26,20 +27,24 @@ class Kinect2Packer {
     uint32_t next_ = 0;
 };
 
-/// Decodes such frames. Throws DamagedFrame as Kinect2Decoder. The tables on the device are made with the first frame.
+/// Decodes such frames. Throws as Kinect2Decoder. The tables on the device are made with the first frame.
 class Kinect2PayloadDecoder : public sensor::PayloadDecoder {
   public:
     using GiveDevice = std::function<vulkan::Device&()>;
+    /// Takes the infrared picture of each frame that is decoded (Kinect2Pictures), before decode() returns.
+    using OnInfrared = std::function<void(Image<float>)>;
 
     /// `give_device` is called by the first decode(), on whose thread the device is used; the device outlives this.
     /// `where` is the camera or the recording, for messages. Throws Error where a page of the calibration is missing or
     /// damaged.
-    Kinect2PayloadDecoder(GiveDevice give_device, const sensor::RecordedSequence& sequence, std::string where);
+    Kinect2PayloadDecoder(GiveDevice give_device, const sensor::RecordedSequence& sequence, std::string where,
+                          OnInfrared on_infrared = {});
 
     void decode(const sensor::RecordedFrame& recorded, Frame& frame) override;
 
   private:
     GiveDevice give_device_;
+    OnInfrared on_infrared_;
     std::string where_;
     std::vector<sensor::RecordedStream> streams_;
     kinect2::CameraModel model_;

@@ -7,11 +7,13 @@
 
 namespace patina::cameras {
 
-sensor::MakePayloadDecoder payload_decoders(Kinect2PayloadDecoder::GiveDevice give_device) {
-    return [give_device = std::move(give_device)](const sensor::RecordedSequence& sequence,
-                                                  const std::string& where) -> std::unique_ptr<sensor::PayloadDecoder> {
+sensor::MakePayloadDecoder payload_decoders(Kinect2PayloadDecoder::GiveDevice give_device,
+                                            Kinect2PayloadDecoder::OnInfrared on_infrared) {
+    return [give_device = std::move(give_device), on_infrared = std::move(on_infrared)](
+               const sensor::RecordedSequence& sequence,
+               const std::string& where) -> std::unique_ptr<sensor::PayloadDecoder> {
         if (!is_kinect2(sequence)) return nullptr;
-        return std::make_unique<Kinect2PayloadDecoder>(give_device, sequence, where);
+        return std::make_unique<Kinect2PayloadDecoder>(give_device, sequence, where, on_infrared);
     };
 }
 

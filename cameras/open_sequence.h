@@ -8,8 +8,9 @@
 
 namespace patina::cameras {
 
-/// Makes the decoders of all that cameras send. `give_device` as in Kinect2PayloadDecoder.
-sensor::MakePayloadDecoder payload_decoders(Kinect2PayloadDecoder::GiveDevice give_device);
+/// Makes the decoders of all that cameras send. `give_device` and `on_infrared` as in Kinect2PayloadDecoder.
+sensor::MakePayloadDecoder payload_decoders(Kinect2PayloadDecoder::GiveDevice give_device,
+                                            Kinect2PayloadDecoder::OnInfrared on_infrared = {});
 
 /// With a device that is there already.
 sensor::MakePayloadDecoder payload_decoders(vulkan::Device& device);

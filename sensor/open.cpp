@@ -103,7 +103,10 @@ std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& f
 
 fs::path lighting_of(const fs::path& sequence) {
     if (is_recording(sequence)) {
-        return RecordingFile(sequence).has(SequenceRole::kLighting) ? lighting_in(sequence) : fs::path();
+        const RecordingFile recording(sequence);
+        const bool any =
+            recording.has(SequenceRole::kLighting) && *recording.sequence(SequenceRole::kLighting).info.frames > 0;
+        return any ? lighting_in(sequence) : fs::path();
     }
     const fs::path inside = folder_of(sequence) / "lighting";
     return is_folder(inside) ? inside : fs::path();

@@ -23,7 +23,7 @@ std::unique_ptr<Source> open_sequence(const std::filesystem::path& path, const s
                                       const MakePayloadDecoder& make_decoder = {});
 
 /// The lighting sequence that belongs to a sequence: the folder lighting/ in its folder, or "FILE/lighting" of a
-/// recording; empty where it has none.
+/// recording; empty where it has none, or none with a frame.
 std::filesystem::path lighting_of(const std::filesystem::path& sequence);
 
 /// The sequence that a lighting sequence belongs to: the other way round.

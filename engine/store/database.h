@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/error.h"
+
 struct sqlite3;
 struct sqlite3_stmt;
 
@@ -22,6 +24,12 @@ enum class DatabaseUse {
     kRead    ///< only read, whoever wrote it: a schema runs no code, and values are limited to kLongestValue
 };
 
+/// Another process was at a database for longer than is waited for it.
+class DatabaseBusy : public Error {
+  public:
+    using Error::Error;
+};
+
 /// An SQLite database in one file, on one thread. All that it does throws Error, naming the file and the reason, where
 /// the disk refuses, another process is at it, or the file is damaged.
 class Database {
@@ -30,7 +38,7 @@ class Database {
     static constexpr int kLongestValue = 192 << 20;
 
     /// Opens the file, or creates it where it is not only to be read; what a process that was killed left half done is
-    /// undone. Whatever is done with it waits some seconds for another process that is at it.
+    /// undone. Whatever is done with it waits some seconds for another process that is at it, then throws DatabaseBusy.
     explicit Database(std::filesystem::path file, DatabaseUse use = DatabaseUse::kState);
 
     /// Runs statements without values.

@@ -32,6 +32,9 @@ struct LightsFromFile {
 /// Lights are looked for in a sequence of low exposure (paper, Section 3.2), or in the lighting/ of one.
 struct LightsFromSequence {
     std::string sequence;
+    /// The sequence in whose world it is looked at; empty: the session's own. For a session over a source that plays a
+    /// recording, which has no sequence.
+    std::string main{};
 };
 /// Lights are looked for in what they light in the main sequence, which is read twice for that.
 struct LightsFromMain {};

@@ -21,6 +21,7 @@
 #include "sensor/open.h"
 #include "sensor/output/output_file.h"
 #include "sensor/recentred_source.h"
+#include "sensor/recording/exposure_check.h"
 #include "sensor/truth.h"
 
 namespace patina {
@@ -29,6 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kClippedLuminance = 0.98f;
+
+// What a person is told while a lighting sequence is recorded is what is found in it.
+static_assert(FindLightsSettings{}.threshold == sensor::kLampThreshold);
 
 /// A sequence of low exposure, and the exposure of the one whose pixel values lights are told in.
 struct LowExposure {

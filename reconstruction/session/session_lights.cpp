@@ -21,7 +21,7 @@ LightsOptions search_of(const SessionOptions& options, glm::dvec3 world_offset_m
     find.from = self ? LightsFrom::kMainSequence : LightsFrom::kLightingSequence;
     find.format = self ? options.format : "";
     find.frames = self ? options.frames : 0;
-    if (!synthetic_scene(options)) find.main = options.sequence;
+    if (!synthetic_scene(options)) find.main = named && !named->main.empty() ? named->main : options.sequence;
     find.main_format = options.format;
     find.main_frames = options.frames;
     find.hold_out = options.hold_out;
@@ -181,11 +181,10 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
 
 void add_low_exposure(vulkan::Device& device, Pipeline& pipeline, const SessionOptions& options,
                       glm::dvec3 world_offset_m) {
-    const bool recorded = !options.sequence.empty() && !synthetic_scene(options);
-    if (!recorded || lights_source(options) != LightsSource::kLightingSequence) return;
+    if (lights_source(options) != LightsSource::kLightingSequence) return;
     if (!pipeline.reflectance() || !pipeline.reflectance()->gathers()) return;
     const LightsOptions find = search_of(options, world_offset_m, false);
-    if (scenes::scene_name(find.sequence)) return;
+    if (find.main.empty() || scenes::scene_name(find.sequence)) return;  // a scene, or a camera
     try {
         for_each_low_exposure(device, find, [&](const RgbdFrame& frame, float scale) {
             pipeline.add_low_exposure(frame, scale, find.settings.find.threshold);

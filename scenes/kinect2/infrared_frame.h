@@ -8,13 +8,14 @@
 
 #include "patina/camera.h"
 #include "patina/image.h"
+#include "sensor/kinect2/raw_frame.h"
 
 namespace patina::scenes::kinect2 {
 
 inline constexpr Extent2D kInfraredExtent{512, 424};
 inline constexpr size_t kRowBytes = 704;  ///< 512 codes of 11 bits
-inline constexpr size_t kSubImageBytes = kRowBytes * 424;
-inline constexpr uint32_t kSubImages = 10;
+using sensor::kinect2::kSubImageBytes;
+using sensor::kinect2::kSubImages;
 inline constexpr uint16_t kSaturatedCode = 1024;
 
 /// What decides how a scene appears in a Kinect v2's infrared frames.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <string>
-#include <utility>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -19,9 +18,9 @@ namespace {
 
 /// Runs `work` on the opened picture; what OpenEXR throws becomes an Error that names the file.
 template <class Work>
-auto with_exr(const std::string& name, std::vector<uint8_t> bytes, Work work) {
+auto with_exr(const std::string& name, std::span<const uint8_t> bytes, Work work) {
     try {
-        ExrInput input(name, std::move(bytes));
+        ExrInput input(name, bytes);
         return work(input);
     } catch (const Error&) {
         throw;
@@ -51,14 +50,14 @@ Image<Pixel> read_channels(ExrInput& input, const std::array<const char*, N>& ch
 
 }  // namespace
 
-Image<glm::vec3> read_exr_color(const std::string& name, std::vector<uint8_t> bytes) {
-    return with_exr(name, std::move(bytes), [](ExrInput& input) {
+Image<glm::vec3> read_exr_color(const std::string& name, std::span<const uint8_t> bytes) {
+    return with_exr(name, bytes, [](ExrInput& input) {
         return read_channels<glm::vec3>(input, std::array<const char*, 3>{"R", "G", "B"});
     });
 }
 
-Image<float> read_exr_depth(const std::string& name, std::vector<uint8_t> bytes) {
-    return with_exr(name, std::move(bytes), [](ExrInput& input) {
+Image<float> read_exr_depth(const std::string& name, std::span<const uint8_t> bytes) {
+    return with_exr(name, bytes, [](ExrInput& input) {
         for (const char* channel : {"Z", "depth", "Y", "R"}) {
             if (input.file().header().channels().findChannel(channel)) {
                 return read_channels<float>(input, std::array<const char*, 1>{channel});

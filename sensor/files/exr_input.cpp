@@ -1,14 +1,13 @@
 #include "sensor/files/exr_input.h"
 
 #include <cstring>
-#include <utility>
 
 #include "sensor/files/picture_container.h"
 
 namespace patina::sensor {
 
-ExrBytes::ExrBytes(const std::string& file, std::vector<uint8_t> bytes)
-    : Imf::IStream(file.c_str()), bytes_(std::move(bytes)) {}
+ExrBytes::ExrBytes(const std::string& file, std::span<const uint8_t> bytes)
+    : Imf::IStream(file.c_str()), bytes_(bytes) {}
 
 bool ExrBytes::read(char* to, int count) {
     if (count < 0 || position_ > bytes_.size() || static_cast<uint64_t>(count) > bytes_.size() - position_) {
@@ -20,7 +19,7 @@ bool ExrBytes::read(char* to, int count) {
     return position_ < bytes_.size();
 }
 
-ExrInput::ExrInput(const std::string& file, std::vector<uint8_t> bytes)
-    : extent_(check_exr(bytes, file)), bytes_(file, std::move(bytes)), file_(bytes_) {}
+ExrInput::ExrInput(const std::string& file, std::span<const uint8_t> bytes)
+    : extent_(check_exr(bytes, file)), bytes_(file, bytes), file_(bytes_) {}
 
 }  // namespace patina::sensor

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
-#include <vector>
 
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
@@ -11,25 +11,25 @@
 
 namespace patina::sensor {
 
-/// A whole OpenEXR file in memory, for Imf::InputFile.
+/// A whole OpenEXR file in memory, for Imf::InputFile. The bytes outlive it.
 class ExrBytes : public Imf::IStream {
   public:
-    ExrBytes(const std::string& file, std::vector<uint8_t> bytes);
+    ExrBytes(const std::string& file, std::span<const uint8_t> bytes);
 
     bool read(char* to, int count) override;
     uint64_t tellg() override { return position_; }
     void seekg(uint64_t position) override { position_ = position; }
 
   private:
-    std::vector<uint8_t> bytes_;
+    std::span<const uint8_t> bytes_;
     uint64_t position_ = 0;
 };
 
 /// An OpenEXR picture whose headers were checked.
 class ExrInput {
   public:
-    /// Takes the bytes of a file. Throws Error as check_exr; what OpenEXR throws is none.
-    ExrInput(const std::string& file, std::vector<uint8_t> bytes);
+    /// The bytes of a file, which outlive this. Throws Error as check_exr; what OpenEXR throws is none.
+    ExrInput(const std::string& file, std::span<const uint8_t> bytes);
 
     Extent2D extent() const { return extent_; }
     Imf::InputFile& file() { return file_; }

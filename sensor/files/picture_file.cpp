@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -19,13 +18,13 @@ namespace {
 /// A picture file's bytes, found whole, and what they hold.
 struct PictureFile {
     std::string name;
-    std::vector<uint8_t> bytes;
+    std::span<const uint8_t> bytes;
     PictureFormat format;
     Extent2D extent;
 };
 
-PictureFile examined(std::string name, std::vector<uint8_t> bytes) {
-    PictureFile file{std::move(name), std::move(bytes), PictureFormat::kPng, {}};
+PictureFile examined(const std::string& name, std::span<const uint8_t> bytes) {
+    PictureFile file{name, bytes, PictureFormat::kPng, {}};
     const std::optional<PictureFormat> format = picture_format(file.bytes);
     if (!format) throw Error(file.name, " is neither PNG, JPEG nor OpenEXR: it has ", file.bytes.size(), " bytes");
     file.format = *format;
@@ -37,11 +36,7 @@ PictureFile examined(std::string name, std::vector<uint8_t> bytes) {
     return file;
 }
 
-PictureFile load(const std::filesystem::path& path) {
-    return examined(path.string(), read_file(path, limits::kPictureBytes));
-}
-
-PictureFile of_size(PictureFile file, Extent2D expected) {
+const PictureFile& of_size(const PictureFile& file, Extent2D expected) {
     if (file.extent != expected) {
         throw Error(file.name, " is ", file.extent, " pixels, but the sequence says ", expected);
     }
@@ -52,7 +47,9 @@ PictureFile of_size(PictureFile file, Extent2D expected) {
 cv::Mat decode(const PictureFile& file) {
     cv::Mat picture;
     try {
-        picture = cv::imdecode(file.bytes, cv::IMREAD_UNCHANGED);
+        // OpenCV only reads them.
+        const cv::Mat bytes(1, static_cast<int>(file.bytes.size()), CV_8U, const_cast<uint8_t*>(file.bytes.data()));
+        picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception& error) {
         throw Error(file.name, " cannot be decoded: ", error.err);
     }
@@ -92,8 +89,8 @@ cv::Mat borrowed(const Image<Pixel>& image, int type) {
     return {static_cast<int>(height), static_cast<int>(width), type, const_cast<Pixel*>(image.pixels().data())};
 }
 
-ColorImage color_in(PictureFile file) {
-    if (file.format == PictureFormat::kExr) return read_exr_color(file.name, std::move(file.bytes));
+ColorImage color_in(const PictureFile& file) {
+    if (file.format == PictureFormat::kExr) return read_exr_color(file.name, file.bytes);
     cv::Mat picture = decode(file);
     if (picture.depth() != CV_8U) {
         throw Error(file.name, " has ", 8 * picture.elemSize1(), " bits per channel, but colour must have 8");
@@ -103,9 +100,9 @@ ColorImage color_in(PictureFile file) {
     return to_image<SrgbPixel>(picture, file.extent);
 }
 
-DepthImage depth_in(PictureFile file, uint16_t invalid) {
+DepthImage depth_in(const PictureFile& file, uint16_t invalid) {
     if (file.format == PictureFormat::kExr) {
-        Image<float> depth_m = read_exr_depth(file.name, std::move(file.bytes));
+        Image<float> depth_m = read_exr_depth(file.name, file.bytes);
         for (float& z : depth_m.pixels()) z = std::isfinite(z) && z > 0 ? z : 0.0f;
         return depth_m;
     }
@@ -121,22 +118,26 @@ DepthImage depth_in(PictureFile file, uint16_t invalid) {
 
 }  // namespace
 
-Extent2D picture_extent(const std::filesystem::path& file) { return load(file).extent; }
-
-ColorImage read_color(const std::filesystem::path& file, Extent2D expected) {
-    return color_in(of_size(load(file), expected));
+Extent2D picture_extent(const std::filesystem::path& file) {
+    const std::vector<uint8_t> bytes = read_file(file, limits::kPictureBytes);
+    return examined(file.string(), bytes).extent;
 }
 
-ColorImage decode_color(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected) {
-    return color_in(of_size(examined(name, std::move(bytes)), expected));
+ColorImage read_color(const std::filesystem::path& file, Extent2D expected) {
+    return decode_color(file.string(), read_file(file, limits::kPictureBytes), expected);
+}
+
+ColorImage decode_color(const std::string& name, std::span<const uint8_t> bytes, Extent2D expected) {
+    return color_in(of_size(examined(name, bytes), expected));
 }
 
 DepthImage read_depth(const std::filesystem::path& file, Extent2D expected, uint16_t invalid) {
-    return depth_in(of_size(load(file), expected), invalid);
+    const std::vector<uint8_t> bytes = read_file(file, limits::kPictureBytes);
+    return depth_in(of_size(examined(file.string(), bytes), expected), invalid);
 }
 
-DepthImage decode_depth(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected) {
-    return depth_in(of_size(examined(name, std::move(bytes)), expected), 0);
+DepthImage decode_depth(const std::string& name, std::span<const uint8_t> bytes, Extent2D expected) {
+    return depth_in(of_size(examined(name, bytes), expected), 0);
 }
 
 std::string picture_stem(uint32_t index) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "patina/frame.h"
 
@@ -22,8 +22,8 @@ ColorImage read_color(const std::filesystem::path& file, Extent2D expected);
 DepthImage read_depth(const std::filesystem::path& file, Extent2D expected, uint16_t invalid = 0);
 
 /// The same of a picture file's bytes; `name` stands for the file in messages.
-ColorImage decode_color(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected);
-DepthImage decode_depth(const std::string& name, std::vector<uint8_t> bytes, Extent2D expected);
+ColorImage decode_color(const std::string& name, std::span<const uint8_t> bytes, Extent2D expected);
+DepthImage decode_depth(const std::string& name, std::span<const uint8_t> bytes, Extent2D expected);
 
 /// The name of a frame's picture in Patina's own format without its extension: the index in at least six digits.
 std::string picture_stem(uint32_t index);

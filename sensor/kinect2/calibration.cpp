@@ -1,6 +1,5 @@
 #include "sensor/kinect2/calibration.h"
 
-#include <cmath>
 #include <initializer_list>
 #include <span>
 
@@ -15,6 +14,8 @@ constexpr size_t kFirmwareRecord = 16;
 constexpr size_t kMainApplication = 3;
 constexpr size_t kPixels = size_t{kInfraredWidth} * kInfraredHeight;
 constexpr size_t kP0Header = 32;
+/// Of the colour polynomials; those of units stay below 1.
+constexpr float kMostFactor = 100;
 constexpr size_t kP0Stride = 2 + 2 * kPixels + 2;  // frequency, table, AB multiplier
 
 class Page {
@@ -27,12 +28,6 @@ class Page {
     template <class T>
     T at(size_t offset) const {
         return read_at<T>(bytes_, offset);
-    }
-
-    float finite(size_t offset, const char* field) const {
-        const auto value = at<float>(offset);
-        if (!std::isfinite(value)) fail("has ", field, " ", value, ", must be finite");
-        return value;
     }
 
     float within(size_t offset, const char* field, float low, float high) const {
@@ -92,8 +87,8 @@ ColorCamera parse_color(const Page& page) {
     camera.shift_d = page.within(13, "shift_d", 1, 10000);
     camera.shift_m = page.within(17, "shift_m", -1000, 1000);
     for (size_t i = 0; i < camera.mx.size(); ++i) {
-        camera.mx[i] = page.finite(21 + 4 * i, "mx");
-        camera.my[i] = page.finite(61 + 4 * i, "my");
+        camera.mx[i] = page.within(21 + 4 * i, "mx", -kMostFactor, kMostFactor);
+        camera.my[i] = page.within(61 + 4 * i, "my", -kMostFactor, kMostFactor);
     }
     return camera;
 }

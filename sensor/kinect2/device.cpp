@@ -19,12 +19,13 @@ Device::~Device() {
 }
 
 void Device::start() {
+    const std::lock_guard sending(sending_);
     {
         const std::lock_guard lock(mutex_);
         interrupted_ = false;
     }
     try {
-        stop();
+        stop_run();
         start_once();
         return;
     } catch (const Unplugged&) {
@@ -35,6 +36,10 @@ void Device::start() {
     }
     // A device that was left half started, by us or by another program, answers again after a reset.
     try {
+        {
+            const std::lock_guard lock(mutex_);
+            running_ = false;
+        }
         transport_->reset();
         prepare(*transport_);
         start_once();
@@ -87,6 +92,11 @@ void Device::fail_silent(const StreamStatistics& statistics) const {
 }
 
 void Device::stop() {
+    const std::lock_guard sending(sending_);
+    stop_run();
+}
+
+void Device::stop_run() {
     halt();
     {
         const std::lock_guard lock(mutex_);
@@ -133,6 +143,7 @@ StreamStatistics Device::statistics() const {
 
 void Device::set_exposure(const ExposureControl& exposure) {
     check(exposure);
+    const std::lock_guard sending(sending_);
     {
         const std::lock_guard lock(mutex_);
         exposure_ = exposure;
@@ -143,12 +154,18 @@ void Device::set_exposure(const ExposureControl& exposure) {
 
 void Device::set_white_balance(const std::optional<WhiteBalanceGains>& gains) {
     check(gains);
+    const std::lock_guard sending(sending_);
     {
         const std::lock_guard lock(mutex_);
         white_balance_ = gains;
         if (!running_) return;
     }
     kinect2::set_white_balance(commands_, gains);
+}
+
+WhiteBalanceGains Device::white_balance() {
+    const std::lock_guard sending(sending_);
+    return kinect2::white_balance(commands_);
 }
 
 }  // namespace patina::sensor::kinect2

@@ -57,14 +57,16 @@ class Device {
     /// Of the present or last run.
     StreamStatistics statistics() const;
 
-    /// Holds at once while the streams run, and after each start. Throws as in settings.h.
+    /// Holds at once while the streams run, and after each start. Waits while another thread starts or stops the
+    /// device. Throws as in settings.h.
     void set_exposure(const ExposureControl& exposure);
     void set_white_balance(const std::optional<WhiteBalanceGains>& gains);
     /// The gains in force. Throws as Commands::execute().
-    WhiteBalanceGains white_balance() { return kinect2::white_balance(commands_); }
+    WhiteBalanceGains white_balance();
 
   private:
     void start_once();
+    void stop_run();
     void apply_settings();
     void halt() noexcept;
     std::shared_ptr<Stream> stream() const;
@@ -76,6 +78,7 @@ class Device {
     CalibrationPages pages_;
     Calibration calibration_;
 
+    std::mutex sending_;  ///< held while the device is started, stopped or set: a reset loses what others have sent
     mutable std::mutex mutex_;        ///< of what follows
     std::shared_ptr<Stream> stream_;  ///< of the present run
     StreamStatistics last_run_;

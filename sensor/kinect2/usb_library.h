@@ -14,6 +14,10 @@ inline constexpr uint16_t kVendor = 0x045E;
 inline constexpr uint16_t kProducts[] = {0x02D8, 0x02C4};
 inline constexpr uint16_t kAdaptorHub = 0x02D9;
 
+/// Endpoints: commands, their replies, and the two streams.
+inline constexpr uint8_t kCommandEndpoint = 0x02, kReplyEndpoint = 0x81, kColorEndpoint = 0x83,
+                         kInfraredEndpoint = 0x84;
+
 /// Lets every local user of a seat open the device.
 inline constexpr const char* kUdevRule =
     R"(SUBSYSTEM=="usb", ATTR{idVendor}=="045e", ATTR{idProduct}=="02c4|02d8|02d9", MODE="0660", TAG+="uaccess")";

@@ -10,8 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr uint8_t kColorEndpoint = 0x83, kInfraredEndpoint = 0x84;
-
 // 60 x 8 packets and 20 x 16 KiB are 16.55 MB, just below what Linux gives all of USB by default (16 MiB). The infrared
 // ring lasts for 60 ms.
 constexpr size_t kColorTransfers = 20, kInfraredTransfers = 60;

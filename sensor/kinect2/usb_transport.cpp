@@ -16,7 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr unsigned kTimeoutMs = 1000;
-constexpr uint8_t kCommandEndpoint = 0x02, kReplyEndpoint = 0x81, kInfraredEndpoint = 0x84;
 constexpr int kConfiguration = 1;
 constexpr std::array<uint8_t, 2> kInterfaces{0, 1};
 constexpr int kOpenAttempts = 10;
@@ -102,14 +101,14 @@ class UsbTransport final : public Transport {
 
     void send(std::span<const uint8_t> bytes) override {
         // libusb takes one kind of pointer for both directions; it does not write here.
-        const int sent = transfer(kCommandEndpoint, const_cast<uint8_t*>(bytes.data()), bytes.size(), "a command");
+        const int sent = transfer(usb::kCommandEndpoint, const_cast<uint8_t*>(bytes.data()), bytes.size(), "a command");
         if (static_cast<size_t>(sent) != bytes.size()) {
             throw Error(name_, ": ", sent, " of a command's ", bytes.size(), " bytes were sent");
         }
     }
 
     size_t receive(std::span<uint8_t> bytes) override {
-        return static_cast<size_t>(transfer(kReplyEndpoint, bytes.data(), bytes.size(), "the reply to a command"));
+        return static_cast<size_t>(transfer(usb::kReplyEndpoint, bytes.data(), bytes.size(), "the reply to a command"));
     }
 
     void set_alternate_setting(uint8_t interface, uint8_t setting) override {
@@ -202,7 +201,7 @@ class UsbTransport final : public Transport {
             for (int a = 0; a < interface.num_altsetting; ++a) {
                 const libusb_interface_descriptor& setting = interface.altsetting[a];
                 for (uint8_t e = 0; e < setting.bNumEndpoints; ++e) {
-                    if (setting.endpoint[e].bEndpointAddress == kInfraredEndpoint)
+                    if (setting.endpoint[e].bEndpointAddress == usb::kInfraredEndpoint)
                         return companion(setting.endpoint[e]);
                 }
             }

@@ -1,7 +1,6 @@
 #include "sensor/live/played_source.h"
 
-#include <condition_variable>
-#include <mutex>
+#include <algorithm>
 #include <utility>
 
 #include "sensor/prefetch.h"
@@ -22,36 +21,34 @@ PlayedSource::PlayedSource(std::unique_ptr<Source> recording, ReadingTap tap)
     info_.frames.reset();
 }
 
-PlayedSource::~PlayedSource() {
-    stop();
-    thread_.request_stop();
-}
+PlayedSource::~PlayedSource() { stop(); }
 
 std::optional<Reading> PlayedSource::next() {
-    if (!thread_.joinable()) thread_ = std::jthread([this](std::stop_token stop) { play(stop); });
+    if (!thread_.joinable()) thread_ = std::jthread([this] { play(); });
     return newest_.take();
 }
 
 void PlayedSource::stop() {
-    stopped_ = true;
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+    }
+    changed_.notify_all();
     newest_.end();
 }
 
 double PlayedSource::now_s() const {
-    if (!has_first_) return 0;
-    return first_s_ + std::chrono::duration<double>(Clock::now() - start_).count();
+    const std::lock_guard lock(clock_mutex_);
+    return last_ ? last_->timestamp_s + std::chrono::duration<double>(Clock::now() - last_->at).count() : 0;
 }
 
-void PlayedSource::play(std::stop_token stop) {
+void PlayedSource::play() {
     std::exception_ptr failure;
     try {
-        while (!stopped_) {
-            std::optional<Reading> reading = recording_->next();
-            if (!reading) break;
-            if (const auto* frame = std::get_if<Frame>(&*reading)) wait_for(frame->timestamp_s, stop);
-            if (stopped_) break;
-            if (tap_) tap_(*reading);
-            newest_.put(*std::move(reading));
+        while (std::optional<Reading> reading = recording_->next()) {
+            const auto* frame = std::get_if<Frame>(&*reading);
+            if (frame && !wait_for(frame->timestamp_s)) break;
+            if (!hand_over(*std::move(reading))) break;
         }
     } catch (...) {
         failure = std::current_exception();
@@ -59,18 +56,32 @@ void PlayedSource::play(std::stop_token stop) {
     newest_.end(failure);
 }
 
-void PlayedSource::wait_for(double timestamp_s, std::stop_token stop) {
-    if (!has_first_) {
-        start_ = Clock::now();
-        first_s_ = timestamp_s;
-        has_first_ = true;
-        return;
+/// When a frame is to come.
+PlayedSource::Moment PlayedSource::due(double timestamp_s) {
+    const std::lock_guard lock(clock_mutex_);
+    Moment moment{timestamp_s, Clock::now()};
+    if (last_) {
+        const double gap_s = std::clamp(timestamp_s - last_->timestamp_s, 0.0, kLongestGap_s);
+        moment.at = last_->at + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(gap_s));
     }
-    const auto after = std::chrono::duration<double>(timestamp_s - first_s_);
-    std::mutex mutex;
-    std::condition_variable_any stopped;
-    std::unique_lock lock(mutex);
-    stopped.wait_until(lock, stop, start_ + std::chrono::duration_cast<Clock::duration>(after), [] { return false; });
+    last_ = moment;
+    return moment;
+}
+
+/// False once nobody takes frames any more.
+bool PlayedSource::wait_for(double timestamp_s) {
+    const Moment moment = due(timestamp_s);
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, moment.at, [&] { return stopped_; });
+    return !stopped_;
+}
+
+bool PlayedSource::hand_over(Reading reading) {
+    const std::lock_guard lock(mutex_);  // what the tap has seen is counted as captured
+    if (stopped_) return false;
+    if (tap_) tap_(reading);
+    newest_.put(std::move(reading));
+    return true;
 }
 
 }  // namespace patina::sensor

@@ -1,8 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "sensor/live/live_source.h"
@@ -11,33 +13,45 @@
 namespace patina::sensor {
 
 /// A recording that plays as a camera would: each frame comes at the time that its timestamp says after the first one.
-/// What cannot be decoded by then comes late. Indices and timestamps are the recording's.
+/// What cannot be decoded by then comes late. A gap between two timestamps is played as kLongestGap_s at most. Indices
+/// and timestamps are the recording's.
 class PlayedSource : public LiveSource {
   public:
+    static constexpr double kLongestGap_s = 2;
+
     /// Begins to play when it is first asked for a reading. `tap` may be empty.
     explicit PlayedSource(std::unique_ptr<Source> recording, ReadingTap tap = {});
     ~PlayedSource() override;
 
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override;
+    /// Once this returns, the tap is not called any more.
     void stop() override;
     double now_s() const override;
     LiveCounts counts() const override { return newest_.counts(); }
 
   private:
     using Clock = std::chrono::steady_clock;
-    void play(std::stop_token stop);
-    void wait_for(double timestamp_s, std::stop_token stop);
+    /// A moment on both clocks.
+    struct Moment {
+        double timestamp_s = 0;
+        Clock::time_point at{};
+    };
+    void play();
+    Moment due(double timestamp_s);
+    bool wait_for(double timestamp_s);
+    bool hand_over(Reading reading);
 
     std::unique_ptr<Source> recording_;
     ReadingTap tap_;
     SequenceInfo info_;
     NewestFrame newest_;
-    Clock::time_point start_;              ///< of the first frame's exposure
-    std::atomic<double> first_s_ = 0;      ///< its timestamp
-    std::atomic<bool> has_first_ = false;  ///< whether there was one
-    std::atomic<bool> stopped_ = false;
-    std::jthread thread_;  // last: stops and joins before what it uses is destroyed
+    std::mutex mutex_;  ///< held while the tap runs
+    std::condition_variable changed_;
+    bool stopped_ = false;  ///< of mutex_
+    mutable std::mutex clock_mutex_;
+    std::optional<Moment> last_;  ///< of clock_mutex_: the exposure of the last frame, or of the one that is waited for
+    std::jthread thread_;         // last: joins before what it uses is destroyed
 };
 
 }  // namespace patina::sensor

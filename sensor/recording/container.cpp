@@ -24,7 +24,9 @@ namespace {
 constexpr SequenceRole kRoles[] = {SequenceRole::kMain, SequenceRole::kLighting};
 
 size_t place_of(SequenceRole role) { return static_cast<size_t>(role); }
-int64_t number_of(SequenceRole role) { return static_cast<int64_t>(role); }
+
+/// How long finish() waits for each reader of the log.
+constexpr int kPatienceWithReadersMs = 1000;
 
 /// Creates an empty file under a name that was free.
 fs::path created(const fs::path& file) {
@@ -41,8 +43,6 @@ int64_t pragma(Database& database, const char* name) {
     Query query(database, std::string("PRAGMA ") + name);
     return query.next() ? query.number(0) : 0;
 }
-
-std::span<const std::byte> bytes_of(const std::vector<uint8_t>& content) { return std::as_bytes(std::span(content)); }
 
 std::vector<uint8_t> copied(std::span<const std::byte> blob) {
     const auto* first = reinterpret_cast<const uint8_t*>(blob.data());
@@ -138,7 +138,7 @@ void RecordingWriter::begin(SequenceRole role, const RecordedSequence& sequence)
         Query(database_, "INSERT INTO attachments VALUES (?, ?, ?, ?)")
             .with(number_of(role))
             .with(std::string_view(attachment.name))
-            .with(bytes_of(attachment.content))
+            .with(bytes_in(attachment.content))
             .with(std::span<const std::byte>(digest))
             .run();
     }
@@ -160,6 +160,7 @@ void RecordingWriter::write_sequence(SequenceRole role, bool ended) {
 }
 
 void RecordingWriter::write_streams(SequenceRole role, const RecordedSequence& sequence) {
+    PATINA_ASSERT(sequence.streams.size() <= kMostStreams, sequence.streams.size(), " streams");
     for (const RecordedStream& stream : sequence.streams) {
         expect(role).streams.push_back(streams_);
         const ContentDigest digest = stream_digest(role, streams_, stream);
@@ -210,7 +211,7 @@ void RecordingWriter::write_payload(SequenceRole role, uint32_t frame, const Pay
         .with(payload.number)
         .with(payload.ticks)
         .with(std::string_view(payload.attributes))
-        .with(bytes_of(payload.content))
+        .with(bytes_in(payload.content))
         .with(std::span<const std::byte>(digest))
         .run();
 }
@@ -232,7 +233,12 @@ void RecordingWriter::finish() {
     }
     commit();
     statements_.reset();  // a statement that is open keeps the log
-    database_.run("PRAGMA journal_mode = DELETE");
+    database_.run(text("PRAGMA busy_timeout = ", kPatienceWithReadersMs));
+    try {
+        database_.run("PRAGMA wal_checkpoint(TRUNCATE)");
+        database_.run("PRAGMA journal_mode = DELETE");
+    } catch (const DatabaseBusy&) {  // a reader keeps the log; all is committed
+    }
 }
 
 struct RecordingFile::Statements {
@@ -308,6 +314,9 @@ void RecordingFile::read_streams(SequenceRole role, RecordedSequence& sequence) 
     rows.with(number_of(role));
     while (rows.next()) {
         const int64_t number = rows.number(0);
+        if (sequence.streams.size() == kMostStreams)
+            throw Error("'", file().string(), "': the ", name_of(role), " sequence has more than ", kMostStreams,
+                        " streams");
         const RecordedStream stream{rows.text(1), rows.text(2), rows.real(3)};
         if (!is_digest(rows, 4, stream_digest(role, number, stream)))
             fail_digest(text("'", file().string(), "': stream ", number));

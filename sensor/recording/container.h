@@ -40,7 +40,8 @@ class RecordingWriter {
     /// Commits all that was added.
     void commit();
 
-    /// Commits, notes that both sequences are whole, and makes one file of the file and its log.
+    /// Commits, notes that both sequences are whole, and makes one file of the file and its log. Where a reader has the
+    /// file open, a log stays beside it, without anything that the file lacks once the reader is done.
     void finish();
 
     const std::filesystem::path& file() const { return database_.file(); }

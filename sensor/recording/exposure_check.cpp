@@ -1,9 +1,11 @@
 #include "sensor/recording/exposure_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/core/luminance.h"
 #include "engine/core/srgb.h"
 
 namespace patina::sensor {
@@ -19,13 +21,30 @@ constexpr double kMostBrightOfLamps = 0.2;
 /// A few frames of a sweep may be as they are.
 constexpr double kToleratedFrames = 0.1;
 
-template <class Pixel, class IsClipped, class IsBright>
-ExposureShares shares(const Image<Pixel>& image, IsClipped is_clipped, IsBright is_bright) {
+/// The luminance of sRGB codes by table: pictures are judged as they come.
+class CodeLuminance {
+  public:
+    CodeLuminance() {
+        for (size_t code = 0; code < kCodes; ++code) {
+            const glm::vec3 linear = linear_color(SrgbPixel(static_cast<uint8_t>(code)));
+            red_[code] = luminance(glm::vec3(linear.r, 0, 0));
+            green_[code] = luminance(glm::vec3(0, linear.g, 0));
+            blue_[code] = luminance(glm::vec3(0, 0, linear.b));
+        }
+    }
+    float operator()(SrgbPixel pixel) const { return red_[pixel.r] + green_[pixel.g] + blue_[pixel.b]; }
+
+  private:
+    static constexpr size_t kCodes = 256;
+    std::array<float, kCodes> red_{}, green_{}, blue_{};
+};
+
+template <class Pixel, class LuminanceOf>
+ExposureShares shares(const Image<Pixel>& image, const Pixel& full, LuminanceOf luminance_of) {
     size_t clipped = 0, bright = 0;
     for (const Pixel& pixel : image.pixels()) {
-        const auto largest = std::max({pixel.r, pixel.g, pixel.b});
-        clipped += is_clipped(largest);
-        bright += is_bright(largest);
+        clipped += pixel.r >= full.r || pixel.g >= full.g || pixel.b >= full.b;
+        bright += luminance_of(pixel) >= kLampThreshold;
     }
     const auto of = static_cast<double>(std::max<size_t>(image.pixels().size(), 1));
     return {static_cast<double>(clipped) / of, static_cast<double>(bright) / of};
@@ -36,13 +55,9 @@ std::string percent(double share) { return text(std::round(1000 * share) / 10, "
 }  // namespace
 
 ExposureShares exposure_shares(const ColorImage& color) {
-    if (const auto* codes = std::get_if<Image<SrgbPixel>>(&color)) {
-        const auto threshold = static_cast<int>(std::lround(255 * srgb_encoded(kLampThreshold)));
-        return shares(
-            *codes, [](uint8_t v) { return v == 255; }, [threshold](uint8_t v) { return v > threshold; });
-    }
-    return shares(
-        std::get<Image<glm::vec3>>(color), [](float v) { return v >= 1; }, [](float v) { return v > kLampThreshold; });
+    static const CodeLuminance kLuminance;
+    if (const auto* codes = std::get_if<Image<SrgbPixel>>(&color)) return shares(*codes, SrgbPixel(255), kLuminance);
+    return shares(std::get<Image<glm::vec3>>(color), glm::vec3(1), [](glm::vec3 linear) { return luminance(linear); });
 }
 
 void ExposureCheck::add(const ColorImage& color) {

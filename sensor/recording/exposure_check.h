@@ -11,10 +11,10 @@ namespace patina::sensor {
 /// How much of the colour pictures of a sequence is as bright as it may be, or brighter.
 struct ExposureShares {
     double clipped = 0;  ///< of the pixels, those with a channel at 255, or linear 1
-    double bright = 0;   ///< those above kLampThreshold in a channel: lamps, where the exposure is low
+    double bright = 0;   ///< those of kLampThreshold and more: lamps, where the exposure is low
 };
 
-/// What `patina lights` takes for a lamp by default: a linear value.
+/// The luminance from which a pixel belongs to a lamp, by default (FindLightsSettings::threshold).
 inline constexpr float kLampThreshold = 0.1f;
 
 ExposureShares exposure_shares(const ColorImage& color);

@@ -20,7 +20,12 @@ void LogKeeper::committed(uint64_t most_log_bytes) {
     std::error_code failure;
     const uint64_t bytes = std::filesystem::file_size(file_.string() + "-wal", failure);
     if (failure || bytes <= most_log_bytes) return;
-    changed_.wait(lock, [&] { return in_file_ == commits_ || given_up_; });
+    changed_.wait(lock, [&] { return in_file_ == commits_ || !problem_.empty(); });
+}
+
+std::string LogKeeper::problem() const {
+    const std::lock_guard lock(mutex_);
+    return problem_;
 }
 
 void LogKeeper::keep(std::stop_token stop) {
@@ -35,9 +40,9 @@ void LogKeeper::keep(std::stop_token stop) {
             in_file_ = commits;
             changed_.notify_all();
         }
-    } catch (const std::exception&) {
+    } catch (const std::exception& error) {
         const std::lock_guard lock(mutex_);
-        given_up_ = true;
+        problem_ = reason_of(error);
         changed_.notify_all();
     }
 }

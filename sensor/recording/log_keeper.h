@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace patina::sensor {
@@ -22,16 +23,19 @@ class LogKeeper {
     /// waits until all of it is in the file: the next transaction begins the log anew then.
     void committed(uint64_t most_log_bytes);
 
+    /// Why commits are not brought to the disk any more, in one sentence; empty while they are. The log keeps all.
+    std::string problem() const;
+
   private:
     void keep(std::stop_token stop);
 
     std::filesystem::path file_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable_any changed_;
-    uint64_t commits_ = 0;   ///< so far
-    uint64_t in_file_ = 0;   ///< of these, those before the last checkpoint that began
-    bool given_up_ = false;  ///< the disk refused; the log keeps all, and who commits finds out
-    std::jthread thread_;    // last: stops and joins before what it uses is destroyed
+    uint64_t commits_ = 0;  ///< so far
+    uint64_t in_file_ = 0;  ///< of these, those before the last checkpoint that began
+    std::string problem_;
+    std::jthread thread_;  // last: stops and joins before what it uses is destroyed
 };
 
 }  // namespace patina::sensor

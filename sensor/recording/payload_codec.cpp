@@ -2,7 +2,6 @@
 
 #include <cstring>
 #include <type_traits>
-#include <utility>
 
 #include <zstd.h>
 
@@ -92,7 +91,7 @@ std::vector<uint8_t> compressed(const std::vector<uint8_t>& bytes) {
     return packed;
 }
 
-std::vector<uint8_t> decompressed(const std::vector<uint8_t>& packed, size_t bytes, const std::string& where) {
+std::vector<uint8_t> decompressed(std::span<const uint8_t> packed, size_t bytes, const std::string& where) {
     std::vector<uint8_t> content(bytes);
     const size_t size = ZSTD_decompress(content.data(), content.size(), packed.data(), packed.size());
     if (ZSTD_isError(size)) throw Error(where, " cannot be decompressed: ", ZSTD_getErrorName(size));
@@ -101,7 +100,7 @@ std::vector<uint8_t> decompressed(const std::vector<uint8_t>& packed, size_t byt
 }
 
 template <class Pixel>
-Image<Pixel> unpacked(const std::vector<uint8_t>& content, Extent2D expected, const std::string& where) {
+Image<Pixel> unpacked(std::span<const uint8_t> content, Extent2D expected, const std::string& where) {
     return image_of<Pixel>(decompressed(content, expected.area() * sizeof(Pixel), where), expected);
 }
 
@@ -139,19 +138,19 @@ std::vector<uint8_t> encode(const DepthImage& depth) {
     return std::visit([](const auto& image) { return compressed(planes_of(image)); }, depth);
 }
 
-ColorImage decode_color(std::string_view encoding, std::vector<uint8_t> content, Extent2D expected,
+ColorImage decode_color(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,
                         const std::string& where) {
     if (encoding == kRgb8) return unpacked<SrgbPixel>(content, expected, where);
     if (encoding == kRgbFloat) return unpacked<glm::vec3>(content, expected, where);
-    if (is_picture_file(encoding)) return decode_color(where, std::move(content), expected);
+    if (is_picture_file(encoding)) return decode_color(where, content, expected);
     fail_unknown(encoding, where);
 }
 
-DepthImage decode_depth(std::string_view encoding, std::vector<uint8_t> content, Extent2D expected,
+DepthImage decode_depth(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,
                         const std::string& where) {
     if (encoding == kDepth16) return unpacked<uint16_t>(content, expected, where);
     if (encoding == kDepthFloat) return unpacked<float>(content, expected, where);
-    if (is_picture_file(encoding)) return decode_depth(where, std::move(content), expected);
+    if (is_picture_file(encoding)) return decode_depth(where, content, expected);
     fail_unknown(encoding, where);
 }
 

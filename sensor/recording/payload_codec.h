@@ -36,9 +36,9 @@ std::vector<uint8_t> encode(const DepthImage& depth);
 
 /// A picture of size `expected` from a payload; `where` names it in messages. Throws Error where the encoding is not
 /// known, or the bytes are damaged or of another size.
-ColorImage decode_color(std::string_view encoding, std::vector<uint8_t> content, Extent2D expected,
+ColorImage decode_color(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,
                         const std::string& where);
-DepthImage decode_depth(std::string_view encoding, std::vector<uint8_t> content, Extent2D expected,
+DepthImage decode_depth(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,
                         const std::string& where);
 
 }  // namespace patina::sensor

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -11,18 +12,17 @@ namespace patina::sensor {
 
 namespace {
 
-/// Of the time that a frame may be at risk, what the machine's other work may take.
+/// Part of kMostAtRisk_s that is left to the machine's other work.
 constexpr double kMargin_s = 0.25;
-/// Commits become no more frequent than this, however slow they are: each costs the disk a flush.
+/// Least time between two commits: each costs the disk a flush.
 constexpr double kLeastInterval_s = 0.05;
-/// The slowest of so many commits is what the next one is expected to take.
+/// A commit is expected to take as long as the slowest of the last so many.
 constexpr size_t kRemembered = 8;
-/// What a transaction holds at most, about; of memory and of the database's cache.
+/// A transaction of this size is committed at once. It bounds the memory that it takes.
 constexpr uint64_t kMostGathered = uint64_t{64} << 20;
-/// A log that is longer is brought into the file before more is written: what a disk as slow as that needs in space
-/// stays bounded.
+/// The writer waits for a longer log to be brought into the file. This bounds the space that a slow disk needs.
 constexpr uint64_t kMostLogBytes = uint64_t{512} << 20;
-/// Of the clock that decoded frames are stamped by.
+/// The clock of decoded frames' streams.
 constexpr double kSecondsPerTick = 1e-9;
 
 template <class Picture>
@@ -104,12 +104,12 @@ void Recorder::hand_over(Item item) {
     std::unique_lock lock(mutex_);
     const auto fits = [&] {
         return counts_.queued_bytes == 0 || counts_.queued_bytes + item.bytes <= options_.most_queued_bytes ||
-               !problem_.empty();
+               ending_ || !problem_.empty();
     };
     if (options_.when_full == WhenFull::kWait) changed_.wait(lock, fits);
     const bool is_frame = !std::holds_alternative<Begin>(item.content);
     counts_.given += is_frame;
-    if (!problem_.empty()) {
+    if (ending_ || !problem_.empty()) {
         counts_.lost += is_frame;
         return;
     }
@@ -137,6 +137,11 @@ std::string Recorder::problem() const {
     return problem_;
 }
 
+std::string Recorder::warning() const {
+    const std::lock_guard lock(mutex_);
+    return warning_;
+}
+
 void Recorder::finish() {
     {
         const std::lock_guard lock(mutex_);
@@ -145,6 +150,17 @@ void Recorder::finish() {
     changed_.notify_all();
     if (thread_.joinable()) thread_.join();
     if (const std::string why = problem(); !why.empty()) throw Error(why);
+}
+
+void Recorder::discard() noexcept {
+    try {
+        finish();
+    } catch (const std::exception&) {  // it is removed all the same
+    }
+    for (const char* end : {"", "-wal", "-shm"}) {
+        std::error_code ignored;
+        std::filesystem::remove(file_.string() + end, ignored);
+    }
 }
 
 void Recorder::write_all() {
@@ -159,7 +175,7 @@ void Recorder::write_all() {
     }
 }
 
-/// The next item; commits while there is none, when that is due. Empty at the end.
+/// The next item; while there is none, commits when that is due. Empty at the end.
 std::optional<Recorder::Item> Recorder::take() {
     std::unique_lock lock(mutex_);
     while (true) {
@@ -212,12 +228,12 @@ Recorder::Clock::time_point Recorder::commit_due() const {
         return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     };
     const double expected_s = commits_s_.empty() ? kMargin_s : *std::ranges::max_element(commits_s_);
-    // Behind the camera, commits must not take the time in which it would be caught up with.
+    // A recorder that is late must not spend its time on commits.
     const auto earliest = after(began_, std::max(kLeastInterval_s, expected_s));
     return std::max(earliest, after(oldest_, kMostAtRisk_s - kMargin_s - expected_s));
 }
 
-/// All at once: a transaction that were open longer would keep the log from beginning anew.
+/// Writes all frames at once: a transaction that stays open keeps the log from beginning anew.
 void Recorder::commit() {
     if (gathered_.empty()) return;
     const auto start = Clock::now();
@@ -241,6 +257,10 @@ void Recorder::commit() {
     gathered_.clear();
     gathered_bytes_ = 0;
     keeper_->committed(kMostLogBytes);
+    if (const std::string why = keeper_->problem(); !why.empty()) {
+        const std::lock_guard lock(mutex_);
+        warning_ = "while it was written, a cut of the power could have cost more than a second: " + why;
+    }
 }
 
 void Recorder::fail(const std::string& problem) {
@@ -253,6 +273,14 @@ void Recorder::fail(const std::string& problem) {
         counts_.queued_bytes = 0;
     }
     changed_.notify_all();
+}
+
+ReadingTap tap_to(std::shared_ptr<Recorder> recorder) {
+    if (!recorder) return {};
+    return [recorder = std::move(recorder)](const Reading& reading) {
+        if (const auto* skipped = std::get_if<Skipped>(&reading)) return recorder->skip(*skipped);
+        recorder->record(std::get<Frame>(reading));
+    };
 }
 
 }  // namespace patina::sensor

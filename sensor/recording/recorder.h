@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "sensor/live/live_source.h"
 #include "sensor/recording/container.h"
 #include "sensor/recording/log_keeper.h"
 #include "sensor/recording/recorded_frame.h"
@@ -20,26 +22,26 @@ namespace patina::sensor {
 
 /// What a recorder has done so far.
 struct RecorderCounts {
-    uint64_t given = 0;    ///< frames and skipped ones that it was handed
-    uint64_t written = 0;  ///< of these, on the disk
-    uint64_t dropped = 0;  ///< frames that came while the queue was full; they are in the file as skipped
-    uint64_t lost = 0;     ///< those that came when nothing more could be written, and those since the last commit then
-    uint64_t bytes = 0;    ///< of payloads on the disk
-    uint64_t queued_bytes = 0, most_queued_bytes = 0;  ///< of frames that are not committed; and at the most
+    uint64_t given = 0;         ///< frames that were handed over, skipped ones included; written + lost at the end
+    uint64_t written = 0;       ///< of these, committed
+    uint64_t dropped = 0;       ///< frames that found the queue full; the file has them as skipped
+    uint64_t lost = 0;          ///< not in the file: it could not be written, or the recording had ended
+    uint64_t bytes = 0;         ///< of committed payloads
+    uint64_t queued_bytes = 0;  ///< of frames that are not committed
+    uint64_t most_queued_bytes = 0;
     double slowest_commit_s = 0;
 };
 
-/// Writes frames to a recording on a thread of its own, which also compresses them. It commits in time for what a kill
-/// would cost never to be older than kMostAtRisk_s; that begins with the moment in which a frame is handed over.
-/// Another thread brings commits to the disk at once, for the power may be cut. Frames are handed over from one thread
-/// at a time.
+/// Writes frames to a recording. A thread of its own compresses and commits them: a frame is committed within
+/// kMostAtRisk_s of being handed over, so that a kill costs no more. A second thread brings each commit to the disk at
+/// once, so that a cut of the power costs little more. Frames are handed over from one thread at a time.
 class Recorder {
   public:
     static constexpr double kMostAtRisk_s = 0.5;
 
     /// What becomes of a frame that finds the queue full.
     enum class WhenFull {
-        kDrop,  ///< it is noted as skipped: a camera does not wait
+        kDrop,  ///< the file has it as skipped; for cameras, which do not wait
         kWait   ///< the caller waits
     };
 
@@ -56,10 +58,11 @@ class Recorder {
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// What comes from now on belongs to this sequence. One of decoded frames has no streams of its own.
+    /// Begins a sequence: the frames that follow belong to it. A sequence without streams gets those of decoded frames.
     void begin(SequenceRole role, RecordedSequence sequence);
 
-    /// Takes the next frame: decoded, or as it came; or notes why there is none. Frames' indices count from 0.
+    /// Adds the next frame: decoded, or as a device sent it, or the reason why there is none. Indices count from 0 in
+    /// each sequence. After finish() a frame is lost, and counted.
     void record(Frame frame, std::optional<double> arrival_s = std::nullopt);
     void record(RecordedFrame frame);
     void skip(Skipped skipped);
@@ -69,9 +72,15 @@ class Recorder {
     /// Why nothing more can be written, in one sentence; empty while it can.
     std::string problem() const;
 
-    /// Writes what waits, and ends the recording. Throws Error with problem() where there is one; what was committed
-    /// before is there.
+    /// Why a cut of the power could have cost more than it should, in one sentence; empty where it could not.
+    std::string warning() const;
+
+    /// Writes what waits, and ends the recording. Throws Error with problem() where there is one; the file then keeps
+    /// what was committed.
     void finish();
+
+    /// Ends the recording and removes its file, where nothing of it is worth keeping.
+    void discard() noexcept;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -107,7 +116,7 @@ class Recorder {
     std::deque<Item> queue_;
     bool ending_ = false;
     RecorderCounts counts_;
-    std::string problem_;
+    std::string problem_, warning_;
 
     // Of the writing thread alone.
     RecordingWriter writer_;
@@ -120,5 +129,8 @@ class Recorder {
 
     std::thread thread_;
 };
+
+/// Hands every reading to a recorder; empty where there is none.
+ReadingTap tap_to(std::shared_ptr<Recorder> recorder);
 
 }  // namespace patina::sensor

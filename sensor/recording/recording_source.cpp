@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/core/error.h"
 #include "sensor/recording/payload_codec.h"
 
 namespace patina::sensor {
@@ -47,46 +46,55 @@ RecordingSource::RecordingSource(const fs::path& file, SequenceRole role, const 
 
 std::optional<Reading> RecordingSource::next() {
     if (next_ == *info_.frames) return std::nullopt;
-    const uint32_t index = next_++;
-    try {
-        auto recorded = file_.read(role_, index);
-        if (auto* skipped = std::get_if<Skipped>(&recorded)) return std::move(*skipped);
-        return decoded(std::get<RecordedFrame>(recorded));
-    } catch (const Error& error) {
-        return Skipped{index, error.what()};
-    } catch (const std::exception& error) {
-        return Skipped{index,
-                       text("'", file_.file().string(), "': frame ", index, " cannot be decoded: ", reason_of(error))};
-    }
+    const auto recorded = file_.read(role_, next_++);
+    if (const auto* skipped = std::get_if<Skipped>(&recorded)) return *skipped;
+    return decoded(std::get<RecordedFrame>(recorded));
 }
 
-Frame RecordingSource::decoded(const RecordedFrame& recorded) const {
+Reading RecordingSource::decoded(const RecordedFrame& recorded) const {
     Frame frame;
     frame.index = recorded.index;
     frame.timestamp_s = recorded.timestamp_s;
     frame.exposure = recorded.exposure;
     frame.world_from_camera = recorded.world_from_camera;
     frame.pose_defect = recorded.pose_defect;
-    if (decoder_) {
-        decoder_->decode(recorded, frame);
-        return frame;
-    }
-    bool has_color = false, has_depth = false;
-    for (const Payload& payload : recorded.payloads) {
-        const RecordedStream& stream = file_.sequence(role_).streams[payload.stream];
-        const std::string where = text("'", file_.file().string(), "': ", stream.name, " of frame ", recorded.index);
-        if (stream.name == "color") {
-            frame.color = decode_color(stream.encoding, payload.content, info_.color.extent, where);
-            has_color = true;
+    try {
+        if (decoder_) {
+            decoder_->decode(recorded, frame);
         } else {
-            frame.depth = decode_depth(stream.encoding, payload.content, info_.depth.extent, where);
-            has_depth = true;
+            decode_pictures(recorded, frame);
         }
+    } catch (const DamagedFrame& error) {
+        return Skipped{recorded.index, error.what()};
     }
-    if (!has_color || !has_depth)
-        throw Error("'", file_.file().string(), "': frame ", recorded.index, " has no ", has_color ? "depth" : "color");
     return frame;
 }
+
+void RecordingSource::decode_pictures(const RecordedFrame& recorded, Frame& frame) const {
+    const std::string file = "'" + file_.file().string() + "'";
+    bool has_color = false, has_depth = false;
+    try {
+        for (const Payload& payload : recorded.payloads) {
+            const RecordedStream& stream = file_.sequence(role_).streams[payload.stream];
+            const std::string where = text(file, ": ", stream.name, " of frame ", recorded.index);
+            if (stream.name == "color") {
+                frame.color = decode_color(stream.encoding, payload.content, info_.color.extent, where);
+                has_color = true;
+            } else {
+                frame.depth = decode_depth(stream.encoding, payload.content, info_.depth.extent, where);
+                has_depth = true;
+            }
+        }
+    } catch (const Error& error) {
+        throw DamagedFrame(error.what());
+    } catch (const std::exception& error) {  // of the picture's library
+        throw DamagedFrame(file, ": frame ", recorded.index, " cannot be decoded: ", reason_of(error));
+    }
+    if (!has_color || !has_depth)
+        throw DamagedFrame(file, ": frame ", recorded.index, " has no ", has_color ? "depth" : "color");
+}
+
+bool holds_pictures(const RecordedSequence& sequence) { return std::ranges::all_of(sequence.streams, is_picture); }
 
 fs::path lighting_in(const fs::path& recording) { return recording / kLighting; }
 
@@ -94,10 +102,15 @@ bool names_recording(const fs::path& path) {
     return is_recording(path) || (path.filename() == kLighting && is_recording(path.parent_path()));
 }
 
-std::unique_ptr<Source> open_recording(const fs::path& path, const MakePayloadDecoder& make_decoder) {
+NamedSequence named_sequence(const fs::path& path) {
     if (path.filename() == kLighting && is_recording(path.parent_path()))
-        return std::make_unique<RecordingSource>(path.parent_path(), SequenceRole::kLighting, make_decoder);
-    return std::make_unique<RecordingSource>(path, SequenceRole::kMain, make_decoder);
+        return {path.parent_path(), SequenceRole::kLighting};
+    return {path, SequenceRole::kMain};
+}
+
+std::unique_ptr<Source> open_recording(const fs::path& path, const MakePayloadDecoder& make_decoder) {
+    const auto [file, role] = named_sequence(path);
+    return std::make_unique<RecordingSource>(file, role, make_decoder);
 }
 
 }  // namespace patina::sensor

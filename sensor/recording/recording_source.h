@@ -5,17 +5,25 @@
 #include <memory>
 #include <string>
 
+#include "engine/core/error.h"
 #include "patina/source.h"
 #include "sensor/recording/container.h"
 
 namespace patina::sensor {
+
+/// A frame whose payloads are not what its device sends. The next frame may be whole.
+class DamagedFrame : public Error {
+  public:
+    using Error::Error;
+};
 
 /// Makes pictures of payloads that are a device's own, such as a Kinect's infrared.
 class PayloadDecoder {
   public:
     virtual ~PayloadDecoder() = default;
 
-    /// Sets the frame's pictures from its payloads. Throws Error where these are damaged: the frame is skipped then.
+    /// Sets the frame's pictures from its payloads. Throws DamagedFrame where these are damaged; Error where nothing
+    /// more can be decoded, such as for a device that is lost.
     virtual void decode(const RecordedFrame& recorded, Frame& frame) = 0;
 };
 
@@ -31,10 +39,13 @@ class RecordingSource : public Source {
     RecordingSource(const std::filesystem::path& file, SequenceRole role, const MakePayloadDecoder& make_decoder = {});
 
     const SequenceInfo& info() const override { return info_; }
+
+    /// A frame that is damaged is skipped. Throws Error as the decoder does, where that cannot go on.
     std::optional<Reading> next() override;
 
   private:
-    Frame decoded(const RecordedFrame& recorded) const;
+    void decode_pictures(const RecordedFrame& recorded, Frame& frame) const;
+    Reading decoded(const RecordedFrame& recorded) const;
 
     RecordingFile file_;
     SequenceRole role_;
@@ -43,11 +54,21 @@ class RecordingSource : public Source {
     uint32_t next_ = 0;
 };
 
+/// Whether all streams of a sequence are pictures, which need no decoder.
+bool holds_pictures(const RecordedSequence& sequence);
+
 /// The lighting sequence in a recording, as if that were a folder: "FILE.patina/lighting".
 std::filesystem::path lighting_in(const std::filesystem::path& recording);
 
 /// Whether a path is a recording, or the lighting sequence in one.
 bool names_recording(const std::filesystem::path& path);
+
+/// What such a path names.
+struct NamedSequence {
+    std::filesystem::path file;
+    SequenceRole role = SequenceRole::kMain;
+};
+NamedSequence named_sequence(const std::filesystem::path& path);
 
 /// Opens what such a path names. Errors as RecordingSource.
 std::unique_ptr<Source> open_recording(const std::filesystem::path& path, const MakePayloadDecoder& make_decoder = {});

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <vector>
 
 #include "engine/core/error.h"
 #include "sensor/files/text_file.h"
@@ -15,10 +14,6 @@ namespace {
 
 /// Beyond rounding; below it a transform is as it was when it was written, and stays so.
 constexpr double kExactlyRigid = 1e-9;
-
-int64_t number_of(SequenceRole role) { return static_cast<int64_t>(role); }
-
-std::span<const std::byte> bytes_of(const std::vector<uint8_t>& content) { return std::as_bytes(std::span(content)); }
 
 }  // namespace
 
@@ -36,7 +31,7 @@ ContentDigest stream_digest(SequenceRole role, int64_t number, const RecordedStr
 
 ContentDigest attachment_digest(SequenceRole role, const Attachment& attachment) {
     RowDigest digest("attachments");
-    digest.add(number_of(role)).add(std::string_view(attachment.name)).add(bytes_of(attachment.content));
+    digest.add(number_of(role)).add(std::string_view(attachment.name)).add(bytes_in(attachment.content));
     return digest.value();
 }
 
@@ -51,7 +46,7 @@ ContentDigest frame_digest(SequenceRole role, const RecordedFrame& frame, std::s
 ContentDigest payload_digest(int64_t stream, uint32_t frame, const Payload& payload) {
     RowDigest digest("payloads");
     digest.add(stream).add(int64_t{frame}).add(payload.number).add(payload.ticks);
-    return digest.add(std::string_view(payload.attributes)).add(bytes_of(payload.content)).value();
+    return digest.add(std::string_view(payload.attributes)).add(bytes_in(payload.content)).value();
 }
 
 std::string pose_text(const std::optional<RigidTransform>& pose) {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/store/content_digest.h"
 #include "sensor/recording/recorded_frame.h"
@@ -12,6 +15,7 @@ namespace patina::sensor {
 
 inline constexpr int64_t kRecordingApplication = 0x5054'4e52;  // "PTNR", in the file's header
 inline constexpr int64_t kRecordingSchema = 1;
+inline constexpr size_t kMostStreams = 64;  ///< of a sequence; a camera has two
 
 /// The tables of a recording as SQLite keeps them: a file with others is no recording of this schema.
 /// docs/develop/recording_file.md describes them.
@@ -30,6 +34,14 @@ inline constexpr std::array<std::string_view, 5> kRecordingTables{
     "ticks INTEGER NOT NULL, attributes TEXT NOT NULL, content BLOB NOT NULL, digest BLOB NOT NULL, "
     "PRIMARY KEY (stream, frame))",
 };
+
+/// A sequence's number in the tables.
+constexpr int64_t number_of(SequenceRole role) { return static_cast<int64_t>(role); }
+
+/// A blob as a statement takes it.
+inline std::span<const std::byte> bytes_in(const std::vector<uint8_t>& content) {
+    return std::as_bytes(std::span(content));
+}
 
 // The digest of each kind of row: of all its values.
 ContentDigest sequence_digest(SequenceRole role, std::string_view description, int64_t frames, int64_t ended);

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <regex>
 #include <string>
 
 #include "cameras/kinect2_decoder.h"
 #include "scenes/kinect2/infrared_frame.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/recording/container.h"
 #include "tests/cli/run_folder.h"
 #include "tests/simulated_kinect2/pages.h"
@@ -68,6 +70,43 @@ class Kinect2Commands : public RunFolderTest {
         return environment;
     }
 
+    /// A raw recording is recorded anew as it is; it does not play.
+    static void expect_a_copy_of_its_rows(const fs::path& file) {
+        const fs::path copy = file.string() + "-copy.patina";
+        const Outcome copied = patina({"record", file, "--out", copy, "--quiet"});
+        ASSERT_EQ(copied.exit_code, 0) << copied.err;
+        sensor::RecordingFile a(file), b(copy);
+        const auto& sequence = a.sequence(sensor::SequenceRole::kMain);
+        EXPECT_EQ(b.sequence(sensor::SequenceRole::kMain).info.frames, sequence.info.frames);
+        EXPECT_EQ(b.sequence(sensor::SequenceRole::kMain).attachments.size(), sequence.attachments.size());
+        for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
+            const auto frame = std::get<sensor::RecordedFrame>(a.read(sensor::SequenceRole::kMain, i));
+            const auto other = std::get<sensor::RecordedFrame>(b.read(sensor::SequenceRole::kMain, i));
+            EXPECT_EQ(other.timestamp_s, frame.timestamp_s);
+            for (size_t k = 0; k < frame.payloads.size(); ++k) {
+                EXPECT_EQ(other.payloads.at(k).number, frame.payloads[k].number);
+                EXPECT_TRUE(other.payloads.at(k).content == frame.payloads[k].content);
+            }
+        }
+        EXPECT_THAT(expect_failure(patina({"record", file, "--simulate", "--out", file.string() + "-played"})),
+                    HasSubstr("cannot be played"));
+        EXPECT_FALSE(fs::exists(file.string() + "-played"));
+    }
+
+    static void expect_infrared_in_export(const fs::path& file, const fs::path& folder) {
+        const Outcome exported = patina({"export", file, "--native", folder, "--quiet"});
+        ASSERT_EQ(exported.exit_code, 0) << exported.err;
+        const auto files = files_in(folder);
+        const auto pictures = [&](const char* start) {
+            return std::ranges::count_if(files, [&](const auto& f) { return f.first.starts_with(start); });
+        };
+        EXPECT_EQ(pictures("infrared/"), pictures("depth/"));
+        const auto light =
+            std::get<Image<uint16_t>>(sensor::read_depth(folder / "infrared/000000.png", Extent2D{512, 424}));
+        // 16 times the amplitude: the box reflects a half of 2000, 1.4 m away.
+        EXPECT_NEAR(light.at(256, 212), 16 * 0.5 * 2000 / (kBox_m * kBox_m), 200);
+    }
+
     const fs::path file_ = beside("room.patina");
 };
 
@@ -111,6 +150,8 @@ TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
     std::smatch farthest;
     ASSERT_TRUE(std::regex_search(info.out, farthest, std::regex("95 % below ([0-9.]+) m"))) << info.out;
     EXPECT_NEAR(std::stod(farthest[1]), kWall_m, 0.01);
+    expect_a_copy_of_its_rows(file_);
+    expect_infrared_in_export(file_, beside("native"));
     const nlohmann::json summary = run_quietly(file_, {"--frames", "3", "--lighting", "none"});
     EXPECT_EQ(summary["frames"]["used"], 3u);
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
@@ -125,6 +166,39 @@ TEST_F(Kinect2Commands, AnUnpluggedKinectLeavesWhatWasFused) {
         patina({"record", "kinect2", "--out", file_, "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
     EXPECT_THAT(expect_failure(recorded), AllOf(HasSubstr("unplugged"), HasSubstr("frames")));
     EXPECT_GT(*sensor::RecordingFile(file_).sequence(sensor::SequenceRole::kMain).info.frames, 1u);
+}
+
+TEST_F(Kinect2Commands, TwoPassesGoIntoOneFileTheSecondAtALowExposure) {
+    Program program({"record", "kinect2", "--lighting", "kinect2", "--low-exposure", "2", "--out", file_},
+                    with_kinect());
+    for (const auto role : {sensor::SequenceRole::kMain, sensor::SequenceRole::kLighting}) {
+        await_frames(program, file_, role);
+        program.send(SIGINT);
+    }
+    const Outcome recorded = program.wait();
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+    EXPECT_THAT(recorded.err, AllOf(HasSubstr("sequence 1 of 2: reflectance"), HasSubstr("sequence 2 of 2: low")));
+    sensor::RecordingFile recording(file_);
+    for (const auto role : {sensor::SequenceRole::kMain, sensor::SequenceRole::kLighting}) {
+        EXPECT_TRUE(recording.ended(role));
+        EXPECT_EQ(recording.sequence(role).attachments.size(), 5u);
+        ASSERT_GT(*recording.sequence(role).info.frames, 0u);
+        EXPECT_TRUE(std::holds_alternative<sensor::RecordedFrame>(recording.read(role, 0)));
+    }
+    EXPECT_THAT(expect_failure(patina({"record", "kinect2", "--lighting", "elsewhere", "--out", beside("b.patina")},
+                                      with_kinect())),
+                HasSubstr("--lighting kinect2, not --lighting elsewhere"));
+    EXPECT_FALSE(fs::exists(beside("b.patina")));
+}
+
+TEST_F(Kinect2Commands, WithoutAFrameThereIsOneSentenceAndNoFile) {
+    const Program::Environment silent = with_kinect({{"LOSE_EVERY", "1"}});
+    EXPECT_THAT(expect_failure(patina({"record", "kinect2", "--out", file_, "--quiet"}, silent)),
+                HasSubstr("no infrared frame arrived whole"));
+    EXPECT_FALSE(fs::exists(file_));
+    EXPECT_THAT(expect_failure(patina({"live", "kinect2", "--out", out(), "--record", file_, "--quiet"}, silent)),
+                HasSubstr("no infrared frame arrived whole"));
+    EXPECT_FALSE(fs::exists(file_));
 }
 
 TEST_F(Kinect2Commands, WithoutAKinectThereIsOneSentenceAndNoFile) {

@@ -1,6 +1,11 @@
 #include "tests/cli/run_folder.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "sensor/recording/container.h"
 
 namespace patina::testing {
 
@@ -21,6 +26,23 @@ nlohmann::json summary_of(const fs::path& run_folder) {
     const auto summary = nlohmann::json::parse(read_text(run_folder / "run.json"), nullptr, false);
     EXPECT_FALSE(summary.is_discarded()) << "no run.json in " << run_folder;
     return summary.is_discarded() ? nlohmann::json() : summary;
+}
+
+namespace {
+
+uint32_t frames_so_far(const fs::path& recording, sensor::SequenceRole role) {
+    try {
+        return *sensor::RecordingFile(recording).sequence(role).info.frames;
+    } catch (const Error&) {  // it has not begun
+        return 0;
+    }
+}
+
+}  // namespace
+
+void await_frames(Program& program, const fs::path& recording, sensor::SequenceRole role) {
+    while (program.running() && frames_so_far(recording, role) == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
 std::string expect_failure(const Outcome& outcome, int exit_code) {

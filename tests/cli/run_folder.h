@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "sensor/recording/recorded_frame.h"
 #include "tests/cli/program.h"
 #include "tests/sensor/sequences.h"
 
@@ -18,6 +19,9 @@ std::map<std::string, std::string> files_in(const std::filesystem::path& folder)
 
 /// run.json of a finished run; a failure of the test, and null, where there is none.
 nlohmann::json summary_of(const std::filesystem::path& run_folder);
+
+/// Waits until a recording that the program writes holds a frame of a sequence, or the program ends.
+void await_frames(Program& program, const std::filesystem::path& recording, sensor::SequenceRole role);
 
 /// A test with an output folder, and with a recorded sequence of three tiny frames.
 class RunFolderTest : public ::testing::Test {

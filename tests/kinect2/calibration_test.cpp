@@ -100,9 +100,11 @@ TEST(Kinect2Calibration, AbsurdNumbersAreRefused) {
         }
     }
     for (size_t offset = 21; offset < 101; offset += 4) {
-        CalibrationPages pages = whole;
-        set(pages.color_parameters, offset, std::numeric_limits<float>::quiet_NaN());
-        EXPECT_THAT(reason_for(pages), HasSubstr("must be finite")) << offset;
+        for (const float value : {std::numeric_limits<float>::quiet_NaN(), 100.5f, -1e6f}) {
+            CalibrationPages pages = whole;
+            set(pages.color_parameters, offset, value);
+            EXPECT_THAT(reason_for(pages), HasSubstr("must be within -100 and 100")) << offset;
+        }
     }
     CalibrationPages pages = whole;
     set(pages.depth_parameters, 0, 0.0f);

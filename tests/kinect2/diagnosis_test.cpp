@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/export/temporary_folder.h"
+
 namespace patina::sensor::kinect2::testing {
 namespace {
 
@@ -68,7 +70,8 @@ TEST(Kinect2Diagnosis, AbsenceIsOneLine) {
 }
 
 TEST(Kinect2Diagnosis, ControllerIsTheParentOfTheBussRootHub) {
-    const fs::path root = fs::temp_directory_path() / "patina-kinect2-sys";
+    const test::TemporaryFolder folder;
+    const fs::path root = folder.path();
     const fs::path controller = root / "pci0000:00/0000:00:14.0";
     fs::create_directories(controller / "usb2");
     fs::create_directories(root / "bus");
@@ -85,16 +88,14 @@ TEST(Kinect2Diagnosis, ControllerIsTheParentOfTheBussRootHub) {
     EXPECT_TRUE(find("0x1b21").doubtful);
     EXPECT_EQ(find("0x4242").name, "unknown make (4242:a36d), driver xhci_hcd");
     EXPECT_EQ(find_controller(root / "bus", 3).name, "");
-    fs::remove_all(root);
 }
 
 TEST(Kinect2Diagnosis, MemoryOfTheSystemIsRead) {
-    const fs::path file = fs::temp_directory_path() / "patina-kinect2-usbfs";
+    const test::TemporaryFolder folder;
+    const fs::path file = folder / "usbfs";
     const auto read = [&](const char* content) {
         std::ofstream(file) << content;
-        const Diagnosis diagnosis = diagnose({"/nowhere", file});
-        fs::remove(file);
-        return diagnosis.usbfs_memory_mib;
+        return diagnose({"/nowhere", file}).usbfs_memory_mib;
     };
     EXPECT_EQ(read("64\n"), 64u);
     EXPECT_EQ(read("0\n"), 0u);

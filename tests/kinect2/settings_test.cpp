@@ -2,6 +2,8 @@
 
 #include <bit>
 #include <cmath>
+#include <string>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -32,6 +34,24 @@ TEST(Kinect2Device, ExposureIsSetWhileRunningAndKeptByTheNextStart) {
     EXPECT_EQ(rig.simulated->color_setting(0), 0u);
     EXPECT_EQ(setting(rig, 23), -1.5f);
     EXPECT_TRUE(rig.next()) << "the stream goes on";
+}
+
+TEST(Kinect2Device, SettingsFromAnotherThreadWaitWhileItStartsAnew) {
+    SimulatedDeviceOptions options = small_and_quick();
+    options.commands.failing = 0x2B;  // the first start ends in a reset
+    options.commands.times = 1;
+    Rig rig(options);
+    std::string failure;
+    std::jthread hand([&](const std::stop_token& stop) {
+        failure = failure_of([&] {
+            for (int i = 0; !stop.stop_requested(); ++i)
+                rig.device->set_exposure(ManualExposure{1.0f + static_cast<float>(i % 5), 1});
+        });
+    });
+    for (int run = 0; run < 30; ++run) rig.device->start();
+    hand = {};
+    EXPECT_EQ(failure, "none");
+    EXPECT_EQ(rig.simulated->complaint(), "") << "no command reached a device that sleeps";
 }
 
 TEST(Kinect2Device, WhiteBalanceCanBeFixedAsItIs) {

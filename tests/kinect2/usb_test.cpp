@@ -70,10 +70,11 @@ TEST(Kinect2Usb, DeviceThatMovesOnTheBusIsOpenedAgain) {
 TEST(Kinect2Usb, FewerTransfersThanAskedForAreAWarning) {
     const Outcome outcome = probe("1", "USBFS_MB=8");
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, HasSubstr("only 29 of 60 infrared transfers fit into the system's USB memory"));
-    EXPECT_THAT(probe("1", "USBFS_MB=2").out,
-                HasSubstr("only 6 of 60 infrared transfers could be submitted (Insufficient memory); boot with "
-                          "usbcore.usbfs_memory_mb=64"));
+    EXPECT_THAT(outcome.out, ContainsRegex("only [0-9]+ of 60 infrared transfers fit into the system's USB memory"));
+    EXPECT_THAT(
+        probe("1", "USBFS_MB=2").out,
+        ContainsRegex("only [0-9]+ of 60 infrared transfers could be submitted .Insufficient memory.; boot with "
+                      "usbcore.usbfs_memory_mb=64"));
 }
 
 TEST(Kinect2Usb, SubmissionsThatFailForAWhileAreMadeUpFor) {

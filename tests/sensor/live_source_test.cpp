@@ -1,3 +1,4 @@
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <thread>
@@ -107,14 +108,41 @@ TEST(PlayedSource, ALateConsumerMissesFramesAndTheTapNone) {
     EXPECT_EQ(tapped.size(), 60u);
 }
 
-TEST(PlayedSource, StopEndsAWait) {
-    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after a quarter of an hour
+std::chrono::steady_clock::time_point now() { return std::chrono::steady_clock::now(); }
+
+TEST(PlayedSource, AnHourBetweenTwoFramesIsNotWaitedFor) {
+    PlayedSource source(recording_of(2, 1 / 3600.0));
     ASSERT_TRUE(source.next());
+    const auto start = now();
+    const auto second = source.next();
+    ASSERT_TRUE(second);
+    EXPECT_GE(source.now_s(), std::get<Frame>(*second).timestamp_s);
+    EXPECT_LT(source.now_s(), std::get<Frame>(*second).timestamp_s + 60);
+    EXPECT_LT(now() - start, std::chrono::minutes(1));
+    EXPECT_FALSE(source.next());
+}
+
+TEST(PlayedSource, TheTapIsNotCalledOnceItIsStopped) {
+    std::atomic<bool> stopped = false;
+    std::atomic<int> late = 0;
+    PlayedSource source(recording_of(500, 1000), [&](const Reading&) { late += stopped; });
+    ASSERT_TRUE(source.next());
+    source.stop();
+    stopped = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(late, 0);
+}
+
+TEST(PlayedSource, StopEndsAWait) {
+    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after PlayedSource::kLongestGap_s
+    ASSERT_TRUE(source.next());
+    const auto start = now();
     std::jthread stopper([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         source.stop();
     });
     EXPECT_FALSE(source.next());
+    EXPECT_LT(now() - start, std::chrono::duration<double>(PlayedSource::kLongestGap_s));
 }
 
 }  // namespace

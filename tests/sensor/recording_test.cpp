@@ -1,5 +1,8 @@
+#include <chrono>
 #include <cstring>
+#include <optional>
 #include <random>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -8,7 +11,9 @@
 #include "sensor/inspect.h"
 #include "sensor/open.h"
 #include "sensor/recording/exposure_check.h"
+#include "sensor/recording/log_keeper.h"
 #include "sensor/recording/payload_codec.h"
+#include "sensor/recording/schema.h"
 #include "sensor/write_sequence.h"
 #include "tests/sensor/recording_rig.h"
 #include "tests/sensor/sequences.h"
@@ -59,6 +64,12 @@ TEST(PayloadCodec, OtherSizesAndEncodingsAreErrors) {
                 AllOf(HasSubstr("f.patina"), HasSubstr("128"), HasSubstr("144")));
     EXPECT_THAT(error_of([&] { decode_depth(kDepth16, packed, {4, 4}, "f.patina"); }), HasSubstr("decompressed"));
     EXPECT_THAT(error_of([&] { decode_depth("kinect2", packed, {8, 8}, "f.patina"); }), HasSubstr("'kinect2'"));
+}
+
+std::vector<RecordedFrame> raw_frames(uint32_t count, size_t bytes) {
+    std::vector<RecordedFrame> frames;
+    for (uint32_t i = 0; i < count; ++i) frames.push_back(raw_frame(i, bytes));
+    return frames;
 }
 
 class RecordingTest : public ::testing::Test {
@@ -162,6 +173,28 @@ TEST_F(RecordingTest, ADevicesOwnPayloadsAreReadByItsDecoder) {
     EXPECT_EQ(std::get<Image<SrgbPixel>>(std::get<Frame>(readings.at(0)).color).at(5, 5).g, noise_bytes(2, 0)[1]);
 }
 
+/// Fails as a device does: at frame 0 for a damaged frame, at frame 1 for good.
+class FailingDecoder : public PayloadDecoder {
+  public:
+    void decode(const RecordedFrame& recorded, Frame& /*frame*/) override {
+        if (recorded.index == 0) throw DamagedFrame("frame 0 is damaged");
+        throw Error("the device is lost");
+    }
+};
+
+TEST_F(RecordingTest, ADamagedFrameIsSkippedAndALostDeviceIsAnError) {
+    {
+        Recorder recorder(file());
+        recorder.begin(SequenceRole::kMain, raw_sequence());
+        for (uint32_t i = 0; i < 2; ++i) recorder.record(raw_frame(i, 100));
+        recorder.finish();
+    }
+    const auto source = open_sequence(
+        file(), "", [](const RecordedSequence&, const std::string&) { return std::make_unique<FailingDecoder>(); });
+    EXPECT_EQ(std::get<Skipped>(*source->next()).reason, "frame 0 is damaged");
+    EXPECT_EQ(error_of([&] { source->next(); }), "the device is lost");
+}
+
 TEST_F(RecordingTest, OpensAsItIsWhileItIsWrittenAndWhenItWasCutOff) {
     RecordingWriter writer(file());
     writer.begin(SequenceRole::kMain, raw_sequence());
@@ -183,6 +216,7 @@ TEST_F(RecordingTest, OpensAsItIsWhileItIsWrittenAndWhenItWasCutOff) {
 }
 
 TEST_F(RecordingTest, AFullDiskKeepsWhatWasWritten) {
+    std::vector<RecordedFrame> frames = raw_frames(60, 1 << 20);
     std::string problem;
     RecorderCounts counts;
     {
@@ -190,7 +224,7 @@ TEST_F(RecordingTest, AFullDiskKeepsWhatWasWritten) {
         const test::FileSizeLimit limit(12 << 20);
         Recorder recorder(file(), {.when_full = Recorder::WhenFull::kWait, .most_queued_bytes = 3 << 20});
         recorder.begin(SequenceRole::kMain, raw_sequence());
-        for (uint32_t i = 0; i < 60; ++i) recorder.record(raw_frame(i, 1 << 20));
+        for (RecordedFrame& frame : frames) recorder.record(std::move(frame));
         problem = error_of([&] { recorder.finish(); });
         counts = recorder.counts();
     }
@@ -198,9 +232,9 @@ TEST_F(RecordingTest, AFullDiskKeepsWhatWasWritten) {
     EXPECT_EQ(counts.given, 60u);
     EXPECT_EQ(counts.written + counts.lost, 60u);
     RecordingFile recording(file());
-    const uint32_t frames = *recording.sequence(SequenceRole::kMain).info.frames;
-    EXPECT_EQ(frames, counts.written);
-    for (uint32_t i = 0; i < frames; ++i)
+    const uint32_t kept = *recording.sequence(SequenceRole::kMain).info.frames;
+    EXPECT_EQ(kept, counts.written);
+    for (uint32_t i = 0; i < kept; ++i)
         EXPECT_EQ(std::get<RecordedFrame>(recording.read(SequenceRole::kMain, i)).payloads[0].content,
                   raw_frame(i, 1 << 20).payloads[0].content);
     Database database(file(), DatabaseUse::kRead);
@@ -208,9 +242,10 @@ TEST_F(RecordingTest, AFullDiskKeepsWhatWasWritten) {
 }
 
 TEST_F(RecordingTest, ACameraThatIsTooFastLosesFramesNotOrder) {
+    std::vector<RecordedFrame> frames = raw_frames(40, 400000);  // before, so that nothing slows the camera down
     Recorder recorder(file(), {.most_queued_bytes = 1 << 20});
     recorder.begin(SequenceRole::kMain, raw_sequence());
-    for (uint32_t i = 0; i < 40; ++i) recorder.record(raw_frame(i, 400000));
+    for (RecordedFrame& frame : frames) recorder.record(std::move(frame));
     recorder.finish();
     const RecorderCounts counts = recorder.counts();
     EXPECT_EQ(counts.given, 40u);
@@ -252,11 +287,89 @@ TEST_F(RecordingTest, OtherDatabasesAreNoRecordings) {
 /// A file may say that it has four thousand million frames.
 TEST_F(RecordingTest, MoreFramesThanTheFileHoldsAreAnError) {
     write_recording(file(), 1);
+    constexpr int64_t kClaimed = 4'000'000'000;
     {
         Database database(file());
         database.run("UPDATE sequences SET frames = 4000000000");
+        EXPECT_THAT(error_of([&] { open_sequence(file()); }), HasSubstr("digest"));
+        Query description(database, "SELECT description FROM sequences");
+        ASSERT_TRUE(description.next());
+        const ContentDigest digest = sequence_digest(SequenceRole::kMain, description.text(0), kClaimed, 1);
+        description.again();
+        Query(database, "UPDATE sequences SET digest = ?").with(std::span<const std::byte>(digest)).run();
     }
-    EXPECT_THAT(error_of([&] { open_sequence(file()); }), HasSubstr("digest"));
+    EXPECT_THAT(error_of([&] { open_sequence(file()); }), HasSubstr("is said to have 4000000000 frames"));
+}
+
+TEST_F(RecordingTest, MoreStreamsThanACameraHasAreAnError) {
+    write_recording(file(), 1);
+    {
+        Database database(file());
+        for (int64_t number = 4; number <= 64; ++number) {
+            const RecordedStream stream{"color", std::string(kRgb8), 1e-9};
+            const ContentDigest digest = stream_digest(SequenceRole::kMain, number, stream);
+            Query(database, "INSERT INTO streams VALUES (?, 0, 'color', 'zstd-rgb8', 1e-9, ?)")
+                .with(number)
+                .with(std::span<const std::byte>(digest))
+                .run();
+        }
+    }
+    EXPECT_THAT(error_of([&] { open_sequence(file()); }), HasSubstr("has more than 64 streams"));
+}
+
+TEST_F(RecordingTest, AReaderDoesNotKeepItFromItsEnd) {
+    RecordedFrame first = raw_frame(0, 1000);
+    std::optional<RecordingFile> reader;
+    {
+        Recorder recorder(file());
+        recorder.begin(SequenceRole::kMain, raw_sequence());
+        recorder.record(std::move(first));
+        while (recorder.counts().written == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        reader.emplace(file());
+        EXPECT_NO_THROW(recorder.finish());
+    }
+    EXPECT_FALSE(reader->ended(SequenceRole::kMain));  // as it was when it was opened
+    EXPECT_TRUE(std::holds_alternative<RecordedFrame>(reader->read(SequenceRole::kMain, 0)));
+    EXPECT_TRUE(RecordingFile(file()).ended(SequenceRole::kMain));
+    fs::copy(file(), folder_ / "alone.patina");  // the log beside it holds nothing that the file lacks
+    EXPECT_TRUE(RecordingFile(folder_ / "alone.patina").ended(SequenceRole::kMain));
+}
+
+TEST_F(RecordingTest, WhatComesAfterItsEndIsCountedAsLost) {
+    Recorder recorder(file(), {.when_full = Recorder::WhenFull::kWait, .most_queued_bytes = 1});
+    recorder.begin(SequenceRole::kMain, raw_sequence());
+    recorder.record(raw_frame(0, 1000));
+    recorder.finish();
+    recorder.record(raw_frame(1, 1000));
+    recorder.skip({2, "late"});
+    EXPECT_EQ(recorder.counts().given, 3u);
+    EXPECT_EQ(recorder.counts().written, 1u);
+    EXPECT_EQ(recorder.counts().lost, 2u);
+    EXPECT_EQ(RecordingFile(file()).sequence(SequenceRole::kMain).info.frames, 1u);
+    recorder.discard();
+    EXPECT_FALSE(fs::exists(file()));
+}
+
+TEST_F(RecordingTest, ASequenceOfLowExposureWithoutAFrameIsNone) {
+    {
+        Recorder recorder(file());
+        recorder.begin(SequenceRole::kMain, raw_sequence());
+        recorder.record(raw_frame(0, 1000));
+        recorder.begin(SequenceRole::kLighting, raw_sequence());
+        recorder.finish();
+    }
+    EXPECT_TRUE(RecordingFile(file()).has(SequenceRole::kLighting));
+    EXPECT_EQ(lighting_of(file()), fs::path());
+}
+
+TEST_F(RecordingTest, ALogThatCannotBeKeptIsReported) {
+    write_text(file(), "no database, but longer than the header of one is");
+    LogKeeper keeper(file());
+    keeper.committed(0);
+    while (keeper.problem().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_THAT(keeper.problem(), HasSubstr("room.patina"));
+    write_text(file().string() + "-wal", "a long log");
+    keeper.committed(0);  // does not wait for what does not come
 }
 
 TEST_F(RecordingTest, ADamagedRowCostsItsFrame) {
@@ -298,6 +411,10 @@ TEST(ExposureCheck, SaysWhatToChange) {
     EXPECT_EQ(advice_on(SequenceRole::kMain, {bright, clipped}), "");
     EXPECT_THAT(advice_on(SequenceRole::kMain, {white}), HasSubstr("shorten the exposure"));
     EXPECT_DOUBLE_EQ(exposure_shares(clipped).clipped, 64.0 / (64 * 48));
+    // Lamps are told by luminance: a full blue has 0.07 of white's.
+    EXPECT_EQ(exposure_shares(Image<SrgbPixel>(extent, SrgbPixel(0, 0, 255))).bright, 0);
+    EXPECT_EQ(exposure_shares(Image<SrgbPixel>(extent, SrgbPixel(0, 255, 0))).bright, 1);
+    EXPECT_EQ(exposure_shares(Image<glm::vec3>(extent, glm::vec3(0, 0.2f, 0))).bright, 1);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/vulkan/device.h"
+#include "sensor/kinect2/raw_frame.h"
 #include "sensor/recording/recorder.h"
 #include "tools/bench/subjects.h"
 
@@ -21,8 +22,8 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using sensor::Recorder;
 
-// Of one frame: ten sub-images of 11 bits a pixel, and a colour picture as JPEG. Neither can be compressed.
-constexpr size_t kInfraredBytes = 10 * 298496;
+// Of one frame: an infrared frame, and a colour picture as JPEG. Neither can be compressed.
+using sensor::kinect2::kInfraredBytes;
 constexpr size_t kColorBytes = 300000;
 /// Different frames, so that no layer below finds the same bytes again.
 constexpr size_t kPayloads = 8;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cameras/open_sequence.h"
 #include "engine/core/error.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
@@ -84,7 +85,10 @@ uint64_t Recording::bytes() const {
 
 Recording load(const RecordingOptions& options, const vulkan::DeviceOptions& device_options) {
     if (!options.sequence.starts_with(kSynthetic)) {
-        return read_all(sensor::open_sequence(options.sequence, options.format), options);
+        std::optional<vulkan::Device> device;  // for raw recordings alone
+        const auto decoders = cameras::payload_decoders(
+            [&]() -> vulkan::Device& { return device ? *device : device.emplace(device_options); });
+        return read_all(sensor::open_sequence(options.sequence, options.format, decoders), options);
     }
     vulkan::Device device(device_options);
     auto scene = scenes::load_scene(options.sequence.substr(kSynthetic.size()));

@@ -26,6 +26,8 @@ void add_live(CLI::App& app, int& exit_code) {
         ->check(CLI::PositiveNumber);
     command->callback([arguments, command, &exit_code] {
         if (command->count("--out") == 0) throw CLI::RequiredError("--out");
+        if (command->count("sequence") > 0 && command->count("--simulate") > 0)
+            throw CLI::ExcludesError("--simulate", "the name of a camera");
         for (const char* option : {"--resume", "--checkpoint-every"})
             if (command->count(option) > 0) throw Error(option, " is for recordings: a camera cannot be read again");
         RunArguments& run = arguments->run;

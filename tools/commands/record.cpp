@@ -14,7 +14,13 @@ void add_record(CLI::App& app, int& exit_code) {
         ->required();
     command->add_option("--out", options->out, "File to create, such as room.patina")->required();
     command->add_option("--lighting", options->lighting,
-                        "Source of the sequence of low exposure; by default the one that belongs to the source");
+                        "Source of the sequence of low exposure; by default the one that belongs to the source. With "
+                        "a camera its name: it is recorded once more after the first sequence");
+    command
+        ->add_option("--low-exposure", options->low_exposure_ms,
+                     "Exposure time of a camera's sequence of low exposure, in milliseconds")
+        ->check(CLI::Range(0.01, 66.0))
+        ->capture_default_str();
     command->add_option("--format", options->format, sensor::format_names() + ", instead of recognising it");
     command->add_flag("--simulate", options->simulate,
                       "The source plays by its clock, as a camera would; without it as fast as it can be read");

@@ -1,6 +1,10 @@
 #include "tools/convert/export_native.h"
 
+#include <algorithm>
+#include <deque>
+#include <mutex>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -10,6 +14,7 @@
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "reconstruction/api/access.h"
+#include "sensor/files/picture_file.h"
 #include "sensor/open.h"
 #include "sensor/output/apart.h"
 #include "sensor/prefetch.h"
@@ -23,13 +28,51 @@ namespace patina::tools {
 
 namespace {
 
+/// The infrared pictures of a camera, between the thread that decodes and the one that writes: one for each frame, in
+/// the frames' order.
+class InfraredPictures {
+  public:
+    void put(Image<float> picture) {
+        const std::lock_guard lock(mutex_);
+        pictures_.push_back(std::move(picture));
+    }
+
+    /// That of the next frame; empty where the sequence has none.
+    std::optional<Image<float>> take() {
+        const std::lock_guard lock(mutex_);
+        if (pictures_.empty()) return std::nullopt;
+        Image<float> picture = std::move(pictures_.front());
+        pictures_.pop_front();
+        return picture;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::deque<Image<float>> pictures_;
+};
+
+/// Writes infrared/NNNNNN.png: 16 bits a pixel, of the depth camera.
+void write_infrared(sensor::SequenceWriter& writer, uint32_t index, const Image<float>& picture) {
+    const std::filesystem::path folder = writer.partial_folder() / "infrared";
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) throw Error("'", folder.string(), "' cannot be created: ", failure.message());
+    Image<uint16_t> codes(picture.extent());
+    std::ranges::transform(picture.pixels(), codes.pixels().begin(),
+                           [](float light) { return static_cast<uint16_t>(std::clamp(light, 0.0f, 65535.0f)); });
+    writer.background().start([file = folder / (sensor::picture_stem(index) + ".png"), codes = std::move(codes)] {
+        sensor::write_png(file, codes);
+    });
+}
+
 /// What became of the frames of one sequence.
 struct Written {
     uint32_t frames = 0;
     std::vector<Skipped> skipped;
 };
 
-Written write_all(Source& source, sensor::SequenceWriter& writer, const InterruptGuard& interrupt, bool quiet) {
+Written write_all(Source& source, sensor::SequenceWriter& writer, InfraredPictures& infrared,
+                  const InterruptGuard& interrupt, bool quiet) {
     Written written;
     Progress progress(source.info().frames, quiet);
     while (std::optional<Reading> reading = source.next()) {
@@ -39,6 +82,7 @@ Written write_all(Source& source, sensor::SequenceWriter& writer, const Interrup
             continue;
         }
         Frame frame = std::get<Frame>(*std::move(reading));
+        if (const auto picture = infrared.take()) write_infrared(writer, written.frames, *picture);
         frame.index = written.frames++;
         writer.write(std::move(frame));
         progress.update(written.frames, source.info().name);
@@ -63,18 +107,20 @@ Outcome export_native(const ExportNativeOptions& options) {
     const InterruptGuard interrupt;
     sensor::expect_apart(options.out, sequence_inputs(options.sequence));
     std::optional<Device> device;  // for raw recordings alone; one sequence is read after the other
+    InfraredPictures infrared;
     const auto decoders = cameras::payload_decoders(
-        [&]() -> vulkan::Device& { return Access::vulkan(device ? *device : device.emplace()); });
+        [&]() -> vulkan::Device& { return Access::vulkan(device ? *device : device.emplace()); },
+        [&](Image<float> picture) { infrared.put(std::move(picture)); });
     sensor::PrefetchSource main(sensor::open_sequence(options.sequence, options.format, decoders));
     sensor::SequenceWriter writer(options.out, main.info(), sensor::LinearColor::kExr);
-    const Written written = write_all(main, writer, interrupt, options.quiet);
+    const Written written = write_all(main, writer, infrared, interrupt, options.quiet);
     Outcome outcome;
     report(outcome, written, "main");
     if (const auto lighting = sensor::lighting_of(options.sequence); !lighting.empty()) {
         sensor::PrefetchSource dark(sensor::open_sequence(lighting, "", decoders));
         sensor::SequenceWriter dark_writer(writer.partial_folder() / "lighting", dark.info(),
                                            sensor::LinearColor::kExr);
-        report(outcome, write_all(dark, dark_writer, interrupt, options.quiet), "lighting");
+        report(outcome, write_all(dark, dark_writer, infrared, interrupt, options.quiet), "lighting");
         dark_writer.finish();
     }
     writer.finish();

@@ -33,7 +33,8 @@ ExrPlanes ExrPlanes::read(const fs::path& path, const std::set<std::string>& onl
     ExrPlanes picture;
     picture.file_ = path.string();
     try {
-        sensor::ExrInput input(picture.file_, read_file(path, limits::kPlanesBytes));
+        const std::vector<uint8_t> bytes = read_file(path, limits::kPlanesBytes);
+        sensor::ExrInput input(picture.file_, bytes);
         picture.extent_ = input.extent();
         const auto* id = input.file().header().findTypedAttribute<Imf::StringAttribute>(kRunIdAttribute);
         if (id) picture.run_id_ = id->value();

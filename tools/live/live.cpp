@@ -16,13 +16,16 @@ namespace patina::tools {
 
 namespace {
 
-/// Lights cannot be looked for in a source before it is read: what was recorded beside it stands in.
+/// Lights cannot be looked for in a source before it is read. A recording that plays has its lighting sequence beside
+/// it, and is looked at in its own world.
 LightingChoice lighting_for(const LiveOptions& options) {
+    if (options.simulate.empty()) return options.run.lighting;
+    if (const auto* named = std::get_if<LightsFromSequence>(&options.run.lighting))
+        return LightsFromSequence{named->sequence, options.simulate};
     if (!std::holds_alternative<LightsBeside>(options.run.lighting)) return options.run.lighting;
-    const std::filesystem::path beside =
-        options.simulate.empty() ? std::filesystem::path() : sensor::lighting_of(options.simulate);
+    const std::filesystem::path beside = sensor::lighting_of(options.simulate);
     if (beside.empty()) return LightsBeside{};
-    return LightsFromSequence{beside.string()};
+    return LightsFromSequence{beside.string(), options.simulate};
 }
 
 /// A recorder for a file that is not there yet; null where none was asked for.
@@ -51,12 +54,13 @@ RecordedInput open_camera(const LiveOptions& options) {
 RecordedInput open_played(const LiveOptions& options) {
     const std::vector<std::filesystem::path> inputs = sequence_inputs(options.simulate);
     sensor::expect_apart(options.run.out, inputs);
-    auto recording = sensor::open_sequence(options.simulate, options.run.format);
+    auto recording = open_to_play(options.simulate, options.run.format);
     if (!options.record.empty()) sensor::expect_apart(options.record, inputs);
     sensor::RecordedSequence sequence;
     sequence.info = recording->info();
     auto recorder = recorder_for(options, std::move(sequence));
-    return {live_input(std::make_shared<sensor::PlayedSource>(std::move(recording), tap_to(recorder))), recorder};
+    return {live_input(std::make_shared<sensor::PlayedSource>(std::move(recording), sensor::tap_to(recorder))),
+            recorder};
 }
 
 }  // namespace
@@ -65,10 +69,10 @@ Outcome live(const LiveOptions& options) {
     if (options.simulate.empty() && !is_camera(options.source))
         throw Error("there is no camera '", options.source, "', must be ", kKinect2,
                     "; a recording plays as one with --simulate RECORDING");
-    RecordedInput opened = options.simulate.empty() ? open_camera(options) : open_played(options);
     RunOptions run_options = options.run;
     run_options.lighting = lighting_for(options);
     run_options.sequence.clear();
+    RecordedInput opened = options.simulate.empty() ? open_camera(options) : open_played(options);
     LiveRun companion(std::move(opened.input), opened.recorder, options.record, options.seconds);
     return run(run_options, &companion);
 }

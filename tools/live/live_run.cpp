@@ -1,7 +1,6 @@
 #include "tools/live/live_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,8 +11,6 @@ namespace patina::tools {
 
 namespace {
 
-/// How soon an interrupt, or the end of the time, ends a source that yields nothing.
-constexpr std::chrono::milliseconds kWatch{50};
 /// So many latest frames are what the line of progress tells of.
 constexpr size_t kShown = 100;
 /// Pictures are rendered at a half of the depth camera's size: a person looks at them while the room is recorded.
@@ -41,19 +38,11 @@ LiveInput live_input(std::shared_ptr<sensor::LiveSource> source) {
     return {source, [source](vulkan::Device&) { return std::make_unique<SharedSource>(source); }};
 }
 
-sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder) {
-    if (!recorder) return {};
-    return [recorder = std::move(recorder)](const Reading& reading) {
-        if (const auto* skipped = std::get_if<Skipped>(&reading)) return recorder->skip(*skipped);
-        recorder->record(std::get<Frame>(reading));
-    };
-}
-
 LiveRun::LiveRun(LiveInput input, std::shared_ptr<sensor::Recorder> recorder, std::filesystem::path record,
                  double seconds)
     : input_(std::move(input)), recorder_(std::move(recorder)), record_(std::move(record)), seconds_(seconds) {}
 
-LiveRun::~LiveRun() = default;
+LiveRun::~LiveRun() { end(); }
 
 std::unique_ptr<Source> LiveRun::source(vulkan::Device& device) { return input_.open(device); }
 
@@ -64,26 +53,11 @@ void LiveRun::adjust(SessionCallbacks& callbacks) {
         if (begun_) progress.detail = detail() + "  " + progress.detail;
         show(progress);
     };
-    watcher_ = std::jthread([this](std::stop_token stop) { watch(stop); });
-}
-
-/// The source may wait for a camera that has fallen silent: nobody but this thread would end that.
-void LiveRun::watch(std::stop_token stop) {
-    std::optional<std::chrono::steady_clock::time_point> started;
-    while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(kWatch);
-        if (!begun_) continue;
-        if (!started) started = std::chrono::steady_clock::now();
-        const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - *started).count();
-        if (!interrupt_.requested() && (seconds_ <= 0 || passed_s < seconds_)) continue;
-        input_.capture->stop();
-        return;
-    }
 }
 
 void LiveRun::after_step(SessionCore& session) {
     const double now_s = input_.capture->now_s();
-    begun_ = true;
+    if (!begun_.exchange(true)) watch_.emplace(*input_.capture, interrupt_, seconds_);
     const Frame* frame = session.fused();
     if (!first_s_) first_s_ = frame ? frame->timestamp_s : now_s;
     last_s_ = now_s;
@@ -108,7 +82,7 @@ void LiveRun::look(SessionCore& session) {
 
 void LiveRun::end() {
     if (std::exchange(ended_, true)) return;
-    watcher_.request_stop();
+    watch_.reset();
     input_.capture->stop();
     counts_ = input_.capture->counts();
     picture_.reset();
@@ -119,6 +93,7 @@ void LiveRun::end() {
         recorder_problem_ = error.what();
     }
     recorded_ = recorder_->counts();
+    if (recorded_->given == 0) recorder_->discard();
 }
 
 std::vector<std::string> LiveRun::shortfalls() const {
@@ -145,10 +120,11 @@ void LiveRun::add_to(RunSummary& summary) const {
     live.seconds = last_s_ - first_s_.value_or(last_s_);
     live.pose = summarised(to_pose_s_);
     live.picture = summarised(to_picture_s_);
-    if (recorded_) {
+    if (recorded_ && recorded_->given > 0) {
         live.recording = BesideSummary{record_.string(), recorded_->given, recorded_->dropped, recorded_->bytes,
                                        recorded_->most_queued_bytes};
     }
+    if (recorder_ && !recorder_->warning().empty()) summary.warnings.push_back(recorder_->warning());
     summary.live = std::move(live);
 }
 

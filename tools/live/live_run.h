@@ -6,12 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "reconstruction/view_readback.h"
 #include "sensor/live/live_source.h"
 #include "sensor/recording/recorder.h"
+#include "tools/program/camera_watch.h"
 #include "tools/program/interrupt.h"
 #include "tools/run/run.h"
 
@@ -27,11 +27,9 @@ struct LiveInput {
 /// A source that needs no device.
 LiveInput live_input(std::shared_ptr<sensor::LiveSource> source);
 
-/// Hands every reading to a recorder, where there is one.
-sensor::ReadingTap tap_to(std::shared_ptr<sensor::Recorder> recorder);
-
 /// Goes along with a live run: measures how long after its exposure a frame's pose and a picture of the model are
-/// there, ends the source when the user asks or the time is over, and reports what was dropped.
+/// there, ends the source when the user asks or the time is over, and reports what was dropped. A recorder that was
+/// given no frame leaves no file.
 class LiveRun : public RunCompanion {
   public:
     /// `recorder` may be null; `record` is its file. `seconds`: of the source; 0: no limit.
@@ -46,7 +44,6 @@ class LiveRun : public RunCompanion {
     void add_to(RunSummary& summary) const override;
 
   private:
-    void watch(std::stop_token stop);
     void look(SessionCore& session);
     std::string detail() const;
 
@@ -69,7 +66,7 @@ class LiveRun : public RunCompanion {
     sensor::LiveCounts counts_;
     std::optional<sensor::RecorderCounts> recorded_;
     std::string recorder_problem_;
-    std::jthread watcher_;  // last: it reads the others
+    std::optional<CameraWatch> watch_;  // last: it uses the capture
 };
 
 }  // namespace patina::tools

@@ -1,7 +1,9 @@
 #include "tools/program/cameras.h"
 
+#include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "sensor/kinect2/usb_transport.h"
+#include "sensor/open.h"
 #include "tools/program/standard_streams.h"
 
 namespace patina::tools {
@@ -13,6 +15,15 @@ std::shared_ptr<cameras::Kinect2Capture> open_kinect2() {
     if (const std::string warning = capture->warning(); !warning.empty())
         print_error("warning: {}\n", printable(warning));
     return capture;
+}
+
+std::unique_ptr<Source> open_to_play(const std::string& recording, const std::string& format) {
+    if (sensor::names_recording(recording)) {
+        const auto [file, role] = sensor::named_sequence(recording);
+        if (!sensor::holds_pictures(sensor::RecordingFile(file).sequence(role)))
+            throw Error("'", recording, "' holds the raw frames of a camera, which cannot be played with --simulate");
+    }
+    return sensor::open_sequence(recording, format);
 }
 
 }  // namespace patina::tools

@@ -16,4 +16,8 @@ bool is_camera(const std::string& source);
 /// sensor::kinect2::open_usb() and Kinect2Capture.
 std::shared_ptr<cameras::Kinect2Capture> open_kinect2();
 
+/// Opens a recording that is to play as a camera would (sensor::PlayedSource). Throws Error as sensor::open_sequence,
+/// and where it holds a camera's raw frames: these are decoded on a device, which is not the player's.
+std::unique_ptr<Source> open_to_play(const std::string& recording, const std::string& format);
+
 }  // namespace patina::tools

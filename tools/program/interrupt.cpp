@@ -16,7 +16,8 @@ constexpr int64_t kSameRequest_ns = 1'000'000'000;
 
 // A signal handler can reach nothing but globals; it may run on any thread.
 std::atomic<int64_t> first_signal_ns = 0;  ///< when; 0: there was none
-static_assert(std::atomic<int64_t>::is_always_lock_free);
+std::atomic<bool> told_to_end = false;     ///< by another signal than SIGINT
+static_assert(std::atomic<int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 int guards = 0;
 
 int64_t now_ns() {
@@ -27,6 +28,7 @@ int64_t now_ns() {
 
 extern "C" void note_interrupt(int signal) {
     const int64_t now = now_ns();
+    if (signal != SIGINT) told_to_end = true;
     int64_t first = 0;
     if (first_signal_ns.compare_exchange_strong(first, now)) return;
     // A terminal that is closed sends SIGHUP more than once: the shell does, then the kernel. Nobody asks with it.
@@ -40,6 +42,7 @@ extern "C" void note_interrupt(int signal) {
 InterruptGuard::InterruptGuard() {
     if (guards++ > 0) return;
     first_signal_ns = 0;
+    told_to_end = false;
     for (const int signal : kSignals) {
         if (std::signal(signal, note_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
     }
@@ -53,5 +56,9 @@ InterruptGuard::~InterruptGuard() {
 }
 
 bool InterruptGuard::requested() const { return first_signal_ns != 0; }
+
+bool InterruptGuard::must_end() const { return told_to_end; }
+
+void InterruptGuard::forget() { first_signal_ns = 0; }
 
 }  // namespace patina::tools

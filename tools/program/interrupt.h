@@ -16,6 +16,12 @@ class InterruptGuard {
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
     bool requested() const;
+
+    /// Whether the program is to end, rather than what it does at present: a SIGTERM or SIGHUP has come.
+    bool must_end() const;
+
+    /// Forgets what was requested: the next signal is the first one again.
+    void forget();
 };
 
 }  // namespace patina::tools

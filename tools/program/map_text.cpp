@@ -9,6 +9,7 @@
 #include "engine/core/printable.h"
 #include "reconstruction/store/map_file.h"
 #include "sensor/recording/container.h"
+#include "tools/program/mebibytes.h"
 
 namespace patina::tools {
 
@@ -25,8 +26,6 @@ bool is_database(const fs::path& file) {
     std::ifstream(file, std::ios::binary).read(start.data(), start.size());
     return start == kMark;
 }
-
-double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 #include "tools/record/record.h"
 
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,11 +15,14 @@
 #include "sensor/recording/exposure_check.h"
 #include "sensor/recording/payload_codec.h"
 #include "sensor/recording/recorder.h"
+#include "tools/program/camera_watch.h"
 #include "tools/program/cameras.h"
 #include "tools/program/inputs.h"
 #include "tools/program/interrupt.h"
+#include "tools/program/mebibytes.h"
 #include "tools/program/progress.h"
 #include "tools/program/standard_streams.h"
+#include "tools/record/camera_pass.h"
 
 namespace patina::tools {
 
@@ -29,22 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using sensor::SequenceRole;
-
-double mebibytes(uint64_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
-
-/// Stops a camera when the user asks, also one that has fallen silent.
-class Watch {
-  public:
-    Watch(sensor::LiveCapture& capture, const InterruptGuard& interrupt)
-        : thread_([&capture, &interrupt](std::stop_token stop) {
-              while (!stop.stop_requested() && !interrupt.requested()) std::this_thread::sleep_for(kWatch);
-              if (!stop.stop_requested()) capture.stop();
-          }) {}
-
-  private:
-    static constexpr std::chrono::milliseconds kWatch{50};
-    std::jthread thread_;
-};
 
 /// One recording from its first sequence to its last.
 class Recording {
@@ -56,41 +41,33 @@ class Recording {
               sensor::Recorder::Options{.when_full = is_live(options) ? sensor::Recorder::WhenFull::kDrop
                                                                       : sensor::Recorder::WhenFull::kWait})) {}
 
-    /// Records what a camera sends, as it sends it, until the user or the time ends it.
+    /// Records what a camera sends, as it sends it, until the user or the time ends it; then once more at a low
+    /// exposure where that was asked for. The camera runs on between the two: its calibration holds for one run.
     void add(cameras::Kinect2Capture& capture) {
-        recorder_->begin(SequenceRole::kMain, capture.sequence());
-        if (!options_.quiet) print_error("{}\n", sensor::instruction(SequenceRole::kMain));
-        capture.set_tap([recorder = recorder_](const sensor::RecordedFrame& frame) { recorder->record(frame); });
-        sensor::ExposureCheck exposure(SequenceRole::kMain);
-        const Watch watch(capture, interrupt_);
-        Progress progress(std::nullopt, options_.quiet);
-        while (const auto frame = capture.next()) {
-            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
-                if (is_over(raw->timestamp_s)) break;
-                check(*raw, capture.sequence(), exposure);
-            }
-            if (interrupted() || !recorder_->problem().empty()) break;
-            progress.update(static_cast<uint32_t>(capture.counts().captured), detail(exposure));
+        const bool twice = !options_.lighting.empty();
+        const auto pass = std::make_shared<CameraPass>(recorder_);
+        capture.set_tap([pass](const sensor::RecordedFrame& frame) { pass->take(frame); });
+        add_pass(capture, *pass, SequenceRole::kMain, twice ? "sequence 1 of 2: " : "");
+        if (twice && recorder_->problem().empty() && !interrupt_.must_end()) {
+            interrupt_.forget();
+            capture.fix_exposure({static_cast<float>(options_.low_exposure_ms), 1});
+            add_pass(capture, *pass, SequenceRole::kLighting, "sequence 2 of 2: ");
         }
         capture.stop();
-        advise(SequenceRole::kMain, exposure);
     }
 
     /// Records one sequence to its end.
     void add(SequenceRole role, const std::string& path, const std::string& format, const std::string& place) {
-        auto recording = sensor::open_sequence(path, format);
-        sensor::RecordedSequence sequence;
-        sequence.info = recording->info();
-        total_ = recording->info().frames;
-        recorder_->begin(role, std::move(sequence));
-        if (options_.simulate && !options_.quiet) print_error("{}: {}\n", place, sensor::instruction(role));
         sensor::ExposureCheck exposure(role);
         if (options_.simulate) {
-            play(std::move(recording), exposure);
+            if (!options_.quiet) print_error("{}: {}\n", place, sensor::instruction(role));
+            play(role, open_to_play(path, format), exposure);
+        } else if (sensor::names_recording(path)) {
+            copy_rows(role, path, exposure);
         } else {
-            copy(std::move(recording), exposure);
+            copy(role, sensor::open_sequence(path, format), exposure);
         }
-        advise(role, exposure);
+        finish_pass(role, exposure);
     }
 
     bool interrupted() const { return interrupt_.requested(); }
@@ -101,7 +78,12 @@ class Recording {
             recorder_->finish();
         } catch (const Error&) {  // nothing more can be done
         }
-        throw Error(reason, "; '", options_.out.string(), "' holds ", recorder_->counts().written, " frames");
+        const sensor::RecorderCounts counts = recorder_->counts();
+        if (counts.given == 0) {
+            recorder_->discard();
+            throw Error(reason);
+        }
+        throw Error(reason, "; '", options_.out.string(), "' holds ", counts.written, " frames");
     }
 
     Outcome finish() {
@@ -111,16 +93,19 @@ class Recording {
             keep(error.what());
         }
         const sensor::RecorderCounts counts = recorder_->counts();
+        if (frames_of_main_.value_or(0) == 0) discard();
         Outcome outcome;
         if (interrupted() && !is_live(options_))
             outcome.fall_short(fmt::format("interrupted after {} frames", counts.given));
         if (counts.dropped > 0)
             outcome.fall_short(fmt::format("{} of {} frames are missing: the disk did not keep pace with the camera",
                                            counts.dropped, counts.given));
+        if (frames_of_lighting_ == 0) outcome.fall_short("no frame of the sequence of low exposure was recorded");
         outcome.print(options_.quiet);
         if (!options_.quiet) {
             print_out("{} frames, {:.1f} MiB in {}\n", counts.written, mebibytes(counts.bytes),
                       printable(options_.out.string()));
+            if (!recorder_->warning().empty()) advice_.push_back(recorder_->warning());
             for (const std::string& advice : advice_) print_out("warning: {}\n", printable(advice));
         }
         return outcome;
@@ -130,16 +115,60 @@ class Recording {
     /// Cameras take frames whether they are written or not.
     static bool is_live(const RecordOptions& options) { return options.simulate || is_camera(options.source); }
 
-    void advise(SequenceRole role, const sensor::ExposureCheck& exposure) {
+    [[noreturn]] void discard() {
+        recorder_->discard();
+        if (interrupted()) throw Interrupted("interrupted before the first frame; nothing is left");
+        throw Error("no frame of '", options_.source, "' was recorded; nothing is left");
+    }
+
+    void begin_pass(SequenceRole role) {
+        given_before_ = recorder_->counts().given;
+        first_s_.reset();
+        (role == SequenceRole::kMain ? frames_of_main_ : frames_of_lighting_) = 0;
+    }
+
+    void finish_pass(SequenceRole role, const sensor::ExposureCheck& exposure) {
+        (role == SequenceRole::kMain ? frames_of_main_ : frames_of_lighting_) =
+            recorder_->counts().given - given_before_;
         if (std::string advice = exposure.advice(); !advice.empty())
             advice_.push_back(fmt::format("{} sequence: {}", name_of(role), advice));
     }
 
+    void add_pass(cameras::Kinect2Capture& capture, CameraPass& pass, SequenceRole role, const char* place) {
+        if (!options_.quiet) print_error("{}{}\n", place, sensor::instruction(role));
+        begin_pass(role);
+        pass.begin(role, capture.sequence());
+        sensor::ExposureCheck exposure(role);
+        const bool last = options_.lighting.empty() || role == SequenceRole::kLighting;
+        std::optional<CameraWatch> watch;  // who ends the first pass of two wants the camera to go on
+        if (last) watch.emplace(capture, interrupt_);
+        Progress progress(std::nullopt, options_.quiet);
+        while (const auto frame = capture.next()) {
+            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
+                if (is_over(raw->timestamp_s)) break;
+                check(*raw, capture.sequence(), exposure);
+            }
+            if (interrupted() || !recorder_->problem().empty()) break;
+            progress.update(static_cast<uint32_t>(recorder_->counts().given - given_before_), detail(exposure));
+        }
+        if (last) capture.stop();
+        pass.end();
+        finish_pass(role, exposure);
+    }
+
+    void begin(SequenceRole role, const SequenceInfo& info) {
+        begin_pass(role);
+        sensor::RecordedSequence sequence;
+        sequence.info = info;
+        recorder_->begin(role, std::move(sequence));
+    }
+
     /// As fast as it can be read.
-    void copy(std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
+    void copy(SequenceRole role, std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
+        begin(role, recording->info());
         sensor::PrefetchSource source(std::move(recording));
-        const sensor::ReadingTap record = to_recorder();
-        Progress progress(total_, options_.quiet);
+        const sensor::ReadingTap record = sensor::tap_to(recorder_);
+        Progress progress(source.info().frames, options_.quiet);
         uint32_t done = 0;
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
@@ -147,26 +176,42 @@ class Recording {
             record(*reading);
             progress.update(++done, detail(exposure));
         }
-        first_s_.reset();
+    }
+
+    /// The frames of a recording in one file, as they are: pictures, and the raw frames of a camera.
+    void copy_rows(SequenceRole role, const std::string& path, sensor::ExposureCheck& exposure) {
+        const auto [file, its_role] = sensor::named_sequence(path);
+        sensor::RecordingFile recording(file);
+        const sensor::RecordedSequence& sequence = recording.sequence(its_role);
+        begin_pass(role);
+        recorder_->begin(role, sequence);
+        Progress progress(sequence.info.frames, options_.quiet);
+        for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
+            auto row = recording.read(its_role, i);
+            auto* frame = std::get_if<sensor::RecordedFrame>(&row);
+            if (interrupted() || !recorder_->problem().empty() || (frame && is_over(frame->timestamp_s))) break;
+            if (frame) {
+                check(*frame, sequence, exposure);
+                recorder_->record(std::move(*frame));
+            } else {
+                recorder_->skip(std::get<Skipped>(std::move(row)));
+            }
+            progress.update(i + 1, detail(exposure));
+        }
     }
 
     /// By its clock: what is looked at may be late, what is recorded is not.
-    void play(std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
-        sensor::PlayedSource source(std::move(recording), to_recorder());
-        Progress progress(total_, options_.quiet);
+    void play(SequenceRole role, std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
+        begin(role, recording->info());
+        Progress progress(recording->info().frames, options_.quiet);
+        sensor::PlayedSource source(std::move(recording), sensor::tap_to(recorder_));
+        const CameraWatch watch(source, interrupt_);
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
             check(*reading, exposure);
             progress.update(static_cast<uint32_t>(source.counts().captured), detail(exposure));
         }
-        first_s_.reset();
-    }
-
-    sensor::ReadingTap to_recorder() const {
-        return [recorder = recorder_](const Reading& reading) {
-            if (const auto* skipped = std::get_if<Skipped>(&reading)) return recorder->skip(*skipped);
-            recorder->record(std::get<Frame>(reading));
-        };
+        source.stop();
     }
 
     bool is_over(const Reading& reading) {
@@ -184,7 +229,7 @@ class Recording {
         if (const auto* frame = std::get_if<Frame>(&reading)) exposure.add(frame->color);
     }
 
-    /// What cannot be decoded is told when the recording is read.
+    /// What cannot be decoded is reported when the recording is read.
     static void check(const sensor::RecordedFrame& raw, const sensor::RecordedSequence& sequence,
                       sensor::ExposureCheck& exposure) {
         for (const sensor::Payload& payload : raw.payloads) {
@@ -207,22 +252,37 @@ class Recording {
     const RecordOptions& options_;
     InterruptGuard interrupt_;
     std::shared_ptr<sensor::Recorder> recorder_;
-    std::optional<uint32_t> total_;
-    std::optional<double> first_s_;
+    uint64_t given_before_ = 0;                                    ///< to the recorder, when the present sequence began
+    std::optional<uint64_t> frames_of_main_, frames_of_lighting_;  ///< empty: not begun
+    std::optional<double> first_s_;                                ///< time of the present sequence's first frame
     std::vector<std::string> advice_;
 };
 
 Outcome record_camera(const RecordOptions& options) {
-    if (!options.lighting.empty())
-        throw Error("--lighting is for recordings: a camera's sequence of low exposure cannot be recorded yet");
+    if (!options.lighting.empty() && options.lighting != options.source)
+        throw Error("the sequence of low exposure of a camera comes from the camera itself: --lighting ",
+                    options.source, ", not --lighting ", options.lighting);
     const auto capture = open_kinect2();
     Recording recording(options);
     try {
         recording.add(*capture);
     } catch (const std::exception& error) {  // it was unplugged, perhaps
+        capture->stop();
         recording.keep(reason_of(error));
     }
     return recording.finish();
+}
+
+/// Wrong paths are found before the file is there.
+void expect_readable(const RecordOptions& options, const std::string& source, const std::string& format) {
+    if (options.simulate) {
+        open_to_play(source, format);
+    } else if (sensor::names_recording(source)) {
+        const auto [file, role] = sensor::named_sequence(source);
+        sensor::RecordingFile(file).sequence(role);
+    } else {
+        sensor::open_sequence(source, format);
+    }
 }
 
 }  // namespace
@@ -234,16 +294,15 @@ Outcome record(const RecordOptions& options) {
     std::vector<fs::path> inputs = sequence_inputs(options.source);
     for (fs::path& input : sequence_inputs(lighting)) inputs.push_back(std::move(input));
     sensor::expect_apart(options.out, inputs);
-    // Wrong paths are found before the file is there.
-    for (const std::string& source : {options.source, lighting})
-        if (!source.empty()) sensor::open_sequence(source, source == options.source ? options.format : "");
+    expect_readable(options, options.source, options.format);
+    if (!lighting.empty()) expect_readable(options, lighting, "");
     Recording recording(options);
     try {
         const char* of = lighting.empty() ? "1" : "2";
         recording.add(SequenceRole::kMain, options.source, options.format, fmt::format("sequence 1 of {}", of));
         if (!lighting.empty() && !recording.interrupted())
             recording.add(SequenceRole::kLighting, lighting, "", "sequence 2 of 2");
-    } catch (const std::exception& error) {  // the source is gone, such as a camera that was unplugged
+    } catch (const std::exception& error) {  // the source is gone
         recording.keep(reason_of(error));
     }
     return recording.finish();

@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "tools/program/mebibytes.h"
 #include "tools/report/html.h"
 
 namespace patina {
 namespace {
 
-std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+std::string size_text(uint64_t bytes) { return fmt::format("{:.1f} MiB", tools::mebibytes(bytes)); }
 
 double fraction(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
@@ -92,7 +93,7 @@ std::string memory_table(const std::vector<MemorySummary>& pools) {
         rows += fmt::format(
             "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
             "<td class='bar'>{}</td></tr>\n",
-            html_escaped(pool.name), mebibytes(pool.bytes), grouped(pool.used), grouped(pool.capacity),
+            html_escaped(pool.name), size_text(pool.bytes), grouped(pool.used), grouped(pool.capacity),
             bar_svg(0, fraction(static_cast<double>(pool.used), static_cast<double>(pool.capacity)), 1));
     }
     return report_table(
@@ -100,7 +101,7 @@ std::string memory_table(const std::vector<MemorySummary>& pools) {
         "<th>Filled</th>",
         rows,
         fmt::format("<tfoot><tr><td>Sum</td><td class='number'>{}</td><td></td><td></td><td></td></tr></tfoot>\n",
-                    mebibytes(bytes)));
+                    size_text(bytes)));
 }
 
 std::string light_table(const std::vector<Light>& lights) {

@@ -17,42 +17,40 @@ namespace patina::tools {
 /// What `patina run` was asked to do.
 struct RunOptions : SequenceOptions {
     std::filesystem::path out;
-    /// The command line after "run", and the folder it was given in: they are kept in the map.
+    /// The command line after "run", and the folder in which it was given. The map keeps both.
     std::vector<std::string> arguments;
     std::filesystem::path started_in;
-    bool tiles = false;        ///< writes tiles/, too
-    SceneFileOptions files{};  ///< of scene.glb and tiles/; but for `texture`
-    bool texture = true;       ///< scene.glb has one
-    double texel_m = 0;        ///< its texels' edge; 0: as fine as the pictures, from 0.5 to 2 mm
-    uint32_t dump_every = 0;   ///< frames/NNNNNN.exr of every so many frames; 0 writes none
-    std::filesystem::path
-        dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none
+    bool tiles = false;                ///< writes tiles/, too
+    SceneFileOptions files{};          ///< of scene.glb and tiles/, except `texture`
+    bool texture = true;               ///< scene.glb has a texture
+    double texel_m = 0;                ///< edge of its texels; 0: as fine as the pictures, from 0.5 to 2 mm
+    uint32_t dump_every = 0;           ///< writes frames/NNNNNN.exr of every N-th frame; 0: none
+    std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty: none
 };
 
-/// What a run has whose source is live: it goes along from the first frame to the summary.
+/// Accompanies a run with a live source, from before the first frame to the summary.
 class RunCompanion {
   public:
     virtual ~RunCompanion() = default;
 
     /// The source; called once. `device` outlives it.
     virtual std::unique_ptr<Source> source(vulkan::Device& device) = 0;
-    /// Changes what the session calls while it works.
+    /// Changes the session's callbacks before it begins.
     virtual void adjust(SessionCallbacks& callbacks) = 0;
     /// After each step of the session.
     virtual void after_step(SessionCore& session) = 0;
-    /// Once the last frame was taken, or something failed; may be called again.
+    /// After the last frame, or after a failure; may be called again.
     virtual void end() = 0;
-    /// What it fell short of.
+    /// What the source or its recording fell short of, one sentence each.
     virtual std::vector<std::string> shortfalls() const = 0;
     virtual void add_to(RunSummary& summary) const = 0;
 };
 
-/// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). When the user stops it, or an error does,
-/// what was fused so far is extracted and written, and run.json says how the run ended; of a device that was lost, what
-/// the host has. Such results take the place of no whole ones (OutputFolder::commit_unfinished). Returns what the
-/// results fall short of. Throws Error for whatever stopped the run, Interrupted when the user did before a frame was
-/// fused.
-/// `companion` may be null; it must outlive the run.
+/// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). If the user or an error stops the run, it
+/// writes what was fused so far, and run.json has the reason; if the device was lost, it writes what the host has. Such
+/// results never replace whole ones (OutputFolder::commit_unfinished). Returns what the results fall short of. Throws
+/// Error with the reason that stopped the run, Interrupted if the user stopped it before a frame was fused.
+/// `companion` may be null; it outlives the run.
 Outcome run(const RunOptions& options, RunCompanion* companion = nullptr);
 
 }  // namespace patina::tools

@@ -1,13 +1,15 @@
 #include <fstream>
 #include <iterator>
+#include <limits>
 
-#include "cameras/kinect2_source.h"
+#include "cameras/kinect2_recorded.h"
 #include "scenes/description/scene.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "sensor/files/picture_file.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/gpu/kinect2/kinect2_test.h"
+#include "tests/simulated_kinect2/pages.h"
 
 namespace patina {
 namespace {
@@ -69,6 +71,11 @@ class Kinect2DecoderTest : public Kinect2Test {
         raw.color_gain = 1.25f;
         return raw;
     }
+
+    const sensor::RecordedSequence sequence_ =
+        cameras::kinect2_sequence(sensor::kinect2::testing::pages_of(calibration()), "kinect");
+    cameras::Kinect2Packer packer_;
+    cameras::Kinect2PayloadDecoder decoder_{[this]() -> vulkan::Device& { return device(); }, sequence_, "kinect"};
 };
 
 TEST_F(Kinect2DecoderTest, TheFittedColourCameraAgreesWithTheDevicesPolynomials) {
@@ -91,68 +98,72 @@ TEST_F(Kinect2DecoderTest, TheFittedColourCameraAgreesWithTheDevicesPolynomials)
 }
 
 TEST_F(Kinect2DecoderTest, AFrameIsMirroredBackWithItsTimeAndExposure) {
-    std::vector<RawFrame> raws{raw_plane(1.5f), raw_plane(1.5f)};
-    raws[0].timestamp = 0xffffffff - 99;
-    raws[1].timestamp = 167;  // the clock has wrapped
-    size_t given = 0;
-    cameras::Kinect2Source source(device(), calibration(), "kinect", [&]() -> std::optional<RawFrame> {
-        if (given == raws.size()) return std::nullopt;
-        return raws[given++];
-    });
-    const SequenceInfo& info = source.info();
+    const SequenceInfo info = sequence_.info;
     EXPECT_FALSE(info.frames);
     EXPECT_EQ(info.depth.extent, kinect2::kInfraredExtent);
     EXPECT_FALSE(info.depth.distorted());
     EXPECT_NEAR(info.depth.cx, 511 - (260.925507 - 0.5), 1e-4);
 
-    const auto reading = source.next();
-    ASSERT_TRUE(reading && std::holds_alternative<Frame>(*reading));
-    const Frame& frame = std::get<Frame>(*reading);
-    EXPECT_EQ(frame.index, 0u);
-    EXPECT_EQ(frame.timestamp_s, 0);
-    EXPECT_DOUBLE_EQ(frame.exposure.exposure_s, 0.008);
-    EXPECT_EQ(frame.exposure.gain, 1.25);
+    RawFrame first = raw_plane(1.5f), second = raw_plane(1.5f);
+    first.timestamp = 0xffffffff - 99;
+    second.timestamp = 167;  // the clock has wrapped
+    const sensor::RecordedFrame recorded = packer_.pack(std::move(first));
+    EXPECT_EQ(recorded.index, 0u);
+    EXPECT_EQ(recorded.timestamp_s, 0);
+    EXPECT_DOUBLE_EQ(recorded.exposure.exposure_s, 0.008);
+    EXPECT_EQ(recorded.exposure.gain, 1.25);
+    Frame frame;
+    decoder_.decode(recorded, frame);
     const auto& color = std::get<Image<SrgbPixel>>(frame.color);
     EXPECT_EQ(color.at(0, 500), SrgbPixel(239, 40, 80));
     EXPECT_EQ(color.at(1919, 500), SrgbPixel(0, 40, 80));
     EXPECT_NEAR(std::get<Image<float>>(frame.depth).at(256, 212), 1.5f, 0.001f);
 
-    const auto second = source.next();
-    ASSERT_TRUE(second && std::holds_alternative<Frame>(*second));
-    EXPECT_DOUBLE_EQ(std::get<Frame>(*second).timestamp_s, 267 * 125e-6);
-    EXPECT_FALSE(source.next());
+    const sensor::RecordedFrame next = packer_.pack(std::move(second));
+    EXPECT_EQ(next.index, 1u);
+    EXPECT_DOUBLE_EQ(next.timestamp_s, 267 * 125e-6);
 }
 
-TEST_F(Kinect2DecoderTest, ADamagedFrameIsSkippedAndTheNextOneIsNot) {
+TEST_F(Kinect2DecoderTest, ADamagedFrameIsToldApartAndTheNextOneIsWhole) {
     std::vector<RawFrame> raws(4, raw_plane(1.5f));
     raws[0].infrared.resize(1000);
     raws[1].color.resize(raws[1].color.size() / 2);
     raws[2].color = encoded(Image<SrgbPixel>(Extent2D{64, 48}));
-    size_t given = 0;
-    cameras::Kinect2Source source(device(), calibration(), "kinect", [&] { return std::optional(raws[given++]); });
-    const char* reasons[] = {"kinect frame 0 has an infrared frame of 1000 bytes, but 2686464 are needed",
-                             "kinect frame 1", "kinect frame 2 is 64 x 48 pixels, but the sequence says 1920 x 1080"};
+    const char* reasons[] = {"kinect: frame 0 has an infrared frame of 1000 bytes, but 2686464 are needed",
+                             "kinect: frame 1", "kinect: frame 2 is 64 x 48 pixels, but the sequence says 1920 x 1080"};
     for (uint32_t i = 0; i < 3; ++i) {
-        const auto reading = source.next();
-        ASSERT_TRUE(reading && std::holds_alternative<Skipped>(*reading)) << i;
-        EXPECT_EQ(std::get<Skipped>(*reading).index, i);
-        EXPECT_THAT(std::get<Skipped>(*reading).reason, testing::HasSubstr(reasons[i]));
+        Frame frame;
+        try {
+            decoder_.decode(packer_.pack(std::move(raws[i])), frame);
+            ADD_FAILURE() << i;
+        } catch (const sensor::DamagedFrame& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr(reasons[i]));
+        }
     }
-    const auto reading = source.next();
-    ASSERT_TRUE(reading && std::holds_alternative<Frame>(*reading));
-    EXPECT_EQ(std::get<Frame>(*reading).index, 3u);
+    Frame frame;
+    decoder_.decode(packer_.pack(std::move(raws[3])), frame);
+    EXPECT_NEAR(std::get<Image<float>>(frame.depth).at(256, 212), 1.5f, 0.001f);
 }
 
-TEST_F(Kinect2DecoderTest, RegisteredColourComesWhereItIsAskedFor) {
+TEST_F(Kinect2DecoderTest, WhatTheDeviceSaysOfAFrameIsFiniteInAnyCase) {
+    RawFrame raw;
+    raw.color_exposure_ms = std::numeric_limits<float>::infinity();
+    raw.color_gain = std::numeric_limits<float>::quiet_NaN();
+    raw.color_gamma = 2.5f;
+    const sensor::RecordedFrame recorded = packer_.pack(std::move(raw));
+    EXPECT_EQ(recorded.exposure, Exposure{});
+    EXPECT_EQ(recorded.payloads.at(1).attributes, R"({"exposure_ms": null, "gain": null, "gamma": 2.5})");
+}
+
+TEST_F(Kinect2DecoderTest, TheInfraredPictureComesWhereItIsAskedFor) {
     const RawFrame raw = raw_plane(1.5f);
-    cameras::Kinect2Decoder plain(device(), model()), registering(device(), model(), {{}, true});
-    EXPECT_TRUE(plain.decode(raw, "kinect").registered.empty());
-    const auto pictures = registering.decode(raw, "kinect");
-    EXPECT_EQ(pictures.depth_m.pixels(), plain.decode(raw, "kinect").depth_m.pixels());
-    const glm::dvec2 place = reference::kinect2::color_place(model(), 256, 212, pictures.depth_m.at(256, 212));
-    const uint32_t color = pictures.registered.at(256, 212);
-    EXPECT_EQ(color >> 24, 255u);
-    EXPECT_NEAR(color & 255, pictures.color.at(static_cast<uint32_t>(place.x), 500).r, 1);
+    cameras::Kinect2Decoder plain(device(), model()), with_infrared(device(), model(), true);
+    const auto without = plain.decode(raw.infrared, raw.color, "kinect");
+    const auto pictures = with_infrared.decode(raw.infrared, raw.color, "kinect");
+    EXPECT_TRUE(without.infrared.empty());
+    EXPECT_EQ(pictures.depth_m.pixels(), without.depth_m.pixels());
+    // 16 times the mean of the amplitudes, which are 300 everywhere; 11-bit codes are off by 1/128 each at most.
+    EXPECT_NEAR(pictures.infrared.at(256, 212), 16 * 300, 16 * 300 / 100.0);
 }
 
 TEST_F(Kinect2DecoderTest, ARenderedSceneBecomesPhaseImagesAndDepthAgain) {
@@ -171,7 +182,7 @@ TEST_F(Kinect2DecoderTest, ARenderedSceneBecomesPhaseImagesAndDepthAgain) {
     raw.infrared = scenes::kinect2::infrared_frame(simulated(model()), {seen_m, amplitude});
     raw.color = encoded(sent_picture());
     cameras::Kinect2Decoder decoder(device(), model());
-    const auto pictures = decoder.decode(raw, "kinect");
+    const auto pictures = decoder.decode(raw.infrared, raw.color, "kinect");
     const Intrinsics depth = decoder.depth_camera();
     std::vector<double> errors;
     for (uint32_t y = 0; y < depth.extent.height; ++y) {
