@@ -12,16 +12,17 @@ layout(std430, binding = 2) writeonly buffer Found { FoundLight found[]; };
 // Bearings closer together than this cannot tell a distance: 3 degrees, where an error of a pixel is some 5 %.
 const float kLeastParallax = 0.05;
 
-// The image of another lamp in a mirror, which is none: it moves with the camera, and the half vector of the ways to
-// the camera and to that lamp stays. A lamp's own turns by half as much as the way to the camera, or more.
+// The image of another lamp in a mirror, which is none: it moves with the camera as far as the distances of both from
+// it ask for, and the half vector of the ways to the camera and to that lamp stays. A lamp stays itself, and its half
+// vector turns by half as much as the way to the camera, or more.
 const float kLeastTurn = 0.02;  // of the way to the camera, from which on sightings tell
 const float kImageTurn = 0.4;   // of the half vector, over that
-const float kImageMove = 0.15;  // the spread over the radius
+const float kImageMove = 0.6;   // over what an image's would be
 
 shared float values[kMaxSightings];
 shared float middle;
 shared vec4 triangulated;  // w: 1 when there is a point
-shared uint turns_like_image;
+shared uint is_image;
 
 // The lower median of the values that the first `count` invocations hold.
 float median(float own, uint count) {
@@ -67,22 +68,26 @@ vec3 to_camera(LightSighting s) { return normalize(s.camera_m.xyz - s.center_rad
 // Between the ways to the camera and to another light: the normal of a mirror that shows it here.
 vec3 half_vector(LightSighting s, vec3 other_m) { return normalize(to_camera(s) + normalize(other_m - front_m(s))); }
 
-bool turns_like_image_of(uint light, uint count, uint other) {
-    vec3 view = vec3(0.0), middle_way = vec3(0.0);
+// Whether the sightings of a light are images of another one in a plane mirror.
+bool is_image_of(uint light, uint count, uint other) {
+    vec3 view = vec3(0.0), middle_way = vec3(0.0), place_m = vec3(0.0);
     for (uint i = 0u; i < count; ++i) {
         const LightSighting s = history[light * kMaxSightings + i];
-        view += to_camera(s);
-        middle_way += half_vector(s, tracks[other].place.xyz);
+        view += to_camera(s) / float(count);
+        middle_way += half_vector(s, tracks[other].place.xyz) / float(count);
+        place_m += s.center_radius.xyz / float(count);
     }
-    view /= float(count);
-    middle_way /= float(count);
-    float view_turns = 0.0, middle_turns = 0.0;
+    float view_turns = 0.0, middle_turns = 0.0, moves_m = 0.0, reach_m = 0.0;
     for (uint i = 0u; i < count; ++i) {
         const LightSighting s = history[light * kMaxSightings + i];
-        view_turns += distance(view, to_camera(s));
-        middle_turns += distance(middle_way, half_vector(s, tracks[other].place.xyz));
+        view_turns += distance(view, to_camera(s)) / float(count);
+        middle_turns += distance(middle_way, half_vector(s, tracks[other].place.xyz)) / float(count);
+        moves_m += distance(place_m, s.center_radius.xyz) / float(count);
+        reach_m += distance(s.camera_m.xyz, place_m) / float(count);
     }
-    return view_turns > kLeastTurn * float(count) && middle_turns < kImageTurn * view_turns;
+    const float other_m = distance(place_m, tracks[other].place.xyz);
+    const float image_moves_m = view_turns * reach_m * other_m / (other_m + reach_m);
+    return view_turns > kLeastTurn && middle_turns < kImageTurn * view_turns && moves_m > kImageMove * image_moves_m;
 }
 
 void main() {
@@ -94,13 +99,13 @@ void main() {
     if (lane == 0u) {
         triangulated = vec4(0.0);
         middle = 0.0;
-        turns_like_image = 0u;
+        is_image = 0u;
         if (!has_depth && count > 1u) triangulate(light, count);
     }
     barrier();
     for (uint other = lane; has_depth && other < kMaxLights; other += kMaxSightings) {
         const bool is_lamp = other != light && tracks[other].sightings > 0u && tracks[other].has_depth != 0u;
-        if (is_lamp && turns_like_image_of(light, count, other)) atomicOr(turns_like_image, 1u);
+        if (is_lamp && is_image_of(light, count, other)) atomicOr(is_image, 1u);
     }
     barrier();
     const vec3 position_m = has_depth ? median(s.center_radius.xyz, count) : triangulated.xyz;
@@ -111,8 +116,7 @@ void main() {
     const float miss_m = length(cross(off_m, s.bearing.xyz));
     const float spread_m = median(has_depth ? distance(s.center_radius.xyz, position_m) : miss_m, count);
     if (lane != 0u) return;
-    const bool image = turns_like_image != 0u && spread_m > kImageMove * radius_m;
-    const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0) && !image;
+    const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0) && is_image == 0u;
     found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0)), spread_m,
                               found_one ? track.sightings : 0u, track.has_depth, track.clipped);
 }

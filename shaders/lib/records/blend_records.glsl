@@ -38,7 +38,7 @@ float same_surface(SurfacePoint point, vec3 away_vox, vec4 surface) {
 }
 
 struct Reflectance {
-    vec3 kd;
+    vec3 kd;       // of records alone, as much as their light asks for (albedo_raw_kd)
     vec4 around;   // the albedo of the surface around; a: 1 where it is known
     vec3 weights;  // of kd's channels, 1 where all records that there are are certain
     bool known;
@@ -64,7 +64,7 @@ float add_record(inout RecordSums sums, SurfacePoint point, uint record, uvec4 c
     const float same = record != kNoRecord ? same_surface(point, away_vox, surface) : 0.0;
     const float weight = same * max(share, kLeastWeight);
     const vec3 certain = weight * packed_certainty(content);
-    sums.kd += certain * packed_kd(content);
+    sums.kd += certain * packed_raw_kd(content);
     sums.weights += certain;
     sums.around += around != 0u ? weight * vec4(unpack_shared_exponent(around), 1.0) : vec4(0.0);
     sums.shares += weight;
@@ -109,7 +109,7 @@ void look_at_record(inout NearestRecords nearest, SurfacePoint point, uint recor
 Reflectance filled(Reflectance found, NearestRecords nearest, uvec4 content) {
     found.labelled = nearest.labelled;
     if (nearest.known == kNoRecord) return found;
-    return Reflectance(packed_kd(content), vec4(0.0), packed_certainty(content), true, packed_surface(content).xyz,
+    return Reflectance(packed_raw_kd(content), vec4(0.0), packed_certainty(content), true, packed_surface(content).xyz,
                        nearest.labelled);
 }
 
@@ -122,7 +122,7 @@ Reflectance with_segment(Reflectance found, vec4 segment, vec3 normal) {
     // Certainty is 1 / (1 + variance), in units of kKdDeviation squared.
     const vec3 sureness = found.weights / max(1.0 - found.weights, 1e-3);
     const float weight = others.a * kKdDeviation * kKdDeviation / (deviation * deviation);
-    const vec3 kd = (sureness * found.kd + weight * others.rgb) / max(sureness + weight, 1e-20);
+    const vec3 kd = (sureness * min(found.kd, 1.0) + weight * others.rgb) / max(sureness + weight, 1e-20);
     return Reflectance(kd, found.around, found.weights, found.known || others.a > 0.0,
                        found.known ? found.normal : normal, found.labelled);
 }

@@ -15,7 +15,7 @@ uvec4 pack_record(VoxelRecord record, uvec2 albedo, bool marched, uint visibilit
     return uvec4(albedo.x, albedo.y | flags, packSnorm4x8(surface), visibility);
 }
 
-vec3 packed_kd(uvec4 packed) { return albedo_kd(packed.xy); }
+vec3 packed_raw_kd(uvec4 packed) { return albedo_raw_kd(packed.xy); }
 vec3 packed_certainty(uvec4 packed) { return albedo_certainty(packed.xy); }
 bool packed_is_known(uvec4 packed) { return (packed.y & 0x3fffffffu) != 0u; }
 bool packed_marched(uvec4 packed) { return (packed.y & 1u << 30) != 0u; }

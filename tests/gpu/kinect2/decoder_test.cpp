@@ -162,8 +162,10 @@ TEST_F(Kinect2DecoderTest, TheInfraredPictureComesWhereItIsAskedFor) {
     const auto pictures = with_infrared.decode(raw.infrared, raw.color, "kinect");
     EXPECT_TRUE(without.infrared.empty());
     EXPECT_EQ(pictures.depth_m.pixels(), without.depth_m.pixels());
-    // 16 times the mean of the amplitudes, which are 300 everywhere; 11-bit codes are off by 1/128 each at most.
-    EXPECT_NEAR(pictures.infrared.at(256, 212), 16 * 300, 16 * 300 / 100.0);
+    // 16 times the mean of the amplitudes, which are 300 everywhere, times the gains of the frequencies (libfreenect2's
+    // ab_multiplier_per_frq); 11-bit codes are off by 1/128 each at most.
+    const double expected = 16 * 300 * (1.322581 + 1.0 + 1.612903) / 3;
+    EXPECT_NEAR(pictures.infrared.at(256, 212), expected, expected / 100);
 }
 
 TEST_F(Kinect2DecoderTest, ARenderedSceneBecomesPhaseImagesAndDepthAgain) {

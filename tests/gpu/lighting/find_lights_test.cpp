@@ -34,7 +34,8 @@ struct Room {
     double exposure = 1e-3;  ///< of the lighting sequence over that of the reflectance sequence
     bool lamps_have_depth = true;
     double depth_sigma_m = 0;
-    double flying_rim = 0;  ///< share of a lamp's disc, at its rim, whose depth lies anywhere between lamp and wall
+    bool mirror_wall = false;  ///< the wall at the largest z shows lamps in it
+    double flying_rim = 0;     ///< share of a lamp's disc, at its rim, whose depth lies anywhere between lamp and wall
 };
 
 struct Pictures {
@@ -48,6 +49,15 @@ std::optional<double> hit_sphere(const Lamp& lamp, glm::dvec3 origin_m, glm::dve
     const double discriminant = b * b - c;
     if (discriminant < 0 || -b - std::sqrt(discriminant) <= 0) return std::nullopt;
     return -b - std::sqrt(discriminant);
+}
+
+glm::dvec3 radiance_of(const Lamp& lamp) { return lamp.intensity / (std::numbers::pi * lamp.radius_m * lamp.radius_m); }
+
+/// What a mirror at the largest z shows where a ray meets it.
+glm::dvec3 mirrored(const Room& room, glm::dvec3 at_m, glm::dvec3 direction) {
+    for (const Lamp& lamp : room.lamps)
+        if (hit_sphere(lamp, at_m, direction * glm::dvec3(1, 1, -1))) return radiance_of(lamp);
+    return glm::dvec3(0.5);
 }
 
 double hit_walls(double half_size_m, glm::dvec3 origin_m, glm::dvec3 direction) {
@@ -69,6 +79,9 @@ Pictures look(const Room& room, const Intrinsics& camera, const RigidTransform& 
             const glm::dvec3 direction = glm::dmat3(world_from_camera) * glm::normalize(ray);
             double range_m = hit_walls(room.half_size_m, glm::dvec3(world_from_camera[3]), direction);
             glm::dvec3 radiance(0.5);  // the room at the reflectance sequence's exposure
+            const glm::dvec3 on_wall_m = glm::dvec3(world_from_camera[3]) + range_m * direction;
+            if (room.mirror_wall && on_wall_m.z > room.half_size_m - 1e-6)
+                radiance = mirrored(room, on_wall_m, direction);
             bool has_depth = true;
             double flown_m = 0;
             for (const Lamp& lamp : room.lamps) {
@@ -79,7 +92,7 @@ Pictures look(const Room& room, const Intrinsics& camera, const RigidTransform& 
                 const bool rim = across_m * across_m > (1 - room.flying_rim) * lamp.radius_m * lamp.radius_m;
                 flown_m = rim ? std::uniform_real_distribution<double>(0, range_m - *hit)(random) : 0;
                 range_m = *hit;
-                radiance = lamp.intensity / (std::numbers::pi * lamp.radius_m * lamp.radius_m);
+                radiance = radiance_of(lamp);
                 has_depth = room.lamps_have_depth;
             }
             const double z_m = (range_m + flown_m) / glm::length(ray) + room.depth_sigma_m * noise(random);
@@ -243,6 +256,20 @@ TEST_F(FindLights, CutOffLampsAreLeftOut) {
     frame.world_from_depth = straight;
     estimation.add(frame, 1000);
     EXPECT_TRUE(estimation.found().empty());
+}
+
+// Closer than sightings of one lamp in two frames may be.
+TEST_F(FindLights, WhatOneFrameShowsApartAreTwoLamps) {
+    Room room;
+    room.lamps = {{{-0.12, -1.0, 1.5}, 0.06, {12, 12, 12}}, {{0.13, -1.0, 1.5}, 0.06, {10, 10, 10}}};
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.01, 0.05);
+}
+
+TEST_F(FindLights, TheImageOfALampInAMirrorIsNone) {
+    Room room;
+    room.lamps = {{{0.5, -1.8, 2.6}, 0.06, {9, 9, 9}}, {{-0.6, -1.7, 2.65}, 0.06, {12, 12, 12}}};
+    room.mirror_wall = true;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.1);
 }
 
 TEST_F(FindLights, ADarkRoomHasNone) { EXPECT_TRUE(find(Room{}, kCamera, kCamera).empty()); }
