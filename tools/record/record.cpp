@@ -63,7 +63,7 @@ class Recording {
         capture.set_tap([recorder = recorder_](const sensor::RecordedFrame& frame) { recorder->record(frame); });
         sensor::ExposureCheck exposure(SequenceRole::kMain);
         const Watch watch(capture, interrupt_);
-        Progress progress(std::nullopt, options_.quiet);
+        Progress progress("Recording", std::nullopt, options_.quiet);
         while (const auto frame = capture.next()) {
             if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
                 if (is_over(raw->timestamp_s)) break;
@@ -139,7 +139,7 @@ class Recording {
     void copy(std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
         sensor::PrefetchSource source(std::move(recording));
         const sensor::ReadingTap record = to_recorder();
-        Progress progress(total_, options_.quiet);
+        Progress progress("Recording", total_, options_.quiet);
         uint32_t done = 0;
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
@@ -153,7 +153,7 @@ class Recording {
     /// By its clock: what is looked at may be late, what is recorded is not.
     void play(std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
         sensor::PlayedSource source(std::move(recording), to_recorder());
-        Progress progress(total_, options_.quiet);
+        Progress progress("Recording", total_, options_.quiet);
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
             check(*reading, exposure);
