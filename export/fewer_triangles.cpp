@@ -9,10 +9,30 @@
 
 namespace patina {
 
+namespace {
+
+/// Triangles name the first vertex of each position.
+void weld(std::span<const glm::vec3> positions_m, std::vector<std::array<uint32_t, 3>>& triangles) {
+    constexpr uint32_t kNone = UINT32_MAX;
+    std::vector<uint32_t> place(positions_m.size()), first(positions_m.size(), kNone);
+    meshopt_generateVertexRemap(place.data(), triangles.front().data(), 3 * triangles.size(), positions_m.data(),
+                                positions_m.size(), sizeof(glm::vec3));
+    for (auto& triangle : triangles) {
+        for (uint32_t& vertex : triangle) {
+            uint32_t& own = first[place[vertex]];
+            if (own == kNone) own = vertex;
+            vertex = own;
+        }
+    }
+}
+
+}  // namespace
+
 std::vector<uint32_t> collapse(std::span<const glm::vec3> positions_m, std::vector<std::array<uint32_t, 3>>& triangles,
-                               double part) {
+                               double part, Seams seams) {
     constexpr float kAnyError = 1;  // of the surface's own size
     if (!triangles.empty()) {
+        if (seams == Seams::kWelded) weld(positions_m, triangles);
         const size_t count = 3 * triangles.size();
         std::vector<std::array<uint32_t, 3>> kept(triangles.size());
         float error = 0;

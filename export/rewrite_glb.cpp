@@ -67,7 +67,8 @@ class Rewriter {
         const std::vector<glm::vec3> positions_m = in_.vectors(attribute_of(old, "POSITION"));
         MeshPart kept;
         kept.triangles = in_.triangles(old, positions_m.size());
-        kept.vertices = collapse(positions_m, kept.triangles, part_);
+        kept.vertices =
+            collapse(positions_m, kept.triangles, part_, changes_.without_texture ? Seams::kWelded : Seams::kStay);
         primitive.attributes.clear();
         if (kept.vertices.empty()) throw Error(from_, ": a primitive has no triangles");
         const std::vector<glm::vec3> left_m = gathered(positions_m, kept);

@@ -49,11 +49,11 @@ std::string material_name(const ScenePart& part) {
 }
 
 std::string custom_data(const PartMaterial& material) {
-    std::string ward;
-    if (material.observed)
-        ward = fmt::format(" float3 ks = {}; float alpha = {:.6g};", tuple(material.gloss->ks), material.gloss->alpha);
-    return fmt::format(" (\n customData = {{ dictionary ward = {{ bool observed = {};{} }} }}\n )",
-                       material.observed ? 1 : 0, ward);
+    std::string ward = fmt::format("   bool observed = {}\n", material.observed ? 1 : 0);
+    if (material.gloss && material.observed)
+        ward += fmt::format("   float3 ks = {}\n   float alpha = {:.6g}\n", tuple(material.gloss->ks),
+                            material.gloss->alpha);
+    return fmt::format(" (\n customData = {{\n  dictionary ward = {{\n{}  }}\n }}\n)", ward);
 }
 
 /// The shader that reads a part's colours.
@@ -100,7 +100,7 @@ std::string materials_text(const SceneParts& scene, const std::vector<std::strin
 std::string mesh_text(const SceneParts& scene, const ScenePart& part, size_t number) {
     const PartMaterial& material = scene.materials[part.material];
     std::string text = fmt::format(
-        "def Mesh \"part_{}_{}\" (\n displayName = {}\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n) {{\n"
+        "def Mesh \"part_{}_{}\" (\n doc = {}\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n) {{\n"
         " rel material:binding = </scene/materials/{}>\n uniform token subdivisionScheme = \"none\"\n",
         number, identifier(material.name), quoted(material.name), material_name(part));
     text += " int[] faceVertexCounts = [";

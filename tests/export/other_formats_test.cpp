@@ -183,8 +183,8 @@ TEST(WriteUsdz, HoldsTextAndPages) {
     EXPECT_EQ(std::ranges::count(text, '['), std::ranges::count(text, ']'));
     EXPECT_THAT(text, HasSubstr("asset inputs:file = @textures/page-1.png@"));
     EXPECT_THAT(text, HasSubstr("float inputs:roughness = 0.5000"));
-    EXPECT_THAT(text, HasSubstr("bool observed = 1; float3 ks = (0.2, 0.2, 0.1); float alpha = 0.25;"));
-    EXPECT_THAT(text, HasSubstr("displayName = \"object \\\"2\\\"\""));
+    EXPECT_THAT(text, HasSubstr("bool observed = 1\n   float3 ks = (0.2, 0.2, 0.1)\n   float alpha = 0.25\n"));
+    EXPECT_THAT(text, HasSubstr("doc = \"object \\\"2\\\"\""));
     EXPECT_THAT(text, HasSubstr("rel material:binding = </scene/materials/material_1_page_1>"));
     // The lamp has 600 candela in green.
     EXPECT_THAT(text, HasSubstr("float inputs:intensity = 2400"));

@@ -96,6 +96,25 @@ TEST(FewerTriangles, BordersStay) {
     EXPECT_EQ(at_border, 4u * 39);
 }
 
+TEST(FewerTriangles, SeamsGoWhereTheyAreWelded) {
+    // Two sheets that meet at x = 0.19: a seam within one mesh.
+    Mesh sheet = test::wavy_sheet(20, 20);
+    for (uint32_t y = 0; y < 20; ++y) {
+        for (uint32_t x = 0; x < 20; ++x)
+            sheet.positions_m.push_back(sheet.positions_m[20 * y + 19 - x] * glm::vec3(-1, 1, 1) +
+                                        glm::vec3(0.38f, 0, 0));
+    }
+    for (size_t i = 0; i < 2 * 19 * 19; ++i) {
+        const auto [a, b, c] = sheet.triangles[i];
+        sheet.triangles.push_back({a + 400, b + 400, c + 400});
+    }
+    const auto left = [&](Seams seams) {
+        std::vector<std::array<uint32_t, 3>> triangles = sheet.triangles;
+        return collapse(sheet.positions_m, triangles, 0.01, seams).size();
+    };
+    EXPECT_LT(left(Seams::kWelded) + 10, left(Seams::kStay));
+}
+
 class RewriteGlb : public testing::Test {
   protected:
     RewriteGlb() {

@@ -139,13 +139,20 @@ TEST(Viewer, ABrowserShowsIt) {
     if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "Chromium is not installed";
     const TemporaryFolder folder;
     std::string html = viewer_html(small_scene());
-    // The page says what it drew, where a test can read it.
-    const std::string probe =
-        "<script>(async () => { for (let i = 0; i < 100 && !groups.length; ++i) await new Promise((r) => "
-        "setTimeout(r, 50)); draw(4); const all = new Uint8Array(4 * canvas.width * canvas.height); "
-        "gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, all); let drawn = 0; "
-        "for (let i = 3; i < all.length; i += 4) drawn += all[i] > 0; "
-        "document.title = drawn > 1000 ? 'DRAWN' : 'EMPTY'; })();</script>";
+    // The page says what it drew and heard, where a test can read it.
+    const std::string probe = R"js(<script>(async () => {
+        for (let i = 0; i < 100 && !groups.length; ++i) await new Promise((r) => setTimeout(r, 50));
+        await new Promise((r) => setTimeout(r, 200));
+        const yaw = camera.yaw;
+        for (const key of ['4', 'ArrowLeft']) document.body.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true}));
+        const heard = mode === 3 && camera.yaw !== yaw;
+        draw(4);
+        const all = new Uint8Array(4 * canvas.width * canvas.height);
+        gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+        let drawn = 0;
+        for (let i = 3; i < all.length; i += 4) drawn += all[i] > 0;
+        document.title = (drawn > 1000 ? 'DRAWN' : 'EMPTY') + (heard ? ' HEARD' : ' DEAF');
+    })();</script>)js";
     html.insert(html.find("</body>"), probe);
     std::ofstream(folder / "a.html") << html;
     const std::string line =
@@ -154,7 +161,7 @@ TEST(Viewer, ABrowserShowsIt) {
         (folder / "profile").string() + " --virtual-time-budget=10000 --dump-dom file://" +
         (folder / "a.html").string() + " > " + (folder / "dom").string() + " 2> /dev/null";
     ASSERT_EQ(std::system(line.c_str()), 0);
-    EXPECT_THAT(test::bytes_of(folder / "dom"), HasSubstr("<title>DRAWN</title>"));
+    EXPECT_THAT(test::bytes_of(folder / "dom"), HasSubstr("<title>DRAWN HEARD</title>"));
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
@@ -81,6 +84,13 @@ void write_output(const SceneOutput& output, const fs::path& glb, const ScenePar
     }
 }
 
+/// For the user.
+std::string content_of(SceneFormat format, const SceneParts& scene) {
+    if (format == SceneFormat::kLights) return fmt::format("{} lamps", scene.lights.size());
+    if (format == SceneFormat::kPoints) return fmt::format("{} points", scene.vertices());
+    return fmt::format("{} triangles of {} segments", scene.triangles(), scene.materials.size());
+}
+
 /// The scene's parts, with the ambient light that stands beside it.
 SceneParts parts_of(const fs::path& glb, const fs::path& scene) {
     SceneParts parts = read_scene_parts(glb);
@@ -124,9 +134,7 @@ Outcome export_scene(const ExportSceneOptions& options) {
     for (const SceneOutput& output : options.outputs) {
         if (interrupt.requested()) throw Interrupted("interrupted before '", output.file.string(), "' was written");
         write_output(output, glb, parts, options);
-        if (!options.quiet)
-            print_out("{}: {} triangles of {} segments\n", printable(output.file.string()), parts.triangles(),
-                      parts.materials.size());
+        if (!options.quiet) print_out("{}: {}\n", printable(output.file.string()), content_of(output.format, parts));
     }
     return {};
 }

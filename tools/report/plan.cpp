@@ -40,18 +40,24 @@ class TopView {
     TopView(Extent2D extent, const Scale& scale)
         : colors_(extent, kNoValue), height_m_(extent, -1e30f), scale_(scale) {}
 
-    void add(const ScenePart& part, const std::vector<glm::vec3>& base) {
+    /// `page`: that the part lies in; null: vertices have colours.
+    void add(const ScenePart& part, const Image<glm::vec3>* page) {
         for (const auto& [a, b, c] : part.triangles) {
             const std::array<glm::vec3, 3> corners{part.positions_m[a], part.positions_m[b], part.positions_m[c]};
-            if (glm::cross(corners[1] - corners[0], corners[2] - corners[0]).y > 0)
-                add(corners, {base[a], base[b], base[c]});
+            if (glm::cross(corners[1] - corners[0], corners[2] - corners[0]).y <= 0) continue;
+            const auto color_at = [&](float u, float v, float w) {
+                if (page) return texel_at(*page, u * part.places[a] + v * part.places[b] + w * part.places[c]);
+                return u * part.base[a] + v * part.base[b] + w * part.base[c];
+            };
+            add(corners, color_at);
         }
     }
 
     const Drawing& colors() const { return colors_; }
 
   private:
-    void add(const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& colors) {
+    template <class ColorAt>
+    void add(const std::array<glm::vec3, 3>& corners, const ColorAt& color_at) {
         std::array<glm::dvec2, 3> at;
         glm::dvec2 low(1e30), high(-1e30);
         for (size_t i = 0; i < 3; ++i) {
@@ -72,7 +78,7 @@ class TopView {
                 const float height_m = (1 - v - w) * corners[0].y + v * corners[1].y + w * corners[2].y;
                 if (height_m <= height_m_.at(x, y)) continue;
                 height_m_.at(x, y) = height_m;
-                colors_.at(x, y) = color_pixel((1 - v - w) * colors[0] + v * colors[1] + w * colors[2]);
+                colors_.at(x, y) = color_pixel(color_at(1 - v - w, v, w));
             }
         }
     }
@@ -127,8 +133,13 @@ std::string plan_svg(const SceneParts& scene, std::span<const glm::dvec3> path_m
     const Extent2D extent{static_cast<uint32_t>(std::ceil(size_m.x * scale.px_per_m)),
                           static_cast<uint32_t>(std::ceil(size_m.z * scale.px_per_m))};
     TopView view(extent, scale);
-    const auto base = base_colors(scene);
-    for (size_t i = 0; i < scene.parts.size(); ++i) view.add(scene.parts[i], base[i]);
+    for (const ScenePart& part : scene.parts)
+        if (part.page == ScenePart::kNoPage) view.add(part, nullptr);
+    for (uint32_t number = 0; number < scene.pages.size(); ++number) {
+        const Image<glm::vec3> page = linear_page(scene.pages[number]);
+        for (const ScenePart& part : scene.parts)
+            if (part.page == number) view.add(part, &page);
+    }
     return fmt::format(
                "<svg class='plan' viewBox='0 0 {0} {1}' role='img'>\n<title>Plan of the scene, {2:.1f} by {3:.1f} m, "
                "with {4} "

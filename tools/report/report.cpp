@@ -99,7 +99,7 @@ std::string scene_html(const ReportScene& scene, const RunSummary& summary) {
                                     "lamps. Where gloss was not observed, only the diffuse part is shown.",
                                     swatch_grid(summary.segments, lights, glm::dvec3(low + high) / 2.0))) +
            report_section("Plan",
-                          explained("From straight above: the camera's way (pink, the dot is its begin) and the "
+                          explained("From straight above: the camera's way (pink, the dot is where it begins) and the "
                                     "lamps (yellow).",
                                     plan_svg(scene.parts, scene.path_m)));
 }
