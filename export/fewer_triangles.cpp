@@ -1,5 +1,7 @@
 #include "export/fewer_triangles.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include <meshoptimizer.h>
@@ -11,48 +13,74 @@ namespace patina {
 
 namespace {
 
-/// Triangles name the first vertex of each position.
-void weld(std::span<const glm::vec3> positions_m, std::vector<std::array<uint32_t, 3>>& triangles) {
-    constexpr uint32_t kNone = UINT32_MAX;
-    std::vector<uint32_t> place(positions_m.size()), first(positions_m.size(), kNone);
-    meshopt_generateVertexRemap(place.data(), triangles.front().data(), 3 * triangles.size(), positions_m.data(),
-                                positions_m.size(), sizeof(glm::vec3));
-    for (auto& triangle : triangles) {
-        for (uint32_t& vertex : triangle) {
-            uint32_t& own = first[place[vertex]];
-            if (own == kNone) own = vertex;
-            vertex = own;
+using Triangle = std::array<uint32_t, 3>;
+
+std::vector<Triangle> simplified(std::span<const glm::vec3> positions_m, const std::vector<Triangle>& triangles,
+                                 double share) {
+    constexpr float kAnyError = 1;  // of the surface's own size
+    if (triangles.empty()) return {};
+    const size_t count = 3 * triangles.size();
+    std::vector<Triangle> kept(triangles.size());
+    float error = 0;
+    const size_t indices = meshopt_simplify(
+        kept.front().data(), triangles.front().data(), count, &positions_m.front().x, positions_m.size(),
+        sizeof(glm::vec3), static_cast<size_t>(static_cast<double>(count) * share), kAnyError, 0, &error);
+    kept.resize(indices / 3);
+    return kept;
+}
+
+/// All parts as one surface.
+struct Joined {
+    std::vector<glm::vec3> positions_m;
+    std::vector<Triangle> triangles;
+    std::vector<uint32_t> first;    ///< by part: the number of its first vertex
+    std::vector<uint32_t> part_of;  ///< by vertex
+
+    explicit Joined(const std::vector<PartSurface>& parts) {
+        for (uint32_t i = 0; i < parts.size(); ++i) {
+            const auto offset = static_cast<uint32_t>(positions_m.size());
+            first.push_back(offset);
+            positions_m.insert(positions_m.end(), parts[i].positions_m.begin(), parts[i].positions_m.end());
+            part_of.insert(part_of.end(), parts[i].positions_m.size(), i);
+            for (const auto& [a, b, c] : parts[i].triangles) triangles.push_back({a + offset, b + offset, c + offset});
         }
     }
-}
+
+    /// Whether all of a triangle's vertices are of one part.
+    bool is_whole(const Triangle& triangle) const {
+        return part_of[triangle[0]] == part_of[triangle[1]] && part_of[triangle[0]] == part_of[triangle[2]];
+    }
+};
 
 }  // namespace
 
-std::vector<uint32_t> collapse(std::span<const glm::vec3> positions_m, std::vector<std::array<uint32_t, 3>>& triangles,
-                               double part, Seams seams) {
-    constexpr float kAnyError = 1;  // of the surface's own size
-    if (!triangles.empty()) {
-        if (seams == Seams::kWelded) weld(positions_m, triangles);
-        const size_t count = 3 * triangles.size();
-        std::vector<std::array<uint32_t, 3>> kept(triangles.size());
-        float error = 0;
-        const size_t indices = meshopt_simplify(kept.front().data(), triangles.front().data(), count,
-                                                &positions_m.front().x, positions_m.size(), sizeof(glm::vec3),
-                                                static_cast<size_t>(static_cast<double>(count) * part), kAnyError,
-                                                meshopt_SimplifyLockBorder, &error);
-        kept.resize(indices / 3);
-        triangles = std::move(kept);
+std::vector<std::vector<uint32_t>> collapse(std::vector<PartSurface>& parts, double share) {
+    const Joined joined(parts);
+    const std::vector<Triangle> left = simplified(joined.positions_m, joined.triangles, share);
+    std::vector<std::vector<Triangle>> by_part(parts.size());
+    for (const Triangle& triangle : left) {
+        if (!joined.is_whole(triangle)) continue;
+        const uint32_t part = joined.part_of[triangle[0]], first = joined.first[part];
+        by_part[part].push_back({triangle[0] - first, triangle[1] - first, triangle[2] - first});
     }
-    return number_used(triangles, positions_m.size());
+    std::vector<std::vector<uint32_t>> kept;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        if (!by_part[i].empty()) parts[i].triangles = std::move(by_part[i]);
+        kept.push_back(number_used(parts[i].triangles, parts[i].positions_m.size()));
+    }
+    return kept;
 }
 
 SceneParts with_fewer_triangles(SceneParts scene, uint64_t triangles) {
     const uint64_t before = scene.triangles();
     if (triangles >= before) return scene;
-    const double share = static_cast<double>(triangles) / static_cast<double>(before);
-    for (ScenePart& part : scene.parts) {
-        MeshPart used;
-        used.vertices = collapse(part.positions_m, part.triangles, share);
+    std::vector<PartSurface> surfaces;
+    for (ScenePart& part : scene.parts) surfaces.push_back({part.positions_m, std::move(part.triangles)});
+    const auto kept = collapse(surfaces, static_cast<double>(triangles) / static_cast<double>(before));
+    for (size_t i = 0; i < scene.parts.size(); ++i) {
+        ScenePart& part = scene.parts[i];
+        const MeshPart used{0, kept[i], {}};
+        part.triangles = std::move(surfaces[i].triangles);
         part.positions_m = gathered(part.positions_m, used);
         part.normals = gathered(part.normals, used);
         if (!part.base.empty()) part.base = gathered(part.base, used);

@@ -40,21 +40,23 @@ class Rewriter {
             for (const tinygltf::Image& image : old_.images)
                 pages_.push_back(linear_page({image.mimeType, image.image}));
         }
-        if (changes.triangles) part_ = part_of(*changes.triangles);
+        if (changes.triangles) share_ = share_of(*changes.triangles);
     }
 
     void write() {
         model_.accessors.clear();
         model_.bufferViews.clear();
+        const std::vector<MeshPart> parts = collapsed();
+        auto part = parts.begin();
         for (tinygltf::Mesh& mesh : model_.meshes)
-            for (tinygltf::Primitive& primitive : mesh.primitives) write(primitive);
+            for (tinygltf::Primitive& primitive : mesh.primitives) write(*part++, primitive);
         write_pictures();
         if (changes_.up) turn(*changes_.up);
         file_.finish(model_);
     }
 
   private:
-    double part_of(uint64_t triangles) const {
+    double share_of(uint64_t triangles) const {
         const uint64_t there = triangles_in(old_);
         if (triangles > there)
             throw Error(from_, " has ", there, " triangles, fewer than the ", triangles,
@@ -62,18 +64,29 @@ class Rewriter {
         return static_cast<double>(triangles) / static_cast<double>(std::max<uint64_t>(there, 1));
     }
 
-    void write(tinygltf::Primitive& primitive) {
+    /// The surface of all primitives, with as many triangles as are asked for.
+    std::vector<MeshPart> collapsed() const {
+        std::vector<PartSurface> surfaces;
+        for (const tinygltf::Mesh& mesh : old_.meshes) {
+            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+                PartSurface& surface = surfaces.emplace_back();
+                surface.positions_m = in_.vectors(attribute_of(primitive, "POSITION"));
+                surface.triangles = in_.triangles(primitive, surface.positions_m.size());
+                if (surface.triangles.empty()) throw Error(from_, ": a primitive has no triangles");
+            }
+        }
+        std::vector<MeshPart> parts;
+        const auto kept = collapse(surfaces, share_);
+        for (size_t i = 0; i < surfaces.size(); ++i) parts.push_back({0, kept[i], std::move(surfaces[i].triangles)});
+        return parts;
+    }
+
+    void write(const MeshPart& kept, tinygltf::Primitive& primitive) {
         const tinygltf::Primitive old = primitive;
-        const std::vector<glm::vec3> positions_m = in_.vectors(attribute_of(old, "POSITION"));
-        MeshPart kept;
-        kept.triangles = in_.triangles(old, positions_m.size());
-        kept.vertices =
-            collapse(positions_m, kept.triangles, part_, changes_.without_texture ? Seams::kWelded : Seams::kStay);
         primitive.attributes.clear();
-        if (kept.vertices.empty()) throw Error(from_, ": a primitive has no triangles");
-        const std::vector<glm::vec3> left_m = gathered(positions_m, kept);
-        primitive.attributes["POSITION"] = arrays_.add_positions(left_m);
-        survey(left_m, kept);
+        const std::vector<glm::vec3> positions_m = gathered(in_.vectors(attribute_of(old, "POSITION")), kept);
+        primitive.attributes["POSITION"] = arrays_.add_positions(positions_m);
+        survey(positions_m, kept);
         for (const auto& [name, accessor] : old.attributes) write(name, accessor, kept, primitive);
         if (changes_.without_texture) paint(old, kept, primitive);
         primitive.indices = arrays_.add_indices(kept.triangles, kept.vertices.size());
@@ -158,7 +171,7 @@ class Rewriter {
     GltfArrays arrays_{model_, file_};
     std::vector<Image<glm::vec3>> pages_;
     SurfaceSurvey survey_;
-    double part_ = 1;
+    double share_ = 1;
 };
 
 }  // namespace

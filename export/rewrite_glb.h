@@ -20,8 +20,8 @@ struct GlbChanges {
 /// Triangles of a scene.glb. Throws Error where it cannot be read.
 uint64_t triangles_in(const std::filesystem::path& glb);
 
-/// Writes a scene.glb anew with changes; all else stays. Edges are collapsed segment by segment: borders stay, so that
-/// more triangles than asked for may be left. Throws Error where the file cannot be read or written, or has fewer
+/// Writes a scene.glb anew with changes; all else stays. Edges are collapsed by collapse(), so that more triangles than
+/// asked for may be left. Throws Error where the file cannot be read or written, or has fewer
 /// triangles than are asked for.
 void rewrite_glb(const std::filesystem::path& from, const std::filesystem::path& to, const GlbChanges& changes);
 
