@@ -166,7 +166,7 @@ function usualExposure(bytes) {
         }
     }
     const mean = sum / Math.max(count, 1);
-    return mean > 0 && (mean < 0.1 || mean > 1) ? Math.round(2 * Math.log2(0.25 / mean)) / 2 : 0;
+    return mean > 0 && (mean < 0.1 || mean > 0.4) ? Math.round(2 * Math.log2(0.25 / mean)) / 2 : 0;
 }
 
 function draw(shown = mode) {

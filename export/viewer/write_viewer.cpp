@@ -60,21 +60,36 @@ Json material_json(const PartMaterial& material) {
     return json;
 }
 
-/// Where to look from at first: in front of a surface that faces one way, else from above a corner.
+/// Where to look from at first: at the middle of the surface, in front of one that faces one way, else from above a
+/// corner; so near that pieces far off need not be in sight.
 Json start_json(const SceneParts& scene) {
     constexpr double kOneWay = 0.2;  // of the whole area
-    glm::dvec3 facing(0);
-    double area = 0;
+    constexpr double kSpread = 3.2;  // of the surface's root mean square: the whole of a closed room is in sight
+    glm::dvec3 facing(0), sum_m(0);
+    double area = 0, squares_m2 = 0;
     for (const ScenePart& part : scene.parts) {
         for (const auto& [a, b, c] : part.triangles) {
-            const glm::vec3 corner = part.positions_m[a];
-            const glm::dvec3 own(glm::cross(part.positions_m[b] - corner, part.positions_m[c] - corner));
+            const glm::dvec3 corner_m(part.positions_m[a]), second_m(part.positions_m[b]), third_m(part.positions_m[c]);
+            const glm::dvec3 own = glm::cross(second_m - corner_m, third_m - corner_m);
+            const glm::dvec3 center_m = (corner_m + second_m + third_m) / 3.0;
             facing += own;
             area += glm::length(own);
+            sum_m += glm::length(own) * center_m;
+            squares_m2 += glm::length(own) * glm::dot(center_m, center_m);
         }
     }
-    if (std::hypot(facing.x, facing.z) < kOneWay * area || area == 0) return {{"yaw", 0.7}, {"pitch", 0.6}};
-    return {{"yaw", std::atan2(facing.x, facing.z)}, {"pitch", 0.3}};
+    Json start{{"yaw", 0.7}, {"pitch", 0.6}};
+    if (area == 0) return start;
+    const glm::dvec3 middle_m = sum_m / area;
+    const auto [low, high] = bounds_of(scene);
+    const double spread_m = std::sqrt(std::max(squares_m2 / area - glm::dot(middle_m, middle_m), 0.0));
+    start["target"] = list_of(middle_m);
+    start["distance"] = std::max(std::min(kSpread * spread_m, 0.9 * double{glm::distance(low, high)}), 1e-3);
+    if (std::hypot(facing.x, facing.z) >= kOneWay * area) {
+        start["yaw"] = std::atan2(facing.x, facing.z);
+        start["pitch"] = 0.3;
+    }
+    return start;
 }
 
 /// Vertices and indices of all groups, one after the other; the machine's byte order is WebGL's.

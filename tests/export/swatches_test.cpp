@@ -40,12 +40,19 @@ TEST(Swatch, GlossThatWasNotObservedIsNotShown) {
     EXPECT_EQ(swatch(guess, kFront, 21).pixels(), swatch(matt, kFront, 21).pixels());
 }
 
+TEST(Swatch, WithoutLampsASphereIsStillRound) {
+    const Drawing drawing = swatch(matt_of(0.5f), {{}, glm::dvec3(1.5)}, 33);
+    EXPECT_GT(drawing.at(10, 10).g, drawing.at(26, 26).g + 30);
+}
+
 TEST(Swatch, TheLargestComeFirst) {
     const std::vector<SegmentSummary> segments{{1, "<small>", matt_of(0.5f, 10)}, {2, "large", matt_of(0.5f, 100)}};
     const std::string html = swatch_grid(segments, kFront, glm::dvec3(0));
     EXPECT_LT(html.find("<b>large</b>"), html.find("<b>&lt;small&gt;</b>"));
     EXPECT_THAT(html, HasSubstr("gloss not observed"));
     EXPECT_EQ(swatch_grid({}, kFront, glm::dvec3(0)), "");
+    const std::vector<SegmentSummary> unknown{{1, "unknown", {}}};
+    EXPECT_EQ(swatch_grid(unknown, kFront, glm::dvec3(0)), "");
 }
 
 TEST(Plan, ShowsLampsAndTheCamerasWay) {

@@ -55,14 +55,18 @@ std::string folded(std::string_view title, const std::string& html) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_escaped(title), html);
 }
 
+/// One point of the verdict, which begins as a sentence does.
+std::string verdict_item(const char* kind, std::string sentence) {
+    if (!sentence.empty() && sentence[0] >= 'a' && sentence[0] <= 'z') sentence[0] -= 'a' - 'A';
+    return fmt::format("<li class='{}'>{}</li>\n", kind, html_escaped(sentence));
+}
+
 std::string verdict_list(const RunSummary& summary) {
     const Verdict verdict = verdict_of(summary);
     if (verdict.good.empty() && verdict.unknown.empty()) return {};
     std::string html = "<ul class='verdict'>\n";
-    for (const std::string& sentence : verdict.good)
-        html += fmt::format("<li class='good'>{}</li>\n", html_escaped(sentence));
-    for (const std::string& sentence : verdict.unknown)
-        html += fmt::format("<li class='unknown'>{}</li>\n", html_escaped(sentence));
+    for (const std::string& sentence : verdict.good) html += verdict_item("good", sentence);
+    for (const std::string& sentence : verdict.unknown) html += verdict_item("unknown", sentence);
     return html + "</ul>\n";
 }
 

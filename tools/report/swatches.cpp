@@ -52,8 +52,10 @@ std::vector<Beam> beams_of(const Lighting& lights) {
         if (glm::length(light.position_m) > 0)
             beams.push_back({glm::normalize(light.position_m), light.intensity / (distance_m * distance_m)});
     }
-    if (beams.empty() && lights.ambient == glm::dvec3(0))
-        beams.push_back({glm::normalize(glm::dvec3(-1, 1, 1.5)), glm::dvec3(1)});
+    if (beams.empty()) {
+        const glm::dvec3 strength = lights.ambient == glm::dvec3(0) ? glm::dvec3(1) : 2.0 * lights.ambient;
+        beams.push_back({glm::normalize(glm::dvec3(-1, 1, 1.5)), kPi * strength});
+    }
     return beams;
 }
 
@@ -71,8 +73,7 @@ std::string caption_of(const SegmentSummary& segment) {
         gloss_is_observed(known)
             ? fmt::format("ks {:.2f}, alpha {:.2f}", luminance(known.gloss->ks), known.gloss->alpha)
             : std::string("<span class='unobserved'>gloss not observed</span>");
-    return fmt::format("<b>{}</b>{}{}", html_escaped(name), gloss,
-                       known.kd ? "" : "<br><span class='unobserved'>albedo not observed</span>");
+    return fmt::format("<b>{}</b>{}", html_escaped(name), gloss);
 }
 
 }  // namespace
@@ -99,7 +100,8 @@ Drawing swatch(const SegmentReflectance& material, const Lighting& lights, uint3
 
 std::string swatch_grid(std::span<const SegmentSummary> segments, const Lighting& lights, glm::dvec3 center_m) {
     std::vector<const SegmentSummary*> largest;
-    for (const SegmentSummary& segment : segments) largest.push_back(&segment);
+    for (const SegmentSummary& segment : segments)
+        if (segment.reflectance.kd) largest.push_back(&segment);
     std::ranges::stable_sort(largest, std::ranges::greater(),
                              [](const SegmentSummary* segment) { return segment->reflectance.voxels; });
     if (largest.size() > kMostSwatches) largest.resize(kMostSwatches);

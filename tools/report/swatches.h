@@ -17,8 +17,8 @@ namespace patina {
 /// is beside it has the colour at its rim.
 Drawing swatch(const SegmentReflectance& material, const Lighting& lights, uint32_t size_px);
 
-/// Swatches of the largest segments, with their names and what is known of their gloss, as markup. `center_m`: where
-/// the spheres are among the lamps, in the lamps' coordinates. Empty without segments.
+/// Swatches of the largest segments whose albedo is known, with their names and what is known of their gloss, as
+/// markup. `center_m`: where the spheres are among the lamps, in the lamps' coordinates. Empty without segments.
 std::string swatch_grid(std::span<const SegmentSummary> segments, const Lighting& lights, glm::dvec3 center_m);
 
 /// The CSS of swatches, for report_page().
