@@ -16,8 +16,9 @@ namespace patina {
 
 namespace {
 
-/// USD's names are of letters, digits and "_".
+/// USD's names are of letters, digits and "_", and begin with no digit.
 std::string identifier(std::string name) {
+    if (name.empty() || (name.front() >= '0' && name.front() <= '9')) name.insert(0, "part ");
     std::ranges::replace_if(
         name, [](char c) { return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')); },
         '_');
@@ -57,40 +58,45 @@ std::string custom_data(const PartMaterial& material) {
 }
 
 /// The shader that reads a part's colours.
+std::string color_name(const ScenePart& part) {
+    return part.page == ScenePart::kNoPage ? "color" : fmt::format("page_{}", part.page + 1);
+}
+
 std::string color_source(const ScenePart& part, const std::string& path, const std::vector<std::string>& pages) {
     if (part.page == ScenePart::kNoPage) {
-        return " def Shader \"color\" {\n  uniform token info:id = \"UsdPrimvarReader_float3\"\n"
+        return " def Shader \"color\"\n {\n  uniform token info:id = \"UsdPrimvarReader_float3\"\n"
                "  string inputs:varname = \"displayColor\"\n  float3 outputs:result\n }\n";
     }
     return fmt::format(
-        " def Shader \"place\" {{\n  uniform token info:id = \"UsdPrimvarReader_float2\"\n"
+        " def Shader \"place\"\n {{\n  uniform token info:id = \"UsdPrimvarReader_float2\"\n"
         "  string inputs:varname = \"st\"\n  float2 outputs:result\n }}\n"
-        " def Shader \"color\" {{\n  uniform token info:id = \"UsdUVTexture\"\n  asset inputs:file = @{}@\n"
+        " def Shader \"{}\"\n {{\n  uniform token info:id = \"UsdUVTexture\"\n  asset inputs:file = @{}@\n"
         "  float2 inputs:st.connect = <{}/place.outputs:result>\n  token inputs:sourceColorSpace = \"sRGB\"\n"
         "  token inputs:wrapS = \"clamp\"\n  token inputs:wrapT = \"clamp\"\n  float3 outputs:rgb\n }}\n",
-        pages[part.page], path);
+        color_name(part), pages[part.page], path);
 }
 
 std::string material_text(const SceneParts& scene, const ScenePart& part, const std::vector<std::string>& pages) {
     const PartMaterial& material = scene.materials[part.material];
     const GltfMaterial& gltf = material.gltf;
     const std::string path = fmt::format("/scene/materials/{}", material_name(part));
-    // Without a gloss that was seen there is no colour of it, and the index has the strength alone.
+    // The metallic workflow has no colour of the gloss: the index has its strength.
     const float f0 = std::max({f0_of(gltf).r, f0_of(gltf).g, f0_of(gltf).b});
     const double ior = gltf.metal ? 1.5 : (1 + std::sqrt(double{f0})) / std::max(1 - std::sqrt(double{f0}), 1e-3);
-    std::string text = fmt::format("def Material \"{}\"{} {{\n", material_name(part), custom_data(material));
+    std::string text = fmt::format("def Material \"{}\"{}\n{{\n", material_name(part), custom_data(material));
     text += fmt::format(" token outputs:surface.connect = <{}/surface.outputs:surface>\n", path);
     text += fmt::format(
-        " def Shader \"surface\" {{\n  uniform token info:id = \"UsdPreviewSurface\"\n"
-        "  color3f inputs:diffuseColor.connect = <{}/color.outputs:{}>\n  float inputs:roughness = {:.4f}\n"
+        " def Shader \"surface\"\n {{\n  uniform token info:id = \"UsdPreviewSurface\"\n"
+        "  color3f inputs:diffuseColor.connect = <{}/{}.outputs:{}>\n  float inputs:roughness = {:.4f}\n"
         "  float inputs:metallic = {}\n  float inputs:ior = {:.4f}\n  token outputs:surface\n }}\n",
-        path, part.page == ScenePart::kNoPage ? "result" : "rgb", gltf.roughness, gltf.metal ? 1 : 0, ior);
+        path, color_name(part), part.page == ScenePart::kNoPage ? "result" : "rgb", gltf.roughness, gltf.metal ? 1 : 0,
+        ior);
     return text + color_source(part, path, pages) + "}\n";
 }
 
 std::string materials_text(const SceneParts& scene, const std::vector<std::string>& pages) {
     std::set<std::string> written;
-    std::string text = "def Scope \"materials\" {\n";
+    std::string text = "def Scope \"materials\"\n{\n";
     for (const ScenePart& part : scene.parts) {
         if (written.insert(material_name(part)).second) text += material_text(scene, part, pages);
     }
@@ -100,9 +106,10 @@ std::string materials_text(const SceneParts& scene, const std::vector<std::strin
 std::string mesh_text(const SceneParts& scene, const ScenePart& part, size_t number) {
     const PartMaterial& material = scene.materials[part.material];
     std::string text = fmt::format(
-        "def Mesh \"part_{}_{}\" (\n doc = {}\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n) {{\n"
+        "def Xform \"{}_{}\" (\n doc = {}\n)\n{{\n"
+        "def Mesh \"surface\" (\n prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{{\n"
         " rel material:binding = </scene/materials/{}>\n uniform token subdivisionScheme = \"none\"\n",
-        number, identifier(material.name), quoted(material.name), material_name(part));
+        identifier(material.name), number, quoted(material.name), material_name(part));
     text += " int[] faceVertexCounts = [";
     for (size_t i = 0; i < part.triangles.size(); ++i) text += i > 0 ? ",3" : "3";
     text += "]\n int[] faceVertexIndices = [";
@@ -122,7 +129,7 @@ std::string mesh_text(const SceneParts& scene, const ScenePart& part, size_t num
         text += " texCoord2f[] primvars:st = ";
         append_list<glm::vec2>(text, part.places);
     }
-    return text + " (\n  interpolation = \"vertex\"\n )\n}\n";
+    return text + " (\n  interpolation = \"vertex\"\n )\n}\n}\n";
 }
 
 /// A sphere of radiance L has L pi r^2 candela; with `normalize` the intensity is L times the sphere's area.
@@ -131,7 +138,7 @@ std::string light_text(const Light& light, double candela_per_intensity, size_t 
     const double strongest = std::max({candela.r, candela.g, candela.b});
     const glm::vec3 color = strongest > 0 ? glm::vec3(candela / strongest) : glm::vec3(1);
     return fmt::format(
-        "def SphereLight \"light_{}\" {{\n color3f inputs:color = {}\n float inputs:intensity = {:.6g}\n"
+        "def SphereLight \"light_{}\"\n{{\n color3f inputs:color = {}\n float inputs:intensity = {:.6g}\n"
         " bool inputs:normalize = 1\n float inputs:radius = {:.4f}\n double3 xformOp:translate = ({:.6f}, {:.6f}, "
         "{:.6f})\n"
         " uniform token[] xformOpOrder = [\"xformOp:translate\"]\n}}\n",
@@ -143,7 +150,7 @@ std::string light_text(const Light& light, double candela_per_intensity, size_t 
 
 std::string usda_text(const SceneParts& scene, const std::vector<std::string>& pages) {
     std::string text =
-        "#usda 1.0\n(\n defaultPrim = \"scene\"\n metersPerUnit = 1\n upAxis = \"Y\"\n)\n\ndef Xform \"scene\" {\n";
+        "#usda 1.0\n(\n defaultPrim = \"scene\"\n metersPerUnit = 1\n upAxis = \"Y\"\n)\n\ndef Xform \"scene\"\n{\n";
     text += materials_text(scene, pages);
     for (size_t i = 0; i < scene.parts.size(); ++i) text += mesh_text(scene, scene.parts[i], i);
     for (size_t i = 0; i < scene.lights.size(); ++i)

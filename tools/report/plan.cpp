@@ -42,7 +42,8 @@ class TopView {
 
     /// `page`: that the part lies in; null: vertices have colours.
     void add(const ScenePart& part, const Image<glm::vec3>* page) {
-        for (const auto& [a, b, c] : part.triangles) {
+        for (const auto& triangle : part.triangles) {
+            const uint32_t a = triangle[0], b = triangle[1], c = triangle[2];
             const std::array<glm::vec3, 3> corners{part.positions_m[a], part.positions_m[b], part.positions_m[c]};
             if (glm::cross(corners[1] - corners[0], corners[2] - corners[0]).y <= 0) continue;
             const auto color_at = [&](float u, float v, float w) {
