@@ -25,6 +25,8 @@ constexpr uint64_t kMostOfView = 6'000'000;  // bytes; the report has pictures, 
 constexpr std::string_view kStyle = R"css(
 .verdict { margin: .8rem 0 0; padding: 0; list-style: none; }
 .verdict li { padding: .15rem 0 .15rem 1.7rem; position: relative; }
+.verdict span { display: inline-block; }
+.verdict span::first-letter { text-transform: uppercase; }
 .verdict li::before { position: absolute; left: .2rem; font-weight: 700; }
 .verdict .good::before { content: "\2713"; color: var(--bar); }
 .verdict .unknown::before { content: "?"; color: var(--warn); }
@@ -55,10 +57,9 @@ std::string folded(std::string_view title, const std::string& html) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_escaped(title), html);
 }
 
-/// One point of the verdict, which begins as a sentence does.
-std::string verdict_item(const char* kind, std::string sentence) {
-    if (!sentence.empty() && sentence[0] >= 'a' && sentence[0] <= 'z') sentence[0] -= 'a' - 'A';
-    return fmt::format("<li class='{}'>{}</li>\n", kind, html_escaped(sentence));
+/// One point of the verdict.
+std::string verdict_item(const char* kind, const std::string& sentence) {
+    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, html_escaped(sentence));
 }
 
 std::string verdict_list(const RunSummary& summary) {
