@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "export/gltf_material.h"
+
 namespace patina {
 namespace {
 
@@ -29,6 +31,17 @@ Json interval_json(const MaterialInterval& interval, bool kd_is_known) {
     return json;
 }
 
+/// A guess is told apart from what was observed.
+void add_gloss(const SegmentReflectance& segment, Json& entry) {
+    const bool observed = segment.gloss && is_observed(*segment.gloss);
+    if (!observed) entry["gloss"] = "not observed";
+    if (!segment.gloss) return;
+    Json& values = observed ? entry : entry["guess"];
+    values["ks"] = rounded(segment.gloss->ks);
+    values["alpha"] = rounded(segment.gloss->alpha);
+    if (segment.gloss->confidence) entry["specular_confidence"] = rounded(*segment.gloss->confidence);
+}
+
 /// "interval" is that of 90 %; the others have their percentage in their name.
 void add_intervals(const SegmentReflectance& segment, Json& entry) {
     if (!segment.intervals) return;
@@ -51,11 +64,7 @@ std::string materials_json(std::span<const SegmentReflectance> segments, std::sp
         Json entry{{"id", label}};
         if (label < names.size() && !names[label].empty()) entry["name"] = names[label];
         if (segment.kd) entry["kd"] = rounded(*segment.kd);
-        if (segment.gloss) {
-            entry["ks"] = rounded(segment.gloss->ks);
-            entry["alpha"] = rounded(segment.gloss->alpha);
-            if (segment.gloss->confidence) entry["specular_confidence"] = rounded(*segment.gloss->confidence);
-        }
+        add_gloss(segment, entry);
         entry["voxels"] = segment.voxels;
         entry["observations"] = segment.observations;
         entry["confidence"] = rounded(segment.confidence);

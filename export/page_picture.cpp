@@ -1,5 +1,6 @@
 #include "export/page_picture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <opencv2/imgcodecs.hpp>
@@ -92,7 +93,9 @@ Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<Texture
     return picture;
 }
 
-EncodedPicture encoded(const Image<SrgbPixel>& picture) {
+namespace {
+
+EncodedPicture encoded(const Image<SrgbPixel>& picture, const char* mime_type, const std::vector<int>& how) {
     const auto width = static_cast<int>(picture.extent().width), height = static_cast<int>(picture.extent().height);
     cv::Mat bgr(height, width, CV_8UC3);
     for (int y = 0; y < height; ++y) {
@@ -101,13 +104,58 @@ EncodedPicture encoded(const Image<SrgbPixel>& picture) {
             bgr.at<cv::Vec3b>(y, x) = {pixel.b, pixel.g, pixel.r};
         }
     }
-    const bool png = picture.extent().area() <= kMostOfPng;
-    EncodedPicture result{png ? "image/png" : "image/jpeg", {}};
-    const std::vector<int> how = png ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 6}
-                                     : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, kJpegQuality};
-    if (!cv::imencode(png ? ".png" : ".jpg", bgr, result.bytes, how))
+    EncodedPicture result{mime_type, {}};
+    if (!cv::imencode(extension_of(result), bgr, result.bytes, how))
         throw Error("a texture page of ", picture.extent(), " texels could not be encoded as ", result.mime_type);
     return result;
+}
+
+}  // namespace
+
+const char* extension_of(const EncodedPicture& picture) { return picture.mime_type == "image/png" ? ".png" : ".jpg"; }
+
+EncodedPicture encoded(const Image<SrgbPixel>& picture) {
+    if (picture.extent().area() > kMostOfPng) return encoded_as_jpeg(picture, kJpegQuality);
+    return encoded(picture, "image/png", {cv::IMWRITE_PNG_COMPRESSION, 6});
+}
+
+EncodedPicture encoded_as_jpeg(const Image<SrgbPixel>& picture, int quality) {
+    return encoded(picture, "image/jpeg", {cv::IMWRITE_JPEG_QUALITY, quality});
+}
+
+Image<SrgbPixel> decoded(const EncodedPicture& picture) {
+    cv::Mat bgr;
+    try {
+        bgr = cv::imdecode(picture.bytes, cv::IMREAD_COLOR);
+    } catch (const cv::Exception& failure) {
+        throw Error("a texture page cannot be decoded: ", failure.what());
+    }
+    if (bgr.empty()) throw Error("a texture page of ", picture.bytes.size(), " bytes cannot be decoded");
+    Image<SrgbPixel> pixels({static_cast<uint32_t>(bgr.cols), static_cast<uint32_t>(bgr.rows)});
+    for (int y = 0; y < bgr.rows; ++y) {
+        for (int x = 0; x < bgr.cols; ++x) {
+            const auto& pixel = bgr.at<cv::Vec3b>(y, x);
+            pixels.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) = {pixel[2], pixel[1], pixel[0]};
+        }
+    }
+    return pixels;
+}
+
+Image<glm::vec3> linear_page(const EncodedPicture& picture) {
+    const Image<SrgbPixel> codes = decoded(picture);
+    Image<glm::vec3> linear(codes.extent());
+    std::ranges::transform(codes.pixels(), linear.pixels().begin(), linear_color);
+    return linear;
+}
+
+glm::vec3 texel_at(const Image<glm::vec3>& page, glm::vec2 place) {
+    const glm::ivec2 last(static_cast<int>(page.extent().width) - 1, static_cast<int>(page.extent().height) - 1);
+    const glm::vec2 at = glm::clamp(place * glm::vec2(last + 1) - 0.5f, glm::vec2(0), glm::vec2(last));
+    const glm::ivec2 low(at), high = glm::min(low + 1, last);
+    const glm::vec2 part = at - glm::vec2(low);
+    const auto texel = [&](int x, int y) { return page.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)); };
+    return glm::mix(glm::mix(texel(low.x, low.y), texel(high.x, low.y), part.x),
+                    glm::mix(texel(low.x, high.y), texel(high.x, high.y), part.x), part.y);
 }
 
 }  // namespace patina

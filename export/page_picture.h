@@ -20,6 +20,17 @@ struct EncodedPicture {
     std::string mime_type;
     std::vector<unsigned char> bytes;
 };
+/// ".png" or ".jpg".
+const char* extension_of(const EncodedPicture& picture);
 EncodedPicture encoded(const Image<SrgbPixel>& picture);
+/// As JPEG of a quality from 1 to 100.
+EncodedPicture encoded_as_jpeg(const Image<SrgbPixel>& picture, int quality);
+
+/// The pixels of an encoded picture. Throws Error where it is damaged.
+Image<SrgbPixel> decoded(const EncodedPicture& picture);
+Image<glm::vec3> linear_page(const EncodedPicture& picture);
+
+/// The linear colour between the four texels around a place, which is 0 to 1 from the page's top left corner.
+glm::vec3 texel_at(const Image<glm::vec3>& page, glm::vec2 place);
 
 }  // namespace patina

@@ -42,9 +42,15 @@ Value array_of(glm::dvec3 v) { return Value(Value::Array{Value(v.x), Value(v.y),
 Value ward_extras(const SegmentReflectance& segment, bool observed) {
     Value::Object ward{{"variant", Value(std::string("ward"))}, {"observed", Value(observed)}};
     if (segment.gloss) {
-        ward["ks"] = array_of(glm::dvec3(segment.gloss->ks));
-        ward["alpha"] = Value(double{segment.gloss->alpha});
+        Value::Object values{{"ks", array_of(glm::dvec3(segment.gloss->ks))},
+                             {"alpha", Value(double{segment.gloss->alpha})}};
+        if (is_observed(*segment.gloss)) {
+            ward.merge(values);
+        } else {
+            ward["guess"] = Value(std::move(values));
+        }
     }
+    if (!ward.contains("ks")) ward["gloss"] = Value(std::string("not observed"));
     return Value(Value::Object{{"ward", Value(std::move(ward))}});
 }
 

@@ -61,10 +61,11 @@ struct GlbSummary {
 ///
 /// With it, each segment has a node, a mesh and a material of its name, surface without a label those of "surface".
 /// Extras of the node have the "segment"'s label. COLOR_0 is the base colour that renders as the diffuse albedo, up to
-/// 1. The material is gltf_material()'s. Its extras "ward" have Ward's ks and alpha, where there are any, and whether
-/// they were observed. A metal has a base colour instead of COLOR_0. Where a vertex's albedo is not known it is the
-/// segment's mean, without one the fused colour, up to 1. On request _KD (float32 x 3) is the diffuse albedo;
-/// segments with a specular material then have _KS (float32 x 3) and _WARD_ALPHA (float32), too.
+/// 1. The material is gltf_material()'s. Its extras "ward" have Ward's ks and alpha where they were observed; else
+/// "gloss" is "not observed", and they stand in "guess", where there is one. A metal has a base colour instead of
+/// COLOR_0. Where a vertex's albedo is not known it is the segment's mean, without one the fused colour, up to 1. On
+/// request _KD (float32 x 3) is the diffuse albedo; segments with a specular material then have _KS (float32 x 3) and
+/// _WARD_ALPHA (float32), too.
 ///
 /// A surface that lies in a texture has TEXCOORD_0 in place of COLOR_0, and its base colour is that of the texture's
 /// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a

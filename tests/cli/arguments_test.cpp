@@ -101,6 +101,15 @@ TEST_F(Arguments, HelpIsNoFailure) {
     EXPECT_THAT(outcome.out, HasSubstr("--dump-every"));
 }
 
+TEST_F(Arguments, HelpOfRunHasTheBasicOptionsFirst) {
+    const std::string help = patina({"run", "--help"}).out;
+    const size_t basic = help.find("\nOptions:"), more = help.find("\nMore options:");
+    ASSERT_NE(more, std::string::npos);
+    EXPECT_LT(basic, help.find("--out "));
+    EXPECT_LT(help.find("--frames "), more);
+    EXPECT_GT(help.find("--dump-every "), more);
+}
+
 TEST_F(Arguments, OutputFolderIsCheckedBeforeAnythingElse) {
     write_text(beside("file"), "content");
     // The sequence is missing too: the first complaint is about what the run would write into.

@@ -106,8 +106,10 @@ json materials_of(const fs::path& file) {
     for (const json& material : read.at("materials")) {
         if (material.at("observations") < kFewObservations) continue;
         json& numbers = materials["segment " + std::to_string(material.at("id").get<uint32_t>())];
-        for (const char* name : {"kd", "ks", "alpha"}) {
-            if (material.contains(name)) numbers[name] = material[name];
+        if (material.contains("kd")) numbers["kd"] = material["kd"];
+        const json& gloss = material.contains("guess") ? material["guess"] : material;
+        for (const char* name : {"ks", "alpha"}) {
+            if (gloss.contains(name)) numbers[name] = gloss[name];
         }
     }
     return materials;

@@ -161,7 +161,8 @@ TEST(GlbReflectance, GlossThatWasNotObservedIsMarked) {
     const Scene guessed = sheet.write();
     const tinygltf::Material& floor = material(guessed.model, "floor");
     EXPECT_FALSE(floor.extras.Get("ward").Get("observed").Get<bool>());
-    EXPECT_FLOAT_EQ(static_cast<float>(floor.extras.Get("ward").Get("ks").Get(0).GetNumberAsDouble()), 0.1f)
+    EXPECT_FLOAT_EQ(static_cast<float>(floor.extras.Get("ward").Get("guess").Get("ks").Get(0).GetNumberAsDouble()),
+                    0.1f)
         << "the guess is told";
     EXPECT_FALSE(floor.extensions.contains("KHR_materials_ior"));
     EXPECT_EQ(material_of(floor).specular, 1);

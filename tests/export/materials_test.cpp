@@ -16,7 +16,7 @@ TEST(Materials, TellWhatIsKnownOfEverySegmentThatWasSeen) {
     EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json::parse(R"({"materials": [
         {"id": 1, "name": "floor", "kd": [0.25, 0.5, 0.1234], "ks": [0.125, 0.125, 0.125], "alpha": 0.2,
          "voxels": 1200, "observations": 20000, "confidence": 0.75},
-        {"id": 3, "voxels": 2, "observations": 0, "confidence": 0.0}]})"));
+        {"id": 3, "gloss": "not observed", "voxels": 2, "observations": 0, "confidence": 0.0}]})"));
     EXPECT_EQ(text.find("19999"), std::string::npos) << "floats are written as they are meant: " << text;
 }
 
@@ -34,6 +34,15 @@ TEST(Materials, IntervalsStandBesideWhatTheyAreOf) {
         "ks": [[0, 0.25], [0, 0.2], [0, 0.15]], "alpha": [0.125, 0.25]})"));
     for (const char* key : {"interval_50", "interval_80", "interval_95"}) EXPECT_TRUE(known.contains(key)) << key;
     EXPECT_FALSE(json["materials"][1]["interval"].contains("kd")) << "as long as kd is not known";
+}
+
+TEST(Materials, AGuessIsNotTakenForWhatWasObserved) {
+    std::vector<SegmentReflectance> segments(2);
+    segments[1] = {glm::vec3(0.5f), WardGloss{glm::vec3(0.04f), 0.25f, 0.125f}, 12, 20, 0.5f};
+    const auto json = nlohmann::json::parse(materials_json(segments, {}));
+    EXPECT_EQ(json["materials"][0], nlohmann::json::parse(R"({"id": 1, "kd": [0.5, 0.5, 0.5],
+        "gloss": "not observed", "guess": {"ks": [0.04, 0.04, 0.04], "alpha": 0.25}, "specular_confidence": 0.125,
+        "voxels": 12, "observations": 20, "confidence": 0.5})"));
 }
 
 TEST(Materials, OfNothingAreAnEmptyList) {

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "export/html.h"
 #include "tests/export/full_summary.h"
-#include "tools/report/html.h"
+#include "tests/export/small_scene.h"
+#include "tests/export/temporary_folder.h"
 
 namespace patina {
 namespace {
@@ -75,11 +77,41 @@ TEST(Report, ListsLightsAndMaterials) {
     summary.lamps = {{{1, -2.5, 3}, {4, 5, 6}, 0.05}};
     summary.segments = {{3, "<floor>", {glm::vec3(0.25f), WardGloss{glm::vec3(0.125f), 0.2f}, 1234, 5, 0.5f}}};
     const std::string html = report_html(summary, {});
-    for (const char* part : {"Lights", "1.000 -2.500 3.000", "4.000 5.000 6.000", "5.0</td>", "Materials",
+    for (const char* part : {"Lights", "1.000 -2.500 3.000", "4.000 5.000 6.000", "5.0</td>", "Table of materials",
                              "&lt;floor&gt;", "0.250 0.250 0.250", "0.125 0.125 0.125", "0.200", "1&#8239;234"}) {
         EXPECT_THAT(html, HasSubstr(part));
     }
-    EXPECT_THAT(report(), Not(HasSubstr("Materials")));
+    EXPECT_THAT(report(), Not(HasSubstr("Table of materials")));
+}
+
+TEST(Report, WhatIsNotKnownSaysSo) {
+    RunSummary summary = test::full_summary();
+    summary.segments = {{3, "vase", {{}, WardGloss{glm::vec3(0.0432f), 0.2f, 0.1f}, 1234, 5, 0.5f}}};
+    const std::string html = report_html(summary, {});
+    EXPECT_EQ(count_of(html, "<td class='number'>not observed</td>"), 3u);  // kd, ks and alpha
+    EXPECT_THAT(html, Not(HasSubstr("0.043")));
+}
+
+TEST(Report, ShowsTheSceneWithoutANetwork) {
+    const test::TemporaryFolder folder;
+    test::write_small_glb(folder / "scene.glb");
+    RunSummary summary = test::full_summary();
+    summary.segments = {{1, "wall 1", {glm::vec3(0.5f), WardGloss{glm::vec3(0.2f), 0.2f, 0.9f}, 1234, 5, 0.5f}}};
+    const ReportScene scene{read_scene_parts(folder / "scene.glb"), {{0.2, 1, 0.5}, {0.4, 1, 0.5}}};
+    const std::string html = report_html(summary, {}, &scene);
+    EXPECT_EQ(count_of(html, "<iframe"), 1u);
+    EXPECT_THAT(html, HasSubstr("srcdoc=\"&lt;!DOCTYPE html&gt;"));
+    EXPECT_THAT(html, HasSubstr("<b>wall 1</b>ks 0.20, alpha 0.20"));
+    EXPECT_THAT(html, HasSubstr("<svg class='plan'"));
+    EXPECT_THAT(html, HasSubstr("lamp 1, 3.00 m above the floor"));
+    for (const char* outside : {"http:", "https:", "url(", "@import", "<script", "<link"})
+        EXPECT_THAT(html, Not(HasSubstr(outside)));
+}
+
+TEST(Report, TheVerdictComesBeforeEverythingElse) {
+    const std::string html = report();
+    EXPECT_LT(html.find("298 of 300 frames were used."), html.find("<h2>"));
+    EXPECT_LT(html.find("<details>"), html.find("GPU time per pass"));
 }
 
 TEST(Report, BarsAreInProportion) {

@@ -32,7 +32,7 @@ eval::Evaluation evaluate_with_progress(const EvalArguments& arguments) {
     std::optional<Progress> progress;
     eval::Settings settings = arguments.settings;
     settings.on_frame = [&](size_t done, size_t total) {
-        if (!progress) progress.emplace(static_cast<uint32_t>(total), arguments.quiet);
+        if (!progress) progress.emplace("Measuring", static_cast<uint32_t>(total), arguments.quiet);
         progress->update(static_cast<uint32_t>(done), "compared");
     };
     return eval::evaluate(arguments.sequence, arguments.run, settings);

@@ -28,7 +28,7 @@ std::shared_ptr<RunArguments> resumed(const RunArguments& given) {
         if (!word.starts_with("--resume") && word != "--quiet") throw CLI::RequiredError("sequence");
     }
     const fs::path folder = fs::absolute(*given.resume);
-    auto arguments = kept_arguments(folder);
+    auto arguments = kept_arguments(map_in(folder));
     arguments->resume = arguments->run.out = folder;
     arguments->run.quiet = given.run.quiet;
     return arguments;

@@ -1,5 +1,8 @@
 #include "tools/commands/run_arguments.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <system_error>
 
 #include "engine/core/error.h"
@@ -7,6 +10,7 @@
 #include "reconstruction/session/choices.h"
 #include "reconstruction/store/map_file.h"
 #include "tools/commands/parse.h"
+#include "tools/commands/scene_choices.h"
 
 namespace patina::tools {
 
@@ -17,15 +21,15 @@ namespace {
 /// More segments than a frame of a room shows; the network's activations of so many take 77 MB.
 constexpr uint32_t kPaperSegments = 128;
 
-/// The value of --texture.
-void set_texture(RunOptions& run, const std::string& text) {
-    double texel_mm = 0;
-    run.texture = text != "off";
-    if (text == "off" || text == "auto") return;
-    if (!parse(text, texel_mm) || !(texel_mm >= 0.1 && texel_mm <= 100))
-        throw CLI::ValidationError(
-            "--texture", patina::text("'", text, "' is neither auto nor off nor a size of 0.1 to 100 millimetres"));
-    run.texel_m = texel_mm / 1000;
+/// What a first run does not need comes in a group of its own, below the others.
+void fold_rare_options(CLI::App& command) {
+    constexpr std::array<std::string_view, 11> kBasic{"--help",     "--out",    "--lights", "--lighting",
+                                                      "--poses",    "--frames", "--up",     "--texture",
+                                                      "--hold-out", "--quiet",  "--resume"};
+    for (CLI::Option* option : command.get_options()) {
+        const bool basic = std::ranges::find(kBasic, option->get_name()) != kBasic.end();
+        if (!basic && !option->get_positional()) option->group("More options");
+    }
 }
 
 }  // namespace
@@ -63,42 +67,7 @@ void declare(CLI::App& command, RunArguments& arguments) {
         ->excludes("--specular");
     command.add_flag("--tiles", run.tiles,
                      "Write tiles/ too: the scene in cells of 8 m and levels of detail, as 3D Tiles");
-    command
-        .add_option_function<std::string>(
-            "--up", [&run](const std::string& text) { run.files.up = parse_up(text); },
-            "The direction that is up in the recording's world, as 0,0,1: scene.glb stands upright by it; by default "
-            "it is found")
-        ->option_text("X,Y,Z");
-    command
-        .add_option("--gltf-fresnel", run.files.glb.fresnel,
-                    "How highlights in scene.glb change with the angle: as those of glass do (ior), or not at all as "
-                    "Ward's do (constant), for renderers that take specular colours above 1")
-        ->transform(one_of<GltfFresnel>({{"ior", GltfFresnel::kIor}, {"constant", GltfFresnel::kConstant}}))
-        ->option_text("ior|constant");
-    command.add_flag(
-        "--raw-attributes", run.files.glb.raw_attributes,
-        "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, _WARD_ALPHA");
-    command
-        .add_option_function<std::string>(
-            "--texture", [&run](const std::string& text) { set_texture(run, text); },
-            "Texture of scene.glb: as fine as the pictures, from 0.5 to 2 mm a texel (auto); with texels of so many "
-            "millimetres; or none, and colours at vertices in its place (off)")
-        ->option_text("auto|off|MM");
-    command.add_option(
-        "--triangles", run.files.tidy.most_triangles,
-        "Most triangles of scene.glb, about: by default 100000, or more where it would be off by more than 5 mm; "
-        "0: as many as --surface-error leaves");
-    command
-        .add_option_function<double>(
-            "--surface-error",
-            [&run](double error_mm) {
-                run.files.tidy.error_m = error_mm / 1000;
-                if (error_mm == 0) run.files.tidy.least_part_m = 0;
-            },
-            "About how far scene.glb's surface may be from what was reconstructed, in millimetres: 1 by default; 0 "
-            "keeps all triangles, those of stray parts too")
-        ->option_text("MM")
-        ->check(CLI::Range(0.0, 1000.0));
+    declare_scene_choices(command, run);
     command.add_option("--hold-out", run.hold_out,
                        "Keep every so many-th frame out of the model, and compare its colours in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
@@ -114,19 +83,20 @@ void declare(CLI::App& command, RunArguments& arguments) {
         ->excludes("--lighting");
     command.add_option("--resume", arguments.resume,
                        "Go on from the map in this folder; alone: with the arguments that the run was started with");
+    fold_rare_options(command);
 }
 
 fs::path map_in(const fs::path& run_folder) { return run_folder / "map.sqlite"; }
 
-std::shared_ptr<RunArguments> kept_arguments(const fs::path& folder) {
-    const auto map = MapFile::with_state(map_in(folder));
+std::shared_ptr<RunArguments> kept_arguments(const fs::path& file) {
+    const auto map = MapFile::with_state(file);
     std::vector<std::string> words;
     for (const auto& word : map->expect_json("arguments")) words.push_back(word.get<std::string>());
     const fs::path started_in = map->expect_text("started_in");
     std::error_code failure;
     fs::current_path(started_in, failure);
     if (failure)
-        throw Error("the run in '", folder.string(), "' was started in '", started_in.string(),
+        throw Error("the run of '", file.string(), "' was started in '", started_in.string(),
                     "', which cannot be entered: ", failure.message(), "; give its sequence and options again");
     auto arguments = std::make_shared<RunArguments>();
     CLI::App command;

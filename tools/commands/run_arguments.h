@@ -23,8 +23,8 @@ void declare(CLI::App& command, RunArguments& arguments);
 /// Where a run keeps its state.
 std::filesystem::path map_in(const std::filesystem::path& run_folder);
 
-/// The arguments of the run that the map in a folder is of, as if they were given now: enters the folder that it was
-/// started in. Throws Error where there is no map, or that folder is gone.
-std::shared_ptr<RunArguments> kept_arguments(const std::filesystem::path& folder);
+/// The arguments of the run that a map is of, as if they were given now: enters the folder that it was started in.
+/// Throws Error where there is no map, or that folder is gone.
+std::shared_ptr<RunArguments> kept_arguments(const std::filesystem::path& map);
 
 }  // namespace patina::tools

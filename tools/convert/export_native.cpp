@@ -74,7 +74,7 @@ struct Written {
 Written write_all(Source& source, sensor::SequenceWriter& writer, InfraredPictures& infrared,
                   const InterruptGuard& interrupt, bool quiet) {
     Written written;
-    Progress progress(source.info().frames, quiet);
+    Progress progress("Writing", source.info().frames, quiet);
     while (std::optional<Reading> reading = source.next()) {
         if (interrupt.requested()) throw Interrupted("interrupted after ", written.frames, " frames; nothing is left");
         if (auto* skipped = std::get_if<Skipped>(&*reading)) {

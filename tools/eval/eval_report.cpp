@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "export/html.h"
 #include "tools/eval/table.h"
 #include "tools/eval/time_plots.h"
-#include "tools/report/html.h"
 #include "tools/report/report_page.h"
 
 namespace patina::eval {

@@ -5,6 +5,17 @@
 
 namespace patina::tools {
 
+namespace {
+
+/// A task of SessionProgress in words.
+std::string stage_of(const std::string& task) {
+    if (task == "frames") return "Reconstructing";
+    if (task == "lamps" || task == "lights") return "Looking for " + task;
+    return task;
+}
+
+}  // namespace
+
 SessionCallbacks Console::callbacks() {
     return {.progress = [this](const SessionProgress& progress) { show(progress); },
             .message = [this](const std::string& message) { say(message); },
@@ -14,7 +25,7 @@ SessionCallbacks Console::callbacks() {
 void Console::show(const SessionProgress& progress) {
     if (!progress_ || task_ != progress.task) {
         task_ = progress.task;
-        progress_.emplace(progress.total, quiet_);
+        progress_.emplace(stage_of(task_), progress.total, quiet_);
     }
     progress_->update(progress.done, progress.detail);
 }

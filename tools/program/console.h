@@ -19,6 +19,9 @@ class Console {
     /// Callbacks that refer to this.
     SessionCallbacks callbacks();
 
+    /// Says what comes after the frames, in words.
+    void stage(const std::string& words) { say(words + " ..."); }
+
     /// Removes the line of progress.
     void end() { progress_.reset(); }
 

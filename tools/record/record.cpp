@@ -142,7 +142,7 @@ class Recording {
         const bool last = options_.lighting.empty() || role == SequenceRole::kLighting;
         std::optional<CameraWatch> watch;  // who ends the first pass of two wants the camera to go on
         if (last) watch.emplace(capture, interrupt_);
-        Progress progress(std::nullopt, options_.quiet);
+        Progress progress("Recording", std::nullopt, options_.quiet);
         while (const auto frame = capture.next()) {
             if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
                 if (is_over(raw->timestamp_s)) break;
@@ -168,7 +168,7 @@ class Recording {
         begin(role, recording->info());
         sensor::PrefetchSource source(std::move(recording));
         const sensor::ReadingTap record = sensor::tap_to(recorder_);
-        Progress progress(source.info().frames, options_.quiet);
+        Progress progress("Recording", source.info().frames, options_.quiet);
         uint32_t done = 0;
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
@@ -185,7 +185,7 @@ class Recording {
         const sensor::RecordedSequence& sequence = recording.sequence(its_role);
         begin_pass(role);
         recorder_->begin(role, sequence);
-        Progress progress(sequence.info.frames, options_.quiet);
+        Progress progress("Recording", sequence.info.frames, options_.quiet);
         for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
             auto row = recording.read(its_role, i);
             auto* frame = std::get_if<sensor::RecordedFrame>(&row);
@@ -203,7 +203,7 @@ class Recording {
     /// By its clock: what is looked at may be late, what is recorded is not.
     void play(SequenceRole role, std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
         begin(role, recording->info());
-        Progress progress(recording->info().frames, options_.quiet);
+        Progress progress("Recording", recording->info().frames, options_.quiet);
         sensor::PlayedSource source(std::move(recording), sensor::tap_to(recorder_));
         const CameraWatch watch(source, interrupt_);
         while (std::optional<Reading> reading = source.next()) {

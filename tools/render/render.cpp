@@ -130,7 +130,7 @@ std::vector<RigidTransform> view_poses(const RenderOptions& options, SessionCore
 void render_views(const RenderOptions& options, SessionCore& session, const Intrinsics& camera,
                   const std::vector<RigidTransform>& poses, PictureSink& sink) {
     Pipeline& pipeline = session.pipeline();
-    Progress progress(static_cast<uint32_t>(poses.size()), options.quiet);
+    Progress progress("Rendering", static_cast<uint32_t>(poses.size()), options.quiet);
     std::deque<ViewReadback> owed;
     uint32_t done = 0;
     const auto write_first = [&] {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/html.h"
+#include "export/html.h"
 #include "tools/report/report_page.h"
 
 namespace patina {

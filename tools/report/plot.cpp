@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/error.h"
-#include "tools/report/html.h"
+#include "export/html.h"
 
 namespace patina {
 namespace {

@@ -1,149 +1,42 @@
 #include "tools/report/report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "tools/program/mebibytes.h"
-#include "tools/report/html.h"
+#include "engine/core/error.h"
+#include "export/html.h"
+#include "export/viewer/write_viewer.h"
+#include "tools/report/plan.h"
+#include "tools/report/plot.h"
+#include "tools/report/report_tables.h"
+#include "tools/report/swatches.h"
+#include "tools/report/verdict.h"
 
 namespace patina {
 namespace {
 
-std::string size_text(uint64_t bytes) { return fmt::format("{:.1f} MiB", tools::mebibytes(bytes)); }
+constexpr uint64_t kMostOfView = 6'000'000;  // bytes; the report has pictures, too
 
-double fraction(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
-
-/// A bar over a hundred units from 0 to `value` (a fraction), over a paler one from `low` to `high`.
-std::string bar_svg(double low, double value, double high) {
-    return fmt::format(
-        "<svg viewBox='0 0 100 8' preserveAspectRatio='none' aria-hidden='true'>"
-        "<rect x='{:.2f}' y='3' width='{:.2f}' height='2' class='range'/>"
-        "<rect x='0' y='1' width='{:.2f}' height='6' class='value'/></svg>",
-        100 * low, 100 * std::max(0.0, high - low), 100 * value);
-}
-
-std::string vector_text(glm::dvec3 v) { return fmt::format("{:.3f} {:.3f} {:.3f}", v.x, v.y, v.z); }
-
-std::string facts(const RunSummary& summary) {
-    const FrameLedger& frames = summary.frames;
-    const VoxelPoolSummary& pool = summary.voxel_pool;
-    std::string html = report_fact(
-        "Frames used", fmt::format("{} of {}", grouped(frames.used), grouped(summary.sequence.frames.value_or(0))));
-    html += report_fact("Frames skipped", grouped(frames.skipped.size()));
-    html +=
-        report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
-    if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));
-    if (const auto& observed = summary.observation_pool) {
-        html += report_fact("Observed voxels", fmt::format("{} of {}", grouped(observed->records_used),
-                                                           grouped(observed->records_capacity)));
-        if (observed->records_refused > 0)
-            html += report_fact("Observed voxels refused", grouped(observed->records_refused));
-    }
-    for (const auto& [name, count] : summary.totals) html += report_fact(name, grouped(count));
-    for (const auto& [name, seconds] : summary.times_s)
-        html += report_fact("Time, " + name, fmt::format("{:.2f} s", seconds));
-    if (summary.ambient != glm::dvec3(0)) html += report_fact("Ambient light, RGB", vector_text(summary.ambient));
-    if (summary.world_offset_m != glm::dvec3(0))
-        html += report_fact("World moved by, m", vector_text(summary.world_offset_m));
-    html += report_fact("Device", html_escaped(summary.device.name));
-    html += report_fact("Driver", html_escaped(summary.device.driver));
-    html += report_fact("Seed", fmt::format("{}", summary.seed));
-    return report_facts(html);
-}
-
-std::string pass_row(const PassTime& pass, double longest_ms) {
-    return fmt::format(
-        "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{:.3f}</td><td class='number'>{:.3f}</td>"
-        "<td class='number'>{:.3f}</td><td class='bar'>{}</td></tr>\n",
-        html_escaped(pass.name), grouped(pass.count), pass.min_ms, pass.median_ms, pass.max_ms,
-        bar_svg(fraction(pass.min_ms, longest_ms), fraction(pass.median_ms, longest_ms),
-                fraction(pass.max_ms, longest_ms)));
-}
-
-/// Bars are drawn to twice the longest median, so that one slow first frame does not flatten them all.
-std::string pass_table(const std::vector<PassTime>& passes) {
-    if (passes.empty()) return {};
-    double longest_ms = 0, sum_ms = 0;
-    for (const PassTime& pass : passes) {
-        longest_ms = std::max(longest_ms, 2 * pass.median_ms);
-        sum_ms += pass.median_ms;
-    }
-    std::string rows;
-    for (const PassTime& pass : passes) rows += pass_row(pass, longest_ms);
-    return report_table(
-        "<th>Pass</th><th class='number'>Runs</th><th class='number'>Min, ms</th><th class='number'>Median, ms</th>"
-        "<th class='number'>Max, ms</th><th>Median (bar), min to max (line)</th>",
-        rows,
-        fmt::format(
-            "<tfoot><tr><td>Sum of medians</td><td></td><td></td><td class='number'>{:.3f}</td><td></td><td></td></tr>"
-            "</tfoot>\n",
-            sum_ms));
-}
-
-std::string memory_table(const std::vector<MemorySummary>& pools) {
-    if (pools.empty()) return {};
-    std::string rows;
-    uint64_t bytes = 0;
-    for (const MemorySummary& pool : pools) {
-        bytes += pool.bytes;
-        rows += fmt::format(
-            "<tr><td>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
-            "<td class='bar'>{}</td></tr>\n",
-            html_escaped(pool.name), size_text(pool.bytes), grouped(pool.used), grouped(pool.capacity),
-            bar_svg(0, fraction(static_cast<double>(pool.used), static_cast<double>(pool.capacity)), 1));
-    }
-    return report_table(
-        "<th>Pool</th><th class='number'>Size</th><th class='number'>Used</th><th class='number'>Capacity</th>"
-        "<th>Filled</th>",
-        rows,
-        fmt::format("<tfoot><tr><td>Sum</td><td class='number'>{}</td><td></td><td></td><td></td></tr></tfoot>\n",
-                    size_text(bytes)));
-}
-
-std::string light_table(const std::vector<Light>& lights) {
-    if (lights.empty()) return {};
-    std::string rows;
-    for (const Light& light : lights) {
-        rows += fmt::format("<tr><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td></tr>\n",
-                            vector_text(light.position_m), vector_text(light.intensity),
-                            light.radius_m > 0 ? fmt::format("{:.1f}", 100 * light.radius_m) : "");
-    }
-    return report_table(
-        "<th class='number'>Position, m</th><th class='number'>Intensity, RGB</th><th class='number'>Radius, cm</th>",
-        rows);
-}
-
-std::string segment_row(const SegmentSummary& segment) {
-    const SegmentReflectance& known = segment.reflectance;
-    return fmt::format(
-        "<tr><td class='number'>{}</td><td>{}</td><td class='number'>{}</td><td class='number'>{}</td>"
-        "<td class='number'>{}</td><td class='number'>{}</td><td class='number'>{}</td><td class='number'>{:.2f}</td>"
-        "</tr>\n",
-        segment.id, html_escaped(segment.name), known.kd ? vector_text(glm::dvec3(*known.kd)) : "",
-        known.gloss ? vector_text(glm::dvec3(known.gloss->ks)) : "",
-        known.gloss ? fmt::format("{:.3f}", known.gloss->alpha) : "", grouped(known.voxels),
-        grouped(known.observations), known.confidence);
-}
-
-std::string segment_table(const std::vector<SegmentSummary>& segments) {
-    if (segments.empty()) return {};
-    std::string rows;
-    for (const SegmentSummary& segment : segments) rows += segment_row(segment);
-    return report_table(
-        "<th class='number'>Segment</th><th>Name</th><th class='number'>kd</th><th class='number'>ks</th>"
-        "<th class='number'>alpha</th><th class='number'>Voxels</th><th class='number'>Observations</th>"
-        "<th class='number'>Confidence</th>",
-        rows);
-}
-
-std::string materials_missing(const RunSummary& summary) {
-    if (summary.materials_missing.empty()) return {};
-    return "<p>" + html_escaped(summary.materials_missing) + "</p>\n";
-}
+constexpr std::string_view kStyle = R"css(
+.verdict { margin: .8rem 0 0; padding: 0; list-style: none; }
+.verdict li { padding: .15rem 0 .15rem 1.7rem; position: relative; }
+.verdict span { display: inline-block; }
+.verdict span::first-letter { text-transform: uppercase; }
+.verdict li::before { position: absolute; left: .2rem; font-weight: 700; }
+.verdict .good::before { content: "\2713"; color: var(--bar); }
+.verdict .unknown::before { content: "?"; color: var(--warn); }
+iframe.view { display: block; width: 100%; height: min(75vh, 36rem); border: 1px solid var(--line); border-radius: 4px; }
+details { margin-top: 1.2rem; border-bottom: 1px solid var(--line); padding-bottom: .4rem; }
+summary { cursor: pointer; font-size: 1.05rem; font-weight: 600; }
+details[open] > summary { margin-bottom: .6rem; }
+@media (max-width: 40rem) { body { padding: .8rem; } }
+@media print { iframe.view { display: none; } }
+)css";
 
 /// Why the run ended before its time comes first.
 std::vector<std::string> shortfalls_of(const RunSummary& summary) {
@@ -152,31 +45,94 @@ std::vector<std::string> shortfalls_of(const RunSummary& summary) {
     return all;
 }
 
-std::string skipped_table(const std::vector<Skipped>& skipped) {
-    if (skipped.empty()) return {};
-    std::string rows;
-    for (const Skipped& frame : skipped) {
-        rows +=
-            fmt::format("<tr><td class='number'>{}</td><td>{}</td></tr>\n", frame.index, html_escaped(frame.reason));
-    }
-    return report_table("<th class='number'>Frame</th><th>Reason</th>", rows);
-}
-
-std::string settings_text(const nlohmann::ordered_json& settings) {
-    if (settings.empty()) return {};
-    const std::string text = settings.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    return "<pre>" + html_escaped(text) + "</pre>";
-}
-
 /// A sentence that says what is shown, above it; nothing where nothing is.
 std::string explained(std::string_view sentence, const std::string& html) {
     if (html.empty()) return {};
     return fmt::format("<p class='quiet'>{}</p>\n{}", html_escaped(sentence), html);
 }
 
+/// A section that opens where it is asked for.
+std::string folded(std::string_view title, const std::string& html) {
+    if (html.empty()) return {};
+    return fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_escaped(title), html);
+}
+
+/// One point of the verdict.
+std::string verdict_item(const char* kind, const std::string& sentence) {
+    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, html_escaped(sentence));
+}
+
+std::string verdict_list(const RunSummary& summary) {
+    const Verdict verdict = verdict_of(summary);
+    if (verdict.good.empty() && verdict.unknown.empty()) return {};
+    std::string html = "<ul class='verdict'>\n";
+    for (const std::string& sentence : verdict.good) html += verdict_item("good", sentence);
+    for (const std::string& sentence : verdict.unknown) html += verdict_item("unknown", sentence);
+    return html + "</ul>\n";
+}
+
+/// Within the page; what does not fit is named.
+std::string view_html(const SceneParts& scene) {
+    try {
+        return fmt::format("<iframe class='view' title='3-D view of the scene' srcdoc=\"{}\"></iframe>\n",
+                           html_escaped(viewer_html(scene, {.most_bytes = kMostOfView})));
+    } catch (const Error& error) {
+        return fmt::format(
+            "<p>The view does not fit into this page: {}. <a href='scene.glb'>scene.glb</a> holds it.</p>\n",
+            html_escaped(error.what()));
+    }
+}
+
+std::string tracking_plot(const std::vector<TrackedFrame>& frames) {
+    if (frames.size() < 2) return {};
+    Plot plot{"Share of the picture that fits the model", "share", {},
+              {{"share", LineRole::kEstimate, {}}},       0,       PlotRange{0, 1}};
+    for (const TrackedFrame& frame : frames) {
+        plot.x.push_back(frame.index);
+        const bool lost = frame.report.state == TrackingState::kLost;
+        plot.lines.front().y.push_back(lost ? std::numeric_limits<double>::quiet_NaN() : double{frame.report.share});
+    }
+    return plot_svg(plot);
+}
+
+std::string scene_html(const ReportScene& scene, const RunSummary& summary) {
+    const auto [low, high] = bounds_of(scene.parts);
+    const Lighting lights{scene.parts.lights, scene.parts.ambient};
+    return report_section("The scene", view_html(scene.parts)) +
+           report_section("Materials",
+                          explained("Spheres of each material, the largest objects first, amid this room's "
+                                    "lamps. Where gloss was not observed, only the diffuse part is shown.",
+                                    swatch_grid(summary.segments, lights, glm::dvec3(low + high) / 2.0))) +
+           report_section("Plan",
+                          explained("From straight above: the camera's way (pink, the dot is where it begins) and the "
+                                    "lamps (yellow).",
+                                    plan_svg(scene.parts, scene.path_m)));
+}
+
+std::string details_html(const RunSummary& summary) {
+    std::string html = folded("Run", facts_list(summary));
+    html +=
+        folded("Lights", explained("A point at distance r (m) receives intensity / r², in linear pixel values: 1 is "
+                                   "the brightest that 8 bits hold.",
+                                   light_table(summary.lamps)));
+    html += folded("Table of materials",
+                   explained("Of Ward's model, by segment: diffuse albedo kd and specular albedo ks (red, green, blue; "
+                             "0 to 1), roughness alpha. Confidence is that of kd, from 0 to 1.",
+                             segment_table(summary.segments)));
+    if (summary.live)
+        html += folded("Live", explained("From a frame's exposure until its pose was known, and until a picture of the "
+                                         "model from there was.",
+                                         live_table(*summary.live)));
+    html += folded("Table of tracking", tracking_table(summary.tracking));
+    html += folded("GPU time per pass", pass_table(summary.passes));
+    html += folded("Device memory", memory_table(summary.memory));
+    html += folded("Skipped frames", skipped_table(summary.frames.skipped));
+    return html + folded("Settings", settings_text(summary.settings));
+}
+
 }  // namespace
 
-std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures) {
+std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures, const ReportScene* scene) {
     const SequenceInfo& sequence = summary.sequence;
     std::string html = fmt::format(
         "<h1>{}</h1>\n<p class='quiet'>Reconstructed by Patina {} from {} frames ({}), colour {}&times;{}, depth "
@@ -184,33 +140,18 @@ std::string report_html(const RunSummary& summary, std::span<const ReportPicture
         html_escaped(sequence.name), html_escaped(summary.version), grouped(sequence.frames.value_or(0)),
         html_escaped(sequence.format), sequence.color.extent.width, sequence.color.extent.height,
         sequence.depth.extent.width, sequence.depth.extent.height);
+    html += verdict_list(summary);
     html += report_section("Incomplete", report_warnings(shortfalls_of(summary)));
-    html += facts(summary);
     html += report_section("Warnings", report_warnings(summary.warnings));
+    if (scene) html += scene_html(*scene, summary);
     html +=
         report_section("Pictures", explained("From where the colour camera was, what stands above each panel. Grey: "
                                              "the model has no surface there.",
                                              report_figures(pictures)));
-    html += report_section("Lights", explained("A point at distance r (m) receives intensity / r², in linear pixel "
-                                               "values: 1 is the brightest that 8 bits hold.",
-                                               light_table(summary.lamps)));
-    html +=
-        report_section("Materials", materials_missing(summary) +
-                                        explained("Of Ward's model, by segment: diffuse albedo kd and specular albedo "
-                                                  "ks (red, green, blue; 0 to 1), roughness alpha. Confidence is that "
-                                                  "of kd, from 0 to 1.",
-                                                  segment_table(summary.segments)));
-    if (summary.live)
-        html +=
-            report_section("Live", explained("From a frame's exposure until its pose was known, and until a picture "
-                                             "of the model from there was.",
-                                             live_table(*summary.live)));
-    html += report_section("Tracking", tracking_table(summary.tracking));
-    html += report_section("GPU time per pass", pass_table(summary.passes));
-    html += report_section("Device memory", memory_table(summary.memory));
-    html += report_section("Skipped frames", skipped_table(summary.frames.skipped));
-    html += report_section("Settings", settings_text(summary.settings));
-    return report_page(sequence.name, html);
+    html += report_section("Tracking", explained("Gaps: the camera was lost.", tracking_plot(summary.tracking)));
+    html += report_section("Details", details_html(summary));
+    return report_page(sequence.name, html,
+                       fmt::format("{}{}{}{}", kStyle, plot_style(), plan_style(), swatch_style()));
 }
 
 }  // namespace patina

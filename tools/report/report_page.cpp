@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/report/html.h"
+#include "export/html.h"
 
 namespace patina {
 namespace {

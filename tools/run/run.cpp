@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -28,6 +29,7 @@
 #include "tools/report/report.h"
 #include "tools/report/run_id.h"
 #include "tools/report/run_summary.h"
+#include "tools/report/verdict.h"
 #include "tools/run/frame_dumps.h"
 #include "tools/run/held_out.h"
 #include "tools/run/scene_files.h"
@@ -202,6 +204,7 @@ class Run {
     /// The mesh; without it the run has failed, though what else there is is written.
     void write_scene() {
         const auto start = Clock::now();
+        console_.stage("Writing the scene");
         try {
             Scene scene = session_.scene_without_surface();
             attempt("what the surface reflects", [&] { session_.add_segments(scene); });
@@ -282,6 +285,7 @@ class Run {
 
     std::vector<TexturePage> bake(const TextureLayout& layout) {
         const auto start = Clock::now();
+        console_.stage("Baking the texture");
         const auto pages = pipeline_.bake_texture(layout, [this](const Pipeline::TakePicture& take) {
             pictures_.give(session_.info(), pipeline_.gains(), take);
         });
@@ -301,6 +305,7 @@ class Run {
 
     void compare_held_out() {
         const auto start = Clock::now();
+        console_.stage("Comparing with held-out pictures");
         pipeline_.refine_all();
         held_out_summary_ = held_out_.compare(pipeline_, session_.info(), folder_);
         times_s_.emplace_back("held_out", seconds_since(start));
@@ -338,14 +343,21 @@ class Run {
         times_s_.emplace_back("total", seconds_since(start_));
         summary.times_s = times_s_;
         summary.shortfalls = outcome_of_run().shortfalls();
-        attempt("report.html", [&] { folder_.write("report.html", report_html(summary, dumps_.previews())); });
+        attempt("report.html", [&] { write_report(summary); });
         summary.files = folder_.files();
         summary.files.push_back("run.json");
         summary.id = run_id(summary, folder_.digest());
         attempt("the run's id in its pictures", [&] { dumps_.stamp(summary.id); });
         summary.shortfalls = outcome_of_run().shortfalls();
         folder_.write("run.json", run_json(summary));
+        verdict_ = verdict_of(summary);
         warnings_ = std::move(summary.warnings);
+    }
+
+    void write_report(const RunSummary& summary) {
+        std::optional<ReportScene> scene;
+        if (scene_) attempt("the scene in report.html", [&] { scene = scene_->report_scene(folder_); });
+        folder_.write("report.html", report_html(summary, dumps_.previews(), scene ? &*scene : nullptr));
     }
 
     /// Results without run.json cannot be put in place: they stay under another name.
@@ -365,8 +377,19 @@ class Run {
                   printable(place_.string()));
         const std::string& found_by = session_.illumination().found_by;
         if (found_by != "file" && found_by != "none") print_lights(session_.illumination());
-        if (!session_.materials_missing().empty()) print_out("{}\n", printable(session_.materials_missing()));
+        for (const std::string& sentence : verdict_.good) print_out("known: {}\n", printable(sentence));
+        for (const std::string& sentence : verdict_.unknown) print_out("not known: {}\n", printable(sentence));
         for (const std::string& warning : warnings_) print_out("warning: {}\n", printable(warning));
+        print_places();
+    }
+
+    void print_places() const {
+        const std::filesystem::path report = place_ / "report.html", scene = place_ / "scene.glb";
+        std::error_code failure;
+        if (std::filesystem::exists(report, failure))
+            print_out("open with a browser: {}\n", printable(report.string()));
+        if (std::filesystem::exists(scene, failure))
+            print_out("open with Blender or a glTF viewer: {}\n", printable(scene.string()));
     }
 
     const RunOptions& options_;
@@ -389,6 +412,7 @@ class Run {
     std::string failure_;          ///< the error that did it; empty where the user did
     std::filesystem::path place_;  ///< where the results went
     std::vector<std::string> problems_, warnings_;
+    Verdict verdict_;
 };
 
 }  // namespace

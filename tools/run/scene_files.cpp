@@ -1,5 +1,7 @@
 #include "tools/run/scene_files.h"
 
+#include <algorithm>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "export/materials.h"
@@ -57,6 +59,16 @@ nlohmann::ordered_json gltf_json(const GlbInfo& info) {
 
 }  // namespace
 
+std::optional<ReportScene> SceneFiles::report_scene(const OutputFolder& folder) const {
+    const std::vector<std::string> files = folder.files();
+    if (!info_ || !std::ranges::binary_search(files, "scene.glb")) return std::nullopt;
+    ReportScene scene{read_scene_parts(folder.published("scene.glb")), {}};
+    scene.parts.ambient = scene_.lighting.ambient;
+    for (const TimedPose& pose : scene_.trajectory)
+        scene.path_m.emplace_back(info_->upright.gltf_from_world() * pose.world_from_camera[3]);
+    return scene;
+}
+
 void SceneFiles::add_to(RunSummary& summary) const {
     if (info_) summary.gltf = gltf_json(*info_);
     const Lighting lighting = in_recorded_world(scene_);
@@ -65,8 +77,8 @@ void SceneFiles::add_to(RunSummary& summary) const {
     for (uint32_t label = 1; label < scene_.reflectance.segments.size(); ++label) {
         const SegmentReflectance& segment = scene_.reflectance.segments[label];
         if (segment.voxels == 0) continue;
-        const std::string name = label < scene_.segment_names.size() ? scene_.segment_names[label] : "";
-        summary.segments.push_back({label, name, segment});
+        const std::vector<std::string>& names = info_ ? info_->segment_names : scene_.segment_names;
+        summary.segments.push_back({label, label < names.size() ? names[label] : "", segment});
     }
 }
 

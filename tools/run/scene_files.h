@@ -6,6 +6,7 @@
 #include "export/scene_files.h"
 #include "patina/scene.h"
 #include "tools/report/output_folder.h"
+#include "tools/report/report.h"
 #include "tools/report/run_summary.h"
 
 namespace patina::tools {
@@ -28,6 +29,10 @@ class SceneFiles {
                          const BakeTexture& bake);
     /// Writes tiles/ (TileWriter), placed as scene.glb is.
     GlbSummary write_tiles(OutputFolder& folder, const GivePieces& pieces, const std::string& version);
+
+    /// What a report shows of the scene.glb that was written: its surface, and the camera's way. Empty where there is
+    /// none. Throws Error where it cannot be read back.
+    std::optional<ReportScene> report_scene(const OutputFolder& folder) const;
 
     /// Adds lights, segments and the place of what was written to the run's summary.
     void add_to(RunSummary& summary) const;

@@ -80,7 +80,7 @@ void create_folder(const fs::path& folder) {
 class Watch {
   public:
     Watch(const SynthOptions& options, uint32_t frames)
-        : out_(options.out), frames_(frames), progress_(frames, options.quiet) {}
+        : out_(options.out), frames_(frames), progress_("Rendering", frames, options.quiet) {}
 
     void frame_done(const std::string& sequence) {
         progress_.update(++done_, sequence);

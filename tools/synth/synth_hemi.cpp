@@ -56,7 +56,7 @@ void write_batch(const std::vector<scenes::ExampleScene>& scenes, const Rendered
 void synthesise_hemi_images(vulkan::Device& device, const SynthHemiOptions& options) {
     ExampleFileWriter writer(options.out, options.seed, options.examples, options.map);
     ExampleRenderer renderer(device, kBatch, options.map);
-    Progress progress(options.examples, options.quiet);
+    Progress progress("Writing examples", options.examples, options.quiet);
     InterruptGuard interrupt;
     std::vector<scenes::ExampleScene> scenes = draw_batch(options.seed, 0);
     for (uint64_t first = kBatch; !writer.is_full(); first += kBatch) {

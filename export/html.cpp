@@ -1,4 +1,4 @@
-#include "tools/report/html.h"
+#include "export/html.h"
 
 #include <cstdint>
 

@@ -1,0 +1,59 @@
+#include "export/light_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace patina {
+
+namespace {
+
+constexpr double kNearest_m = 0.1;  // a lamp in the point itself counts as if it were so far away
+constexpr double kPi = std::numbers::pi;
+
+glm::dvec3 direction_of(uint32_t x, uint32_t y, Extent2D extent) {
+    const double turn = 2 * kPi * ((x + 0.5) / extent.width - 0.5), tilt = kPi * (0.5 - (y + 0.5) / extent.height);
+    return {std::cos(tilt) * std::cos(turn), std::sin(tilt), std::cos(tilt) * std::sin(turn)};
+}
+
+double solid_angle(uint32_t y, Extent2D extent) {
+    const double top = kPi * (0.5 - static_cast<double>(y) / extent.height), step = kPi / extent.height;
+    return 2 * kPi / extent.width * (std::sin(top) - std::sin(top - step));
+}
+
+/// A pixel that a lamp covers.
+struct Covered {
+    size_t pixel;
+    double solid_angle;
+};
+
+void add(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
+    const Extent2D extent = map.extent();
+    const glm::dvec3 offset_m = light.position_m - from_m;
+    const double distance_m = std::max(glm::length(offset_m), kNearest_m);
+    const glm::dvec3 towards = glm::length(offset_m) > 0 ? glm::normalize(offset_m) : glm::dvec3(0, 1, 0);
+    const double least = 2 * kPi / extent.width;  // a pixel's width: the disc's radius
+    const double radius = std::max(std::asin(std::min(light.radius_m / distance_m, 1.0)), least);
+    std::vector<Covered> covered;
+    double sum = 0;
+    for (uint32_t y = 0; y < extent.height; ++y) {
+        for (uint32_t x = 0; x < extent.width; ++x) {
+            if (glm::dot(direction_of(x, y, extent), towards) < std::cos(radius)) continue;
+            covered.push_back({size_t{y} * extent.width + x, solid_angle(y, extent)});
+            sum += covered.back().solid_angle;
+        }
+    }
+    for (const Covered& each : covered)
+        map.pixels()[each.pixel] += glm::vec3(light.intensity / (distance_m * distance_m * sum));
+}
+
+}  // namespace
+
+Image<glm::vec3> light_map(const SceneParts& scene, glm::dvec3 from_m, Extent2D extent) {
+    Image<glm::vec3> map(extent, glm::vec3(scene.ambient));
+    for (const Light& light : scene.lights) add(light, from_m, map);
+    return map;
+}
+
+}  // namespace patina
