@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "export/scene_files.h"
@@ -29,12 +30,14 @@ struct RunOptions : SequenceOptions {
         dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty writes none
 };
 
-/// What a run has whose source is live: it goes along from the first frame to the summary.
+/// Who goes along with a run from its device to its summary: a live source, a window.
 class RunCompanion {
   public:
     virtual ~RunCompanion() = default;
 
-    /// The source; called once. `device` outlives it.
+    /// Adds what the device has to have for it.
+    virtual void prepare(vulkan::DeviceOptions&) {}
+    /// The source; called once. Null: that of the options. `device` outlives it.
     virtual std::unique_ptr<Source> source(vulkan::Device& device) = 0;
     /// Changes what the session calls while it works.
     virtual void adjust(SessionCallbacks& callbacks) = 0;
@@ -45,6 +48,8 @@ class RunCompanion {
     /// What it fell short of.
     virtual std::vector<std::string> shortfalls() const = 0;
     virtual void add_to(RunSummary& summary) const = 0;
+    /// What a user is shown of it while it goes along: what, and how it is now.
+    virtual std::vector<std::pair<std::string, std::string>> figures() const { return {}; }
 };
 
 /// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). When the user stops it, or an error does,
