@@ -176,7 +176,8 @@ void show_help(ViewerState& state, Extent2D window) {
                 {"numpad 0", "follow the sensor, or free"},
                 {"space", "pause"},
                 {"E", "export"},
-                {"H", "this list"}},
+                {"H", "this list"},
+                {"control + Q", "close"}},
                "keys");
     ImGui::End();
 }

@@ -45,8 +45,10 @@ WindowDisplay::WindowDisplay(const std::string& title, Extent2D extent) {
     // it, so ours are kept here.
     glfwSetKeyCallback(window_.get(), [](GLFWwindow* window, int key, int, int action, int modifiers) {
         if (action == GLFW_RELEASE) return;
+        const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
+        if (control && key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
         auto* self = static_cast<WindowDisplay*>(glfwGetWindowUserPointer(window));
-        self->keys_.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+        self->keys_.push_back({key, control});
     });
 }
 
