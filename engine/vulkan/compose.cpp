@@ -107,8 +107,8 @@ void Composer::record(Slot& slot, const ComposeTarget& target, const DeviceImage
                       const std::function<void(vk::CommandBuffer)>& overlay) {
     using Layout = vk::ImageLayout;
     const vk::raii::CommandBuffer& commands = slot.commands;
-    slot.framebuffer = context_->device().createFramebuffer(
-        {{}, *pass_, target.view, target.extent.width, target.extent.height, 1});
+    slot.framebuffer =
+        context_->device().createFramebuffer({{}, *pass_, target.view, target.extent.width, target.extent.height, 1});
     slot.pool.reset();
     commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     if (*slot.times) {

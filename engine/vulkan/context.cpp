@@ -46,8 +46,8 @@ void Context::open_device(uint32_t index) {
     vk::QueueFlags asked = vk::QueueFlagBits::eCompute;
     if (options_.graphics) asked |= vk::QueueFlagBits::eGraphics;
     const auto families = physical_.getQueueFamilyProperties();
-    const auto family = std::find_if(families.begin(), families.end(),
-                                     [&](const auto& f) { return (f.queueFlags & asked) == asked; });
+    const auto family =
+        std::find_if(families.begin(), families.end(), [&](const auto& f) { return (f.queueFlags & asked) == asked; });
     if (family == families.end())
         throw Error("the device '", caps_.name, "' has no queue for ", options_.graphics ? "graphics and " : "",
                     "compute");

@@ -68,14 +68,30 @@ void Swapchain::make(Extent2D window) {
                             : vk::CompositeAlphaFlagBitsKHR::eInherit;
     images_.clear();
     const vk::raii::SwapchainKHR before = std::move(swapchain_);
-    swapchain_ = context_->device().createSwapchainKHR(
-        {{}, *surface_, count, format_.format, format_.colorSpace, {extent_.width, extent_.height}, 1, usage,
-         vk::SharingMode::eExclusive, {}, limits.currentTransform, opaque, mode_, true, *before});
+    swapchain_ = context_->device().createSwapchainKHR({{},
+                                                        *surface_,
+                                                        count,
+                                                        format_.format,
+                                                        format_.colorSpace,
+                                                        {extent_.width, extent_.height},
+                                                        1,
+                                                        usage,
+                                                        vk::SharingMode::eExclusive,
+                                                        {},
+                                                        limits.currentTransform,
+                                                        opaque,
+                                                        mode_,
+                                                        true,
+                                                        *before});
     for (const VkImage image : swapchain_.getImages()) {
         Image& made = images_.emplace_back();
         made.image = image;
-        made.view = context_->device().createImageView(
-            {{}, made.image, vk::ImageViewType::e2D, format_.format, {}, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}});
+        made.view = context_->device().createImageView({{},
+                                                        made.image,
+                                                        vk::ImageViewType::e2D,
+                                                        format_.format,
+                                                        {},
+                                                        {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}});
         made.drawn = context_->device().createSemaphore({});
     }
     ready_.clear();

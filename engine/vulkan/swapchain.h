@@ -54,7 +54,7 @@ class Swapchain {
     size_t turn_ = 0;
     uint32_t acquired_ = 0;
     Extent2D window_, extent_;  ///< what the images were made for, and what they have
-    bool stale_ = true;  ///< is to be made anew
+    bool stale_ = true;         ///< is to be made anew
 };
 
 }  // namespace patina::vulkan

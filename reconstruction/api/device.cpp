@@ -24,10 +24,12 @@ std::vector<std::string> device_names() {
 }
 
 vulkan::DeviceOptions Access::options(const DeviceChoice& choice) {
-    return {.selector = choice.selector,
-            .validation = choice.validation,
-            .pipeline_cache_folder = choice.pipeline_cache_folder,
-            .memory_limit = choice.memory_limit};
+    vulkan::DeviceOptions options;
+    options.selector = choice.selector;
+    options.validation = choice.validation;
+    options.pipeline_cache_folder = choice.pipeline_cache_folder;
+    options.memory_limit = choice.memory_limit;
+    return options;
 }
 
 Device Access::device(const vulkan::DeviceOptions& options) {

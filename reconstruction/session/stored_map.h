@@ -18,7 +18,7 @@ class StoredMap {
     StoredMap(vulkan::Device& device, const std::filesystem::path& file);
 
     Pipeline& pipeline() { return *pipeline_; }
-    const Intrinsics& camera() const { return camera_; }  ///< the depth camera of its recording
+    const Intrinsics& camera() const { return camera_; }            ///< the depth camera of its recording
     const std::vector<TimedPose>& poses() const { return poses_; }  ///< of the depth camera, in frames that were fused
     const Lighting& lighting() const { return lighting_; }          ///< in the model's world
 

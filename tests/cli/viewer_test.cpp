@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr Extent2D kExtent{96, 64};
-constexpr const char* kLayers[] = {"color", "rerendering", "kd",        "ks",      "alpha",
-                                   "normals", "segments",  "confidence", "coverage"};
+constexpr const char* kLayers[] = {"color",   "rerendering", "kd",         "ks",      "alpha",
+                                   "normals", "segments",    "confidence", "coverage"};
 
 bool installed(const std::string& program) { return shell("command -v " + program + " > /dev/null") == 0; }
 
@@ -22,8 +22,8 @@ class Viewer : public RunFolderTest {
   protected:
     /// A run of a built-in scene that keeps its map.
     void run_with_map(std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments{"run",  "synthetic:cubes",    "--frames", "4",         "--out",
-                                           out(),  "--checkpoint-every", "4",        "--texture", "off",
+        std::vector<std::string> arguments{"run",    "synthetic:cubes",    "--frames", "4",         "--out",
+                                           out(),    "--checkpoint-every", "4",        "--texture", "off",
                                            "--quiet"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = patina(arguments);
@@ -84,8 +84,8 @@ TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
 
 TEST_F(Viewer, ARunDrawsItsSceneWhileItGrowsAndItsResultIsTheSame) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    const std::vector<std::string> run{"run",      "synthetic:cubes", "--frames",  "3",   "--lighting",
-                                       "none",     "--texture",       "off",       "--quiet", "--out"};
+    const std::vector<std::string> run{"run",  "synthetic:cubes", "--frames", "3",       "--lighting",
+                                       "none", "--texture",       "off",      "--quiet", "--out"};
     std::vector<std::string> plain = run, drawn = run;
     plain.push_back(beside("plain"));
     drawn.insert(drawn.end(), {beside("drawn"), "--offscreen", beside("frame-#.png"), "--window-extent", "96x64",
@@ -105,8 +105,8 @@ TEST_F(Viewer, BadInputIsOneSentence) {
     EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("--checkpoint-every"));
     EXPECT_THAT(expect_failure(view(beside("x.png"), {"--layer", "colour"}), 2), HasSubstr("color"));
     EXPECT_FALSE(fs::exists(beside("x.png")));
-    const Outcome no_display = patina({"run", sequence(), "--out", out(), "--window", "--quiet"},
-                                      {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
+    const Outcome no_display =
+        patina({"run", sequence(), "--out", out(), "--window", "--quiet"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
     EXPECT_THAT(expect_failure(no_display), HasSubstr("--offscreen"));
     const Outcome other = patina({"run", sequence(), "--out", out(), "--offscreen", beside("x.gif"), "--quiet"});
     EXPECT_THAT(expect_failure(other), HasSubstr("must be a .png, an .mp4 or an .avi"));

@@ -111,7 +111,8 @@ TEST(FreeCamera, AWindowOfAnotherShapeSeesAsMuchFromTopToBottom) {
 }
 
 TEST(LightHandles, TheNearestOneIsTakenAndGoesWhereTheMouseGoes) {
-    const std::vector<Light> lights{{{0, 0, 2}, glm::dvec3(1)}, {{0.1, 0, 2}, glm::dvec3(1)}, {{0, 0, -2}, glm::dvec3(1)}};
+    const std::vector<Light> lights{
+        {{0, 0, 2}, glm::dvec3(1)}, {{0.1, 0, 2}, glm::dvec3(1)}, {{0, 0, -2}, glm::dvec3(1)}};
     const RigidTransform pose(1.0);
     EXPECT_EQ(light_at(lights, kCamera, pose, {320, 240}, 10), 0u) << "not the one behind the camera";
     EXPECT_EQ(light_at(lights, kCamera, pose, {340, 240}, 10), 1u);

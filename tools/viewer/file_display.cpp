@@ -65,7 +65,8 @@ std::filesystem::path FileDisplay::numbered(uint32_t number) const {
     const size_t first = name.find('#');
     if (first == std::string::npos) return file_;
     const size_t end = std::min(name.find_first_not_of('#', first), name.size());
-    return file_.parent_path() / fmt::format("{}{:0{}}{}", name.substr(0, first), number, end - first, name.substr(end));
+    return file_.parent_path() /
+           fmt::format("{}{:0{}}{}", name.substr(0, first), number, end - first, name.substr(end));
 }
 
 void FileDisplay::write_picture(const std::filesystem::path& file, const Drawing& drawing) const {

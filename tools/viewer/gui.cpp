@@ -1,8 +1,7 @@
 #include "tools/viewer/gui.h"
 
-#include <imgui.h>
-
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 namespace patina::tools {
 
@@ -30,8 +29,8 @@ Gui::Gui(const std::shared_ptr<vulkan::Context>& context, Display& display, vk::
     : context_(context), display_(display) {
     vulkan::guarded("preparing the user interface", [&] {
         const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 4);
-        descriptors_ = context->device().createDescriptorPool(
-            {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4, size});
+        descriptors_ =
+            context->device().createDescriptorPool({vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4, size});
     });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // windows stand where they are put, in each run alike
@@ -54,7 +53,8 @@ Gui::Gui(const std::shared_ptr<vulkan::Context>& context, Display& display, vk::
 
 void Gui::load_fonts() {
     vulkan::guarded("loading the user interface's font", [&] {
-        vulkan::submit_and_wait(*context_, [](vk::CommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); });
+        vulkan::submit_and_wait(*context_,
+                                [](vk::CommandBuffer commands) { ImGui_ImplVulkan_CreateFontsTexture(commands); });
     });
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
@@ -78,8 +78,6 @@ void Gui::begin() {
 
 void Gui::end() { ImGui::Render(); }
 
-void Gui::record(vk::CommandBuffer commands) const {
-    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
-}
+void Gui::record(vk::CommandBuffer commands) const { ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands); }
 
 }  // namespace patina::tools

@@ -32,7 +32,8 @@ inline constexpr std::array<LayerText, 9> kLayers{{
     {Layer::kNormals, "normals", "Normals", "World normals: red is x, green is y, blue is z."},
     {Layer::kSegments, "segments", "Segments", "A colour for each segment."},
     {Layer::kConfidence, "confidence", "Confidence", "How certain the diffuse albedo is."},
-    {Layer::kCoverage, "coverage", "Coverage", "Observations of each 2 cm voxel, up to 30: scan next where it is dark."},
+    {Layer::kCoverage, "coverage", "Coverage",
+     "Observations of each 2 cm voxel, up to 30: scan next where it is dark."},
 }};
 inline const LayerText& text_of(Layer layer) { return kLayers[static_cast<size_t>(layer)]; }
 

@@ -27,10 +27,9 @@ void show_scale(Layer layer) {
     const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetTextLineHeight();
     for (int i = 0; i < kSteps; ++i) {
         const glm::vec3 color = scale_color((static_cast<float>(i) + 0.5f) / kSteps);
-        ImGui::GetWindowDrawList()->AddRectFilled(
-            {at.x + width * static_cast<float>(i) / kSteps, at.y},
-            {at.x + width * static_cast<float>(i + 1) / kSteps, at.y + height},
-            ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, 1}));
+        ImGui::GetWindowDrawList()->AddRectFilled({at.x + width * static_cast<float>(i) / kSteps, at.y},
+                                                  {at.x + width * static_cast<float>(i + 1) / kSteps, at.y + height},
+                                                  ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, 1}));
     }
     ImGui::Dummy({width, height});
     const std::string low = fmt::format("{:g}", scale->x), high = fmt::format("{:g}", scale->y);
@@ -76,8 +75,8 @@ void show_pools(const std::vector<PoolUse>& pools) {
         const float share = static_cast<float>(pool.used) / static_cast<float>(std::max<uint64_t>(pool.capacity, 1));
         const std::string text = fmt::format("{} of {} {}", pool.used, pool.capacity, pool.name);
         ImGui::ProgressBar(share, {-1, 0}, text.c_str());
-        if (pool.refused > 0) ImGui::TextColored({1, 0.5f, 0.3f, 1}, "full: %llu refused",
-                                                 static_cast<unsigned long long>(pool.refused));
+        if (pool.refused > 0)
+            ImGui::TextColored({1, 0.5f, 0.3f, 1}, "full: %llu refused", static_cast<unsigned long long>(pool.refused));
     }
 }
 

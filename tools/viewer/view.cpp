@@ -70,7 +70,8 @@ class MapView {
     void orbit(uint32_t count) {
         std::vector<RigidTransform> recorded, poses{*scenery_.sensor};
         for (const TimedPose& pose : map_.poses()) recorded.push_back(pose.world_from_camera);
-        if (count > 1) poses = orbit_poses(recorded, median_point(map_.pipeline().extract_surface().positions_m), count);
+        if (count > 1)
+            poses = orbit_poses(recorded, median_point(map_.pipeline().extract_surface().positions_m), count);
         for (const RigidTransform& pose : poses) {
             scenery_.sensor = pose;
             draw();

@@ -132,12 +132,12 @@ void Viewer::draw_model(const Scenery& scenery, const RigidTransform& pose, Exte
         picture_ = device_.create_image({"viewer.picture", extent, vulkan::Format::kRgba8});
     }
     const gpu::DrawLayerParams params = params_of(state_.layer, glm::dvec3(pose[3]), state_.exposure);
-    cost.model = scenery.pipeline->draw(with_extent(scenery.camera, extent), pose,
-                                        state_.other ? &*state_.other : nullptr,
-                                        [&](graph::FrameGraph& graph, const ModelImages& model) {
-                                            add_layer(graph, model, state_.layer, params, graph.import(picture_));
-                                            if (clicked_) ask_for_pixel(graph, model, extent);
-                                        });
+    cost.model =
+        scenery.pipeline->draw(with_extent(scenery.camera, extent), pose, state_.other ? &*state_.other : nullptr,
+                               [&](graph::FrameGraph& graph, const ModelImages& model) {
+                                   add_layer(graph, model, state_.layer, params, graph.import(picture_));
+                                   if (clicked_) ask_for_pixel(graph, model, extent);
+                               });
     cost.has_model = true;
 }
 
@@ -202,7 +202,8 @@ void Viewer::take_mouse(const Scenery& scenery, const RigidTransform& pose) {
     const std::vector<Light>& lights = state_.other ? state_.other->lights : scenery.lighting.lights;
     if (ImGui::IsMouseClicked(kLeft)) state_.held_light = light_at(lights, camera, pose, at, kHandle_px);
     const bool dragged = ImGui::IsMouseDragging(kLeft, kClick_px);
-    if (ImGui::IsMouseReleased(kLeft) && !dragged) clicked_ = at / glm::dvec2(camera.extent.width, camera.extent.height);
+    if (ImGui::IsMouseReleased(kLeft) && !dragged)
+        clicked_ = at / glm::dvec2(camera.extent.width, camera.extent.height);
 }
 
 void Viewer::hold_light(const Scenery& scenery, const Intrinsics& camera, const RigidTransform& pose) {
@@ -221,8 +222,8 @@ std::vector<PassMean> slowest_passes(const graph::Runner& runner) {
     for (const graph::Timing& timing : runner.pass_timings()) {
         const size_t count = std::min(kMeanOf, timing.samples_ms.size());
         if (count == 0) continue;
-        const double sum = std::accumulate(timing.samples_ms.end() - static_cast<std::ptrdiff_t>(count),
-                                           timing.samples_ms.end(), 0.0);
+        const double sum =
+            std::accumulate(timing.samples_ms.end() - static_cast<std::ptrdiff_t>(count), timing.samples_ms.end(), 0.0);
         means.push_back({timing.name, sum / static_cast<double>(count)});
     }
     std::ranges::sort(means, std::greater(), &PassMean::ms);

@@ -13,8 +13,8 @@ namespace patina::tools {
 
 /// What the viewer looks at.
 struct Scenery {
-    Pipeline* pipeline = nullptr;         ///< null before there is one
-    Intrinsics camera;                    ///< the vertical field of view of all views is its
+    Pipeline* pipeline = nullptr;          ///< null before there is one
+    Intrinsics camera;                     ///< the vertical field of view of all views is its
     std::optional<RigidTransform> sensor;  ///< where the sensor is (world_from_camera); empty before it is known
     std::optional<glm::dvec3> up;          ///< empty: that of the sensor
     Lighting lighting;                     ///< of the reconstruction

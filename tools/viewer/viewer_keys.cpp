@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kTurn_px = 15 / 0.4;  // as many degrees: FreeCamera::orbit
 
-constexpr std::array kCameraKeys{GLFW_KEY_KP_1, GLFW_KEY_KP_2, GLFW_KEY_KP_3,   GLFW_KEY_KP_4,
-                                 GLFW_KEY_KP_6, GLFW_KEY_KP_7, GLFW_KEY_KP_8,   GLFW_KEY_KP_9,
+constexpr std::array kCameraKeys{GLFW_KEY_KP_1,   GLFW_KEY_KP_2,        GLFW_KEY_KP_3,       GLFW_KEY_KP_4,
+                                 GLFW_KEY_KP_6,   GLFW_KEY_KP_7,        GLFW_KEY_KP_8,       GLFW_KEY_KP_9,
                                  GLFW_KEY_KP_ADD, GLFW_KEY_KP_SUBTRACT, GLFW_KEY_KP_DECIMAL, GLFW_KEY_F};
 
 void move_camera(const KeyPress& press, ViewerState& state) {

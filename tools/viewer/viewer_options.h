@@ -31,9 +31,9 @@ struct ViewOptions {
 /// this program was built without a viewer, the map cannot be read, there is no display, or the device was lost.
 void view(const ViewOptions& options);
 
-/// Goes along with a run and shows its scene as it grows. `inner`: who else goes along; may be null, else it must outlive
-/// this. `end_source`: ends a live source when the user closes the window; empty: the run is interrupted then. Throws
-/// Error as view() does.
+/// Goes along with a run and shows its scene as it grows. `inner`: who else goes along; may be null, else it must
+/// outlive this. `end_source`: ends a live source when the user closes the window; empty: the run is interrupted then.
+/// Throws Error as view() does.
 std::unique_ptr<RunCompanion> show_run(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
                                        std::function<void()> end_source);
 

@@ -6,9 +6,8 @@
 #define GLFW_INCLUDE_NONE
 #define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
-#include <imgui.h>
-
 #include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
 
 namespace patina::tools {
 

@@ -55,8 +55,7 @@ void WindowRun::adjust(SessionCallbacks& callbacks) {
     if (inner_) inner_->adjust(callbacks);
     // A live source is ended instead, and the run is whole then; but for the time before its first frame.
     callbacks.stop = [this, stop = callbacks.stop] {
-        react_to_closing();
-        return (display_->closed() && !(end_source_ && begun_)) || (stop && stop());
+        return (closed() && !(end_source_ && begun_)) || (stop && stop());
     };
     callbacks.progress = [this, show = callbacks.progress](const SessionProgress& progress) {
         progress_ = progress.total ? fmt::format("{} of {} {}", progress.done, *progress.total, progress.task)
@@ -65,9 +64,12 @@ void WindowRun::adjust(SessionCallbacks& callbacks) {
     };
 }
 
-void WindowRun::react_to_closing() {
-    if (!ended_) display_->poll(0);
-    if (display_->closed() && end_source_ && begun_) end_source_();
+bool WindowRun::closed() {
+    if (closed_ || !display_) return closed_;
+    display_->poll(0);
+    closed_ = display_->closed();
+    if (closed_ && end_source_ && begun_) end_source_();
+    return closed_;
 }
 
 void WindowRun::after_step(SessionCore& session) {
@@ -75,7 +77,7 @@ void WindowRun::after_step(SessionCore& session) {
     begun_ = true;
     const Frame* frame = session.fused() ? session.fused() : session.held_out();
     if (frame) sensor_ = *frame->world_from_camera;
-    if (!problem_.empty()) return;
+    if (!problem_.empty() || !display_) return;
     try {
         show(session);
     } catch (const std::exception& error) {
@@ -85,10 +87,9 @@ void WindowRun::after_step(SessionCore& session) {
 }
 
 void WindowRun::show(SessionCore& session) {
-    react_to_closing();
-    if (display_->closed()) return;
+    if (closed()) return;
     if (viewer_->due()) draw(session, 0);
-    while (viewer_->state().paused && !display_->closed()) {
+    while (viewer_->state().paused && !closed()) {
         session.stop_if_interrupted();
         draw(session, kPaused_s);
         session.pipeline().runner().wait();
@@ -138,14 +139,13 @@ ViewerFacts WindowRun::facts_of(SessionCore& session) const {
 }
 
 void WindowRun::end() {
-    if (!std::exchange(ended_, true)) {
-        try {
-            viewer_.reset();
-            display_->finish();
-        } catch (const std::exception& error) {
-            if (problem_.empty()) problem_ = reason_of(error);
-        }
+    viewer_.reset();
+    try {
+        if (display_) display_->finish();
+    } catch (const std::exception& error) {
+        if (problem_.empty()) problem_ = reason_of(error);
     }
+    display_.reset();
     if (inner_) inner_->end();
 }
 

@@ -36,17 +36,18 @@ class WindowRun : public RunCompanion {
     void take_wishes(SessionCore& session);
     void export_now(SessionCore& session);
     ViewerFacts facts_of(SessionCore& session) const;
-    void react_to_closing();
+    /// Whether the user has closed the window, and wants the run to end.
+    bool closed();
 
     ViewerOptions options_;
     std::filesystem::path out_;
     RunCompanion* inner_;
     std::function<void()> end_source_;
-    std::unique_ptr<Display> display_;
-    std::optional<Viewer> viewer_;  ///< from the device on
+    std::unique_ptr<Display> display_;  ///< null once the run has ended
+    std::optional<Viewer> viewer_;      ///< from the device on
     std::optional<RigidTransform> sensor_;
     std::string progress_, message_, problem_;
-    bool begun_ = false, ended_ = false;
+    bool begun_ = false, closed_ = false;
 };
 
 }  // namespace patina::tools

@@ -60,9 +60,9 @@ class DrawLayer : public GpuTest {
         const auto halves = [&](const char* name, const std::vector<glm::vec4>& values) {
             return frame.upload(name, {model.extent, Format::kRgba16f}, std::as_bytes(std::span(packed(values))));
         };
-        const DrawnSurface surface{frame.upload("position", {model.extent, Format::kRgba32f},
-                                                std::as_bytes(std::span(model.position_m))),
-                                   halves("normal", model.normal)};
+        const DrawnSurface surface{
+            frame.upload("position", {model.extent, Format::kRgba32f}, std::as_bytes(std::span(model.position_m))),
+            halves("normal", model.normal)};
         graph::ImageId drawn;
         if (labels) {
             const graph::ImageId label =
@@ -82,7 +82,8 @@ class DrawLayer : public GpuTest {
 
     static void expect_near(glm::u8vec4 got, glm::dvec3 expected, size_t i) {
         EXPECT_EQ(got.a, 255) << i;
-        for (int c = 0; c < 3; ++c) ASSERT_NEAR(got[c] / 255.0, expected[c], kStep) << "pixel " << i << " channel " << c;
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(got[c] / 255.0, expected[c], kStep) << "pixel " << i << " channel " << c;
     }
 };
 
