@@ -23,7 +23,6 @@ graph::ImageId add_draw_layer(graph::FrameGraph& frame, const DrawnSurface& surf
                               const gpu::DrawLayerParams& params, graph::ImageId picture) {
     frame.common_extent({surface.position_m, value});
     auto pass = frame.compute("viewer.draw_layer", spirv::draw_layer);
-    // Normals are a layer, too: an image may be bound twice to read.
     pass.read("value", value);
     return add_draw(frame, std::move(pass), surface, params, picture);
 }

@@ -34,8 +34,8 @@ vec3 exposed(vec3 linear) {
     return vec3(srgb(compressed(x.r)), srgb(compressed(x.g)), srgb(compressed(x.b)));
 }
 
-vec3 encoded(vec4 found) {
-    if (params.style == kDrawNormal) return found.xyz == vec3(0.0) ? kNoValue : found.xyz * 0.5 + 0.5;
+vec3 encoded(vec3 direction, vec4 found) {
+    if (params.style == kDrawNormal) return direction == vec3(0.0) ? kNoValue : direction * 0.5 + 0.5;
     if (found.a <= 0.0) return kNoValue;
     if (params.style == kDrawColor) return exposed(found.rgb);
     return scale_color((found[params.channel] - params.low) / (params.high - params.low));
@@ -44,5 +44,6 @@ vec3 encoded(vec4 found) {
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(picture)))) return;
-    draw(pixel, imageLoad(position_m, pixel), imageLoad(normal, pixel).xyz, encoded(imageLoad(value, pixel)));
+    const vec3 direction = imageLoad(normal, pixel).xyz;
+    draw(pixel, imageLoad(position_m, pixel), direction, encoded(direction, imageLoad(value, pixel)));
 }

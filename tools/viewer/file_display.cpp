@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "engine/graph/runner.h"
+#include "sensor/files/text_file.h"
 #include "sensor/output/apart.h"
 #include "sensor/output/output_file.h"
 

@@ -15,8 +15,8 @@ bool is_radiance(Layer layer) { return layer == Layer::kColor || layer == Layer:
 
 graph::ImageId values_of(const ModelImages& model, Layer layer) {
     switch (layer) {
-        case Layer::kColor: return model.color;
-        case Layer::kNormals: return model.normal;
+        case Layer::kColor:
+        case Layer::kNormals: return model.color;  // of normals any
         case Layer::kRerendering: return model.reflectance->seen.rgb;
         case Layer::kKd: return model.reflectance->seen.kd;
         case Layer::kKs:

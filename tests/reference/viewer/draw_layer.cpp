@@ -46,7 +46,7 @@ glm::dvec3 draw_layer(const LayerStyle& style, const LayerPixel& pixel) {
     const glm::dvec4 v = pixel.value;
     glm::dvec3 color = kNoValue;
     if (style.kind == LayerStyle::kDirection) {
-        if (glm::dvec3(v) != glm::dvec3(0)) color = (glm::dvec3(v) + 1.0) / 2.0;
+        if (pixel.normal != glm::dvec3(0)) color = (pixel.normal + 1.0) / 2.0;
     } else if (v.a > 0) {
         color = style.kind == LayerStyle::kRadiance ? glm::dvec3(tone(style, v.r), tone(style, v.g), tone(style, v.b))
                                                     : scale((v[style.channel] - style.low) / (style.high - style.low));
