@@ -20,10 +20,10 @@ class Display {
 
     /// What a device has to have for it.
     virtual void ask(vulkan::DeviceOptions& options) const = 0;
-    /// Begins to show frames that are drawn on the device, which outlives this. Once, before all of what follows.
-    virtual void open(vulkan::Device& device) = 0;
+    /// Begins to show frames that are drawn on the device; once, before all of what follows. Returns the format of what
+    /// is drawn into. Nothing is shown once the device has gone.
+    virtual vk::Format open(vulkan::Device& device) = 0;
 
-    virtual vk::Format format() const = 0;
     virtual Extent2D extent() const = 0;  ///< pixels; without any there is nothing to draw: it is minimised
 
     /// Takes what the user did; where that is nothing, waits up to `patience_s`.

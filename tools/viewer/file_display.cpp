@@ -26,9 +26,10 @@ FileDisplay::FileDisplay(const std::filesystem::path& file, Extent2D extent, dou
     video_.emplace(file, extent, fps, inputs);
 }
 
-void FileDisplay::open(vulkan::Device& device) {
+vk::Format FileDisplay::open(vulkan::Device& device) {
     device_ = &device;
     image_ = device.create_image({"viewer.target", extent_, vulkan::Format::kRgba8, true});
+    return vulkan::vk_format(vulkan::Format::kRgba8);
 }
 
 void FileDisplay::begin_ui() {

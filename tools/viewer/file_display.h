@@ -18,8 +18,7 @@ class FileDisplay : public Display {
                 const std::vector<std::filesystem::path>& inputs);
 
     void ask(vulkan::DeviceOptions& options) const override { options.graphics = true; }
-    void open(vulkan::Device& device) override;
-    vk::Format format() const override { return vulkan::vk_format(vulkan::Format::kRgba8); }
+    vk::Format open(vulkan::Device& device) override;
     Extent2D extent() const override { return extent_; }
     void poll(double) override {}
     bool closed() const override { return false; }

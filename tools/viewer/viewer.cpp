@@ -43,7 +43,7 @@ Viewer::Viewer(vulkan::Device& device, Display& display, double share, bool pane
     : device_(device),
       display_(display),
       panels_(panels),
-      composer_((display.open(device), device.shared_context()), display.format()),
+      composer_(device.shared_context(), display.open(device)),
       budget_(share) {
     if (panels_) gui_.emplace(device.shared_context(), display, composer_.overlay_pass());
 }
@@ -96,6 +96,7 @@ void Viewer::draw(const Scenery& scenery, ViewerFacts facts) {
     facts.segmentation = scenery.pipeline && scenery.pipeline->segmentation();
     if (!has_layer(state_.layer, facts.reflectance, facts.segmentation)) state_.layer = Layer::kColor;
     RigidTransform pose = pose_of(scenery);
+    if (gui_ && drawn_ == 0) lay_out_panels(scenery, facts);
     if (gui_) {
         gui_->begin();
         take_keys(scenery);
@@ -120,6 +121,15 @@ void Viewer::draw(const Scenery& scenery, ViewerFacts facts) {
     cost.shown_s = display_.wants_all() ? 0 : now_s() - composed_s;
     cost_ = std::move(cost);
     ++drawn_;
+}
+
+/// A panel is as large as what it holds, which is known once that was shown: it is hidden until then.
+void Viewer::lay_out_panels(const Scenery& scenery, const ViewerFacts& facts) {
+    for (int i = 0; i < 2; ++i) {
+        gui_->begin();
+        show_panels(state_, facts, scenery.lighting, ui_extent());
+        gui_->end();
+    }
 }
 
 void Viewer::draw_model(const Scenery& scenery, const RigidTransform& pose, Extent2D window, Cost& cost) {

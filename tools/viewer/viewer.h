@@ -69,6 +69,7 @@ class Viewer {
     void take_keys(const Scenery& scenery);
     void take_mouse(const Scenery& scenery, const RigidTransform& pose);
     void hold_light(const Scenery& scenery, const Intrinsics& camera, const RigidTransform& pose);
+    void lay_out_panels(const Scenery& scenery, const ViewerFacts& facts);
     void draw_model(const Scenery& scenery, const RigidTransform& pose, Extent2D window, Cost& cost);
     void ask_for_pixel(graph::FrameGraph& graph, const ModelImages& model, Extent2D extent);
     void take_pick();

@@ -61,11 +61,12 @@ void WindowDisplay::ask(vulkan::DeviceOptions& options) const {
     options.graphics = true;
 }
 
-void WindowDisplay::open(vulkan::Device& device) {
+vk::Format WindowDisplay::open(vulkan::Device& device) {
     swapchain_ = std::make_unique<vulkan::Swapchain>(
         device.shared_context(), [this](VkInstance instance, VkSurfaceKHR* surface) {
             return glfwCreateWindowSurface(instance, window_.get(), nullptr, surface);
         });
+    return swapchain_->format();
 }
 
 Extent2D WindowDisplay::extent() const {

@@ -18,8 +18,7 @@ class WindowDisplay : public Display {
     ~WindowDisplay() override;
 
     void ask(vulkan::DeviceOptions& options) const override;
-    void open(vulkan::Device& device) override;
-    vk::Format format() const override { return swapchain_->format(); }
+    vk::Format open(vulkan::Device& device) override;
     Extent2D extent() const override;
     void poll(double patience_s) override;
     bool closed() const override;
