@@ -80,6 +80,8 @@ class MapView {
 
     void finish() {
         display_->finish();
+        if (const auto messages = device_.validation_messages(); !messages.empty())
+            throw Error("the validation layer reported ", messages.size(), " messages, the first: ", messages.front());
         if (options_.quiet) return;
         const RigidTransform pose = viewer_.state().follow ? *scenery_.sensor : viewer_.state().camera.pose();
         print_out("{} frames; layer {}, from {:.3f}, {:.3f}, {:.3f} m\n", viewer_.drawn(),
