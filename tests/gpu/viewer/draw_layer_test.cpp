@@ -58,7 +58,8 @@ class DrawLayer : public GpuTest {
         const vulkan::ImageRef picture = device().create_image({"picture", model.extent, Format::kRgba8});
         graph::FrameGraph frame = runner().begin();
         const auto halves = [&](const char* name, const std::vector<glm::vec4>& values) {
-            return frame.upload(name, {model.extent, Format::kRgba16f}, std::as_bytes(std::span(packed(values))));
+            const std::vector<uint64_t> held = packed(values);
+            return frame.upload(name, {model.extent, Format::kRgba16f}, std::as_bytes(std::span(held)));
         };
         const DrawnSurface surface{
             frame.upload("position", {model.extent, Format::kRgba32f}, std::as_bytes(std::span(model.position_m))),
