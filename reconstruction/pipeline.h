@@ -11,6 +11,7 @@
 #include "patina/frame.h"
 #include "patina/lighting.h"
 #include "patina/scene.h"
+#include "reconstruction/model_view.h"
 #include "reconstruction/pipeline_counters.h"
 #include "reconstruction/posed_fusion.h"
 #include "reconstruction/reconstruction_settings.h"
@@ -18,7 +19,6 @@
 #include "reconstruction/streaming/streaming.h"
 #include "reconstruction/texture/bake_texture.h"
 #include "reconstruction/tracked_fusion.h"
-#include "reconstruction/model_view.h"
 #include "reconstruction/view_readback.h"
 
 namespace patina {
@@ -64,7 +64,8 @@ class Pipeline {
     ViewReadback view(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
     /// The same without the way to the host: `use` adds passes to the view's graph, and keeps what they write. Only
-    /// after a frame was fused. Returns how long the device takes for it. Throws Error as view(), and what `use` throws.
+    /// after a frame was fused. Returns how long the device takes for it. Throws Error as view(), and what `use`
+    /// throws.
     using UseView = std::function<void(graph::FrameGraph&, const ModelImages&)>;
     graph::FrameTime draw(const Intrinsics& camera, const RigidTransform& world_from_camera, const OtherLights* other,
                           const UseView& use);

@@ -12,8 +12,9 @@ struct DrawnSurface {
 };
 
 /// Draws a layer into `picture`, which is replaced as a whole: W x H rgba8, encoded for sRGB, a = 1. `value` is W x H
-/// rgba16f; a > 0 says that it is known. Normals are the surface's own, and `value` does not count. Where nothing was hit the picture is dark, where the value is
-/// not known grey. Returns the written version, kept. Throws Error when the images differ in extent.
+/// rgba16f; a > 0 says that it is known. Normals are the surface's own, and `value` does not count. Where nothing was
+/// hit the picture is dark, where the value is not known grey. Returns the written version, kept. Throws Error when the
+/// images differ in extent.
 graph::ImageId add_draw_layer(graph::FrameGraph& frame, const DrawnSurface& surface, graph::ImageId value,
                               const gpu::DrawLayerParams& params, graph::ImageId picture);
 

@@ -203,8 +203,8 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
 
 graph::ImageId ReflectanceStage::add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
                                               const PredictedImages& predicted, graph::ImageId position_m) const {
-    return add_sample_coverage(graph, observations_, observations_.import(graph), visible, predicted.packed,
-                               position_m);
+    return add_sample_coverage(graph, observations_, observations_.import(graph),
+                               {position_m, visible.view, visible.grid, predicted.packed});
 }
 
 SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {

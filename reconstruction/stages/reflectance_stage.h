@@ -136,8 +136,8 @@ class ReflectanceStage {
                               const RaycastImages& cast, const OtherLights* other = nullptr);
 
     /// How well it is known what a camera sees; `predicted` is of the same view (shading/sample_coverage.h).
-    graph::ImageId add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible, const PredictedImages& predicted,
-                                graph::ImageId position_m) const;
+    graph::ImageId add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
+                                const PredictedImages& predicted, graph::ImageId position_m) const;
 
     /// What is known of each segment.
     SegmentIds add_segments(graph::FrameGraph& graph);

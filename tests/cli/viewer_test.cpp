@@ -59,7 +59,7 @@ class Viewer : public RunFolderTest {
 
 TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    run_with_map();
+    run_with_map({"--labels", "truth", "--materials", "truth"});  // known from the first frame on
     std::vector<std::vector<SrgbPixel>> pictures;
     for (const char* layer : kLayers) {
         const fs::path file = beside(std::string(layer) + ".png"), again = beside("again.png");

@@ -158,9 +158,9 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
                           kd = frame.read_back(predicted.kd), label = frame.read_back(predicted.label),
                           gloss = frame.read_back(predicted.ks_alpha), rgb = frame.read_back(predicted.rgb),
                           light = frame.read_back(predicted.light),
-                          coverage = frame.read_back(add_sample_coverage(frame, observations_.map(),
-                                                                         observations_.map().import(frame), visible,
-                                                                         predicted.packed, model.position_m));
+                          coverage = frame.read_back(
+                              add_sample_coverage(frame, observations_.map(), observations_.map().import(frame),
+                                                  {model.position_m, visible.view, visible.grid, predicted.packed}));
     runner_.submit(std::move(frame));
     runner_.wait();
     return {position.image<glm::vec4>(),       widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
