@@ -78,6 +78,7 @@ void WindowRun::after_step(SessionCore& session) {
     const Frame* frame = session.fused() ? session.fused() : session.held_out();
     if (frame) sensor_ = *frame->world_from_camera;
     if (!problem_.empty() || !display_) return;
+    if (!frame && display_->wants_all()) return;  // nothing has changed
     try {
         show(session);
     } catch (const std::exception& error) {
