@@ -85,6 +85,17 @@ ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& worl
     return view;
 }
 
+graph::FrameTime Pipeline::draw(const Intrinsics& camera, const RigidTransform& world_from_camera,
+                                const OtherLights* other, const UseView& use) {
+    fuse_waiting();
+    fusion_.require(camera, world_from_camera);
+    graph::FrameGraph graph = runner_.begin();
+    use(graph, add_model_view(graph, stages_, make_posed_camera(camera, world_from_camera), other));
+    const graph::FrameTime time = graph.time();
+    runner_.submit(std::move(graph));
+    return time;
+}
+
 Mesh Pipeline::extract_surface() {
     if (fusion_.frames() == 0) return {};
     wait();

@@ -11,6 +11,7 @@
 #include "patina/frame.h"
 #include "patina/lighting.h"
 #include "patina/scene.h"
+#include "reconstruction/model_view.h"
 #include "reconstruction/pipeline_counters.h"
 #include "reconstruction/posed_fusion.h"
 #include "reconstruction/reconstruction_settings.h"
@@ -61,6 +62,13 @@ class Pipeline {
 
     /// Casts the model into a pinhole camera (lens distortion is left out). Ready two frames later, or after wait().
     ViewReadback view(const Intrinsics& camera, const RigidTransform& world_from_camera);
+
+    /// The same without the way to the host: `use` adds passes to the view's graph, and keeps what they write. Only
+    /// after a frame was fused. Returns how long the device takes for it. Throws Error as view(), and what `use`
+    /// throws.
+    using UseView = std::function<void(graph::FrameGraph&, const ModelImages&)>;
+    graph::FrameTime draw(const Intrinsics& camera, const RigidTransform& world_from_camera, const OtherLights* other,
+                          const UseView& use);
 
     /// How far surfaces are fused and seen, metres along the optical axis of a depth camera (GeometryStage::range).
     float reach_m(const Intrinsics& camera) const { return stages_.geometry.range(camera).reach_m; }

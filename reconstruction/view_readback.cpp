@@ -2,9 +2,8 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include "passes/fusion/shade_color.h"
-#include "passes/shading/restore_detail.h"
 #include "passes/specular/fit_ward.h"
+#include "reconstruction/model_view.h"
 
 namespace patina {
 
@@ -45,26 +44,14 @@ ModelView ViewReadback::get() const {
 }
 
 ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera) {
-    const GeometryStage& geometry = stages.geometry;
-    const VoxelMapIds voxels = geometry.map().import(graph);
-    const VisibleBlocks visible = geometry.add_visible_to_view(graph, voxels, camera);
-    const RaycastImages model =
-        geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), camera.intrinsics);
-    const graph::ImageId color = add_shade_color(graph, geometry.map(), voxels, visible, model.position_m);
+    const ModelImages model = add_model_view(graph, stages, camera);
     ViewReadback view;
     view.position_m_ = graph.read_back(model.position_m);
     view.normal_ = graph.read_back(model.normal);
-    view.color_ = graph.read_back(color);
-    if (stages.segmentation)
-        view.label_ = graph.read_back(stages.segmentation->add_view(graph, surface_of(visible, model)));
-    if (stages.reflectance) {
-        const auto [predicted, segments] = stages.reflectance->add_predict(graph, voxels, visible, model);
-        const ReflectanceStageSettings& settings = stages.reflectance->settings();
-        const RestoreDetailInputs inputs{model.position_m, model.normal, color,
-                                         static_cast<float>(camera.intrinsics.fx), settings.voxel_m};
-        // Under other lights than those of the frames, their colours would bring back the shadows of these.
-        const bool detailed = stages.settings.fusion.color && settings.refine.albedo && settings.detail;
-        const PredictedImages seen = detailed ? add_restore_detail(graph, predicted, inputs) : predicted;
+    view.color_ = graph.read_back(model.color);
+    if (model.label) view.label_ = graph.read_back(*model.label);
+    if (model.reflectance) {
+        const auto& [seen, predicted, coverage, segments] = *model.reflectance;
         ViewReadback::Reflectance& read = view.reflectance_.emplace();
         read.kd = graph.read_back(seen.kd);
         read.ks_alpha = graph.read_back(seen.ks_alpha);

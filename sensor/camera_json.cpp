@@ -1,5 +1,10 @@
 #include "sensor/camera_json.h"
 
+#include <algorithm>
+#include <vector>
+
+#include "engine/core/input_file.h"
+
 namespace patina::sensor {
 
 nlohmann::ordered_json camera_json(const Intrinsics& camera) {
@@ -10,6 +15,21 @@ nlohmann::ordered_json camera_json(const Intrinsics& camera) {
             {"cx", camera.cx},
             {"cy", camera.cy},
             {"distortion", camera.distortion}};
+}
+
+Intrinsics read_camera(const JsonValue& camera) {
+    Intrinsics intrinsics;
+    intrinsics.extent = {camera.at("width").positive_integer(), camera.at("height").positive_integer()};
+    check_picture_size(camera.where(), intrinsics.extent.width, intrinsics.extent.height);
+    intrinsics.fx = camera.at("fx").positive();
+    intrinsics.fy = camera.at("fy").positive();
+    intrinsics.cx = camera.at("cx").number();
+    intrinsics.cy = camera.at("cy").number();
+    if (const auto distortion = camera.find("distortion")) {
+        const std::vector<double> values = distortion->numbers(intrinsics.distortion.size());
+        std::copy(values.begin(), values.end(), intrinsics.distortion.begin());
+    }
+    return intrinsics;
 }
 
 }  // namespace patina::sensor

@@ -3,10 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "patina/camera.h"
+#include "sensor/files/json_file.h"
 
 namespace patina::sensor {
 
 /// A camera as sequence.json and run.json have it.
 nlohmann::ordered_json camera_json(const Intrinsics& camera);
+
+/// The same, read. Throws Error when a member is missing, or a value is outside what it may be.
+Intrinsics read_camera(const JsonValue& camera);
 
 }  // namespace patina::sensor

@@ -13,21 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Intrinsics read_intrinsics(const JsonValue& camera) {
-    Intrinsics intrinsics;
-    intrinsics.extent = {camera.at("width").positive_integer(), camera.at("height").positive_integer()};
-    check_picture_size(camera.where(), intrinsics.extent.width, intrinsics.extent.height);
-    intrinsics.fx = camera.at("fx").positive();
-    intrinsics.fy = camera.at("fy").positive();
-    intrinsics.cx = camera.at("cx").number();
-    intrinsics.cy = camera.at("cy").number();
-    if (const auto distortion = camera.find("distortion")) {
-        const std::vector<double> values = distortion->numbers(intrinsics.distortion.size());
-        std::copy(values.begin(), values.end(), intrinsics.distortion.begin());
-    }
-    return intrinsics;
-}
-
 RigidTransform read_transform(const JsonValue& value) {
     return checked_pose(matrix_from_rows(value.numbers(16)), value.where()).transform;
 }
@@ -66,8 +51,8 @@ SequenceDescription parse_sequence(const JsonValue& root, const std::string& def
     info.name = root.find("name") ? root.at("name").string() : default_name;
     info.fps = root.find("fps") ? root.at("fps").positive() : info.fps;
     if (const auto frames = root.find("frames")) info.frames = frames->positive_integer();
-    info.color = read_intrinsics(color);
-    info.depth = read_intrinsics(depth);
+    info.color = read_camera(color);
+    info.depth = read_camera(depth);
     info.metres_per_unit = depth.at("metres_per_unit").positive();
     if (const auto far = depth.find("max_metres")) info.max_metres = far->positive();
     if (const auto transform = root.find("depth_to_color")) info.color_from_depth = read_transform(*transform);

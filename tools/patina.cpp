@@ -39,6 +39,7 @@ int run_command(int argc, char** argv) {
     tools::add_record(app, exit_code);
     tools::add_export(app, exit_code);
     tools::add_render(app, exit_code);
+    tools::add_view(app);
     tools::add_eval(app);
     tools::add_lights(app);
     tools::add_settings(app);

@@ -170,6 +170,19 @@ Readback FrameGraph::read_back(ImageId id) {
     return target;
 }
 
+Readback FrameGraph::read_back_pixel(ImageId id, glm::uvec2 pixel) {
+    const ImageShape image = shape(id);
+    if (pixel.x >= image.extent.width || pixel.y >= image.extent.height)
+        throw Error("the read-back of '", description_.resources[id.resource].name, "' takes pixel ", pixel.x, ", ",
+                    pixel.y, " of ", image.extent);
+    const Readback target = read_back(id);
+    auto& download = std::get<work::Download>(work_.back());
+    download.bytes = vulkan::bytes_per_pixel(image.format);
+    download.pixel = pixel;
+    target.state_->extent = {1, 1};
+    return target;
+}
+
 void FrameGraph::keep(ResourceId id) { description_.kept.push_back({id.resource, id.version}); }
 
 ImageShape FrameGraph::shape(ImageId id) const { return physical_[id.resource].shape; }

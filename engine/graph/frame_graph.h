@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 #include "engine/graph/plan/description.h"
 #include "engine/vulkan/resources.h"
 #include "engine/vulkan/shader.h"
@@ -89,6 +91,18 @@ class Readback {
     std::shared_ptr<State> state_;
 };
 
+/// The device's time for one frame, known once the frame has finished; unknown for ever without timestamps.
+class FrameTime {
+  public:
+    std::optional<double> ms() const { return *ms_; }
+
+    /// Sets it; called by the runner.
+    void deliver(double ms) { *ms_ = ms; }
+
+  private:
+    std::shared_ptr<std::optional<double>> ms_ = std::make_shared<std::optional<double>>();
+};
+
 /// Memory that the host fills now and the device reads in this frame.
 struct Staging {
     vulkan::BufferRef buffer;
@@ -134,6 +148,7 @@ struct Download {
     uint64_t offset = 0;
     uint64_t bytes = 0;
     Readback target;
+    std::optional<glm::uvec2> pixel{};  ///< of an image: this one alone
 };
 
 /// Between two buffers.
@@ -245,6 +260,11 @@ class FrameGraph {
     Readback read_back(BufferId id, uint64_t offset, uint64_t bytes);
     Readback read_back(BufferId id);
     Readback read_back(ImageId id);
+    /// One pixel of an image. Throws Error where it lies outside.
+    Readback read_back_pixel(ImageId id, glm::uvec2 pixel);
+
+    /// How long the device takes for this frame.
+    FrameTime time() const { return time_; }
 
     /// Marks a version as needed after the frame. Passes that feed nothing kept are culled.
     void keep(ResourceId id);
@@ -286,6 +306,7 @@ class FrameGraph {
     std::vector<Physical> physical_;
     std::vector<uint32_t> versions_;
     std::vector<Work> work_;  ///< one per pass of the description
+    FrameTime time_;
     std::unordered_map<uint64_t, uint32_t> imported_;
 };
 

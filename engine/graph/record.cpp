@@ -232,8 +232,11 @@ class Recorder {
         const Staging staging = into_.stage_download(download.bytes);
         const vk::Buffer target = *staging.buffer->object().buffer;
         if (is_image(download.resource)) {
-            const Extent2D extent = image(download.resource).desc().extent;
-            const vk::BufferImageCopy region(staging.offset, 0, 0, kWholeLayer, {}, {extent.width, extent.height, 1});
+            const Extent2D whole = image(download.resource).desc().extent;
+            const glm::ivec2 begin(download.pixel.value_or(glm::uvec2(0)));
+            const Extent2D extent = download.pixel ? Extent2D{1, 1} : whole;
+            const vk::BufferImageCopy region(staging.offset, 0, 0, kWholeLayer, {begin.x, begin.y, 0},
+                                             {extent.width, extent.height, 1});
             into_.commands.copyImageToBuffer(*image(download.resource).object().image, vk::ImageLayout::eGeneral,
                                              target, region);
         } else {

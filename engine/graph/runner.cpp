@@ -80,6 +80,7 @@ struct Slot {
     std::vector<PendingRead> reads;
     std::vector<FrameGraph::Physical> resources;  ///< kept alive until the frame has finished
     std::shared_ptr<const Transients> transients;
+    FrameTime time;  ///< of its last frame
 
     /// Makes room for the times of as many passes; nothing of the slot is in flight.
     void hold_times_of(const vulkan::Context& context, uint32_t passes);
@@ -184,6 +185,7 @@ void collect_times(Runner::State& state, const vulkan::Context& context, Slot& s
         const double ns = static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * context.caps().timestamp_period_ns;
         state.timing(passes[i]).samples_ms.push_back(static_cast<float>(ns * 1e-6));
     }
+    slot.time.deliver(static_cast<double>(ticks.back() - ticks.front()) * context.caps().timestamp_period_ns * 1e-6);
 }
 
 /// Waits for the slot's last frame and takes what it brought.
@@ -277,6 +279,7 @@ void Runner::submit(FrameGraph frame) {
     });
     // Only now: nobody may wait for a frame that the device never got.
     slot.resources = std::move(frame.physical_);
+    slot.time = frame.time_;
     slot.transients = shape.transients;
     slot.submitted = state_->submitted = value;
     state_->host.samples_ms.push_back(static_cast<float>(milliseconds_since(start)));

@@ -25,7 +25,7 @@ vk::Format vk_format(Format format) {
 Context::Context(const DeviceOptions& options) : options_(options), log_(std::make_unique<ValidationLog>()) {
     const uint32_t index = choose_device(list_devices(), options.selector);
     guarded("opening the device", [&] {
-        instance_ = make_instance(loader_, options.validation, log_.get(), &messenger_);
+        instance_ = make_instance(loader_, options.validation, log_.get(), &messenger_, options.surface_extensions);
         open_device(index);
         load_pipeline_cache();
         const vk::SamplerAddressMode clamp = vk::SamplerAddressMode::eClampToEdge;
@@ -43,11 +43,15 @@ void Context::open_device(uint32_t index) {
     vk::raii::PhysicalDevices physicals(instance_);
     physical_ = std::move(physicals.at(index));
     caps_ = caps_of(physical_);
+    vk::QueueFlags asked = vk::QueueFlagBits::eCompute;
+    if (options_.graphics) asked |= vk::QueueFlagBits::eGraphics;
     const auto families = physical_.getQueueFamilyProperties();
-    const auto compute = std::find_if(families.begin(), families.end(),
-                                      [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
-    if (compute == families.end()) throw Error("the device '", caps_.name, "' has no compute queue");
-    queue_family_ = static_cast<uint32_t>(compute - families.begin());
+    const auto family =
+        std::find_if(families.begin(), families.end(), [&](const auto& f) { return (f.queueFlags & asked) == asked; });
+    if (family == families.end())
+        throw Error("the device '", caps_.name, "' has no queue for ", options_.graphics ? "graphics and " : "",
+                    "compute");
+    queue_family_ = static_cast<uint32_t>(family - families.begin());
 
     const float priority = 1;
     const vk::DeviceQueueCreateInfo queue({}, queue_family_, 1, &priority);
@@ -61,9 +65,18 @@ void Context::open_device(uint32_t index) {
     v12.shaderFloat16 = caps_.float16;
     v12.pNext = &v13;
     std::vector<const char*> extensions;
-    for (const auto& extension : physical_.enumerateDeviceExtensionProperties())
-        has_memory_budget_ |= std::string_view(extension.extensionName) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
+    const auto offered = physical_.enumerateDeviceExtensionProperties();
+    const auto offers = [&](std::string_view name) {
+        return std::ranges::any_of(offered, [&](const auto& e) { return name == e.extensionName.data(); });
+    };
+    has_memory_budget_ = offers(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     if (has_memory_budget_) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    if (!options_.surface_extensions.empty()) {
+        if (!offers(VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+            throw Error("the device '", caps_.name, "' cannot show pictures in a window: it lacks ",
+                        VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+        extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    }
     vk::DeviceCreateInfo info({}, queue, {}, extensions);
     info.pEnabledFeatures = &features;
     info.pNext = &v12;

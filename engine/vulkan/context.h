@@ -3,6 +3,7 @@
 // Private to engine/vulkan and the graph's executor: the one place that pulls in Vulkan's own headers.
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -35,9 +36,11 @@ using Specialization = std::vector<std::pair<uint32_t, uint32_t>>;
 
 vk::Format vk_format(Format format);
 
-/// Opens the Vulkan loader; with `validation`, the layer reports to `log`. Throws Error as list_devices() does.
+/// Opens the Vulkan loader; with `validation`, the layer reports to `log`. `more_extensions`: of the instance. Throws
+/// Error as list_devices() does, and where the loader lacks an extension.
 vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validation, ValidationLog* log,
-                                 vk::raii::DebugUtilsMessengerEXT* messenger);
+                                 vk::raii::DebugUtilsMessengerEXT* messenger,
+                                 const std::vector<std::string>& more_extensions = {});
 
 DeviceCaps caps_of(const vk::raii::PhysicalDevice& physical);
 std::vector<std::string> missing_from_floor(const vk::raii::PhysicalDevice& physical, const DeviceCaps& caps);
@@ -64,6 +67,8 @@ class Context {
     ~Context();
 
     const DeviceCaps& caps() const { return caps_; }
+    const vk::raii::Instance& instance() const { return instance_; }
+    const vk::raii::PhysicalDevice& physical() const { return physical_; }
     const vk::raii::Device& device() const { return device_; }
     const vk::raii::Queue& queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }
@@ -152,6 +157,9 @@ struct ImageObject {
     vk::raii::Image image = nullptr;
     vk::raii::ImageView view = nullptr;
 };
+
+/// Runs commands at once, and waits for their end. Vulkan's exceptions are the caller's.
+void submit_and_wait(Context& context, const std::function<void(vk::CommandBuffer)>& record);
 
 vk::BufferCreateInfo create_info(const BufferDesc& desc);
 vk::ImageCreateInfo create_info(const ImageDesc& desc);

@@ -36,6 +36,8 @@ vk::BufferCreateInfo create_info(const BufferDesc& desc) {
 
 vk::ImageCreateInfo create_info(const ImageDesc& desc) {
     using Usage = vk::ImageUsageFlagBits;
+    vk::ImageUsageFlags usage = Usage::eStorage | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst;
+    if (desc.composed) usage |= Usage::eColorAttachment;
     return {{},
             vk::ImageType::e2D,
             vk_format(desc.format),
@@ -44,7 +46,7 @@ vk::ImageCreateInfo create_info(const ImageDesc& desc) {
             1,
             vk::SampleCountFlagBits::e1,
             vk::ImageTiling::eOptimal,
-            Usage::eStorage | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst};
+            usage};
 }
 
 MemoryObject::~MemoryObject() {
@@ -145,25 +147,32 @@ MemoryRef allocate(const std::shared_ptr<Context>& context, const std::string& n
 
 /// Brings an image of its own memory into the general layout, in which it stays.
 void initialise_layout(Context& context, vk::Image image) {
+    const vk::ImageMemoryBarrier2 barrier(
+        vk::PipelineStageFlagBits2::eNone, {}, vk::PipelineStageFlagBits2::eAllCommands,
+        vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite, vk::ImageLayout::eUndefined,
+        vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+        {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+    const vk::DependencyInfo info({}, {}, {}, barrier);
+    submit_and_wait(context, [&](vk::CommandBuffer commands) {
+        commands.pipelineBarrier2(info, *context.device().getDispatcher());
+    });
+}
+
+}  // namespace
+
+void submit_and_wait(Context& context, const std::function<void(vk::CommandBuffer)>& record) {
     const vk::raii::Device& device = context.device();
     const vk::raii::CommandPool pool =
         device.createCommandPool({vk::CommandPoolCreateFlagBits::eTransient, context.queue_family()});
     const vk::raii::CommandBuffers buffers(device, {*pool, vk::CommandBufferLevel::ePrimary, 1});
     const vk::raii::CommandBuffer& commands = buffers.front();
     commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    const vk::ImageMemoryBarrier2 barrier(
-        vk::PipelineStageFlagBits2::eNone, {}, vk::PipelineStageFlagBits2::eAllCommands,
-        vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite, vk::ImageLayout::eUndefined,
-        vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
-        {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
-    commands.pipelineBarrier2({{}, {}, {}, barrier});
+    record(*commands);
     commands.end();
     const vk::CommandBufferSubmitInfo submitted(*commands);
     context.queue().submit2(vk::SubmitInfo2({}, {}, submitted));
     context.queue().waitIdle();
 }
-
-}  // namespace
 
 BufferRef Device::create_buffer(const BufferDesc& desc) {
     if (desc.bytes > caps().max_allocation) {

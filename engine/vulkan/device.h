@@ -28,6 +28,11 @@ struct DeviceOptions {
     std::filesystem::path pipeline_cache_folder;
     /// Device memory that pools may grow into, bytes in all; 0: as much as there is.
     uint64_t memory_limit = 0;
+    /// The queue takes graphics too: a user interface is drawn on the device (compose.h).
+    bool graphics = false;
+    /// Instance extensions by which the window system makes surfaces; the device presents pictures in windows then
+    /// (swapchain.h). Empty: it presents none.
+    std::vector<std::string> surface_extensions;
     /// Fault injection for tests: the n-th memory allocation fails as if memory had run out; 0 fails none.
     uint32_t fail_allocation_at = 0;
 };

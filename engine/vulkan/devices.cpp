@@ -88,7 +88,8 @@ const char* name_of(DeviceType type) {
 }
 
 vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validation, ValidationLog* log,
-                                 vk::raii::DebugUtilsMessengerEXT* messenger) {
+                                 vk::raii::DebugUtilsMessengerEXT* messenger,
+                                 const std::vector<std::string>& more_extensions) {
     const bool debug_utils = has_instance_extension(loader, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validation && !(has_layer(loader, kValidationLayer) && debug_utils)) {
         throw Error("validation was asked for but the layer ", kValidationLayer,
@@ -98,6 +99,11 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validatio
     std::vector<const char*> layers;
     std::vector<const char*> extensions;
     if (debug_utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    for (const std::string& extension : more_extensions) {
+        if (!has_instance_extension(loader, extension.c_str()))
+            throw Error("no window can be opened: no Vulkan driver offers ", extension);
+        extensions.push_back(extension.c_str());
+    }
     const std::array enabled = {vk::ValidationFeatureEnableEXT::eSynchronizationValidation};
     const vk::ValidationFeaturesEXT features(enabled);
     vk::InstanceCreateInfo info({}, &application);

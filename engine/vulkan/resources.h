@@ -29,6 +29,7 @@ struct ImageDesc {
     std::string name;
     Extent2D extent;
     Format format = Format::kR32f;
+    bool composed = false;  ///< pictures and a user interface are drawn into it (compose.h); kRgba8 alone
 };
 
 struct MemoryRequirement {

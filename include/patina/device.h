@@ -39,6 +39,7 @@ class Device {
   private:
     friend struct Access;
     struct State;
+    explicit Device(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
 

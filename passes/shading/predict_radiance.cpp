@@ -8,12 +8,6 @@ namespace patina {
 
 namespace {
 
-/// The records, with those that a view can show by voxel.
-struct PackedRecords {
-    graph::BufferId entries;  ///< u32 per observation voxel of each block of the voxel map: record id, or kNoRecord
-    graph::BufferId content;  ///< uvec4 per record: lib/records/packed_records.glsl
-};
-
 graph::BufferId add_index_records(graph::FrameGraph& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
                                   const ObservationMap& map, const ObservationMapIds& records,
                                   const PredictRadianceInputs& inputs) {
@@ -51,6 +45,7 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
     pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
     pass.read("Status", state.status).read("Gathered", state.gathered);
     PredictedImages out;
+    out.packed = packed;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});
     out.ks_alpha = pass.create("ks_alpha", {extent, vulkan::Format::kRgba16f});

@@ -26,6 +26,12 @@ struct PredictRadianceInputs {
     bool gathers = false;  ///< records gathered light from all around (reflectance/gather_irradiance.h), which arrives
 };
 
+/// The records, with those that a view can show by voxel.
+struct PackedRecords {
+    graph::BufferId entries;  ///< u32 per observation voxel of each block of the voxel map: record id, or kNoRecord
+    graph::BufferId content;  ///< uvec4 per record: lib/records/packed_records.glsl
+};
+
 /// What the model looks like. All zero where nothing was hit.
 struct PredictedImages {
     graph::ImageId kd;     ///< W x H rgba16f: diffuse albedo; a is 1 where it is known, else all is 0
@@ -37,6 +43,7 @@ struct PredictedImages {
     /// the lamps' light that shadows leave, 0 on surfaces that face none, gpu::kNotMarched where no record around knows
     /// it; also where kd is not known.
     graph::ImageId light;
+    PackedRecords packed{};  ///< what it was made from
 };
 
 /// Reflectance and radiance of each surface point (paper, Eq. 6 with Ward's Eq. 2-4, and an ambient term). Kd is the

@@ -14,6 +14,7 @@ class SessionCore;
 /// What is behind the public types, for the library's own programs, which show more than the public API does.
 struct Access {
     static vulkan::DeviceOptions options(const DeviceChoice& choice);
+    static Device device(const vulkan::DeviceOptions& options);
     static vulkan::Device& vulkan(Device& device);
     static ReconstructionSettings& values(Settings& settings);
     static const ReconstructionSettings& values(const Settings& settings);

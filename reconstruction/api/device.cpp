@@ -9,6 +9,7 @@ struct Device::State {
 };
 
 Device::Device(const DeviceChoice& choice) : state_(new State{vulkan::Device(Access::options(choice))}) {}
+Device::Device(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Device::~Device() = default;
 
@@ -23,10 +24,16 @@ std::vector<std::string> device_names() {
 }
 
 vulkan::DeviceOptions Access::options(const DeviceChoice& choice) {
-    return {.selector = choice.selector,
-            .validation = choice.validation,
-            .pipeline_cache_folder = choice.pipeline_cache_folder,
-            .memory_limit = choice.memory_limit};
+    vulkan::DeviceOptions options;
+    options.selector = choice.selector;
+    options.validation = choice.validation;
+    options.pipeline_cache_folder = choice.pipeline_cache_folder;
+    options.memory_limit = choice.memory_limit;
+    return options;
+}
+
+Device Access::device(const vulkan::DeviceOptions& options) {
+    return Device(std::unique_ptr<Device::State>(new Device::State{vulkan::Device(options)}));
 }
 
 vulkan::Device& Access::vulkan(Device& device) { return device.state_->device; }

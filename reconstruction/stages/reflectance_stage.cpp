@@ -7,6 +7,7 @@
 #include "passes/reflectance/collect_surroundings.h"
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
+#include "passes/shading/sample_coverage.h"
 #include "shared/fusion/voxel_map.h"
 
 namespace patina {
@@ -178,20 +179,24 @@ void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient
 }
 
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
-                                            const VisibleBlocks& visible, const RaycastImages& cast) {
+                                            const VisibleBlocks& visible, const RaycastImages& cast,
+                                            const OtherLights* other) {
+    Lights others;
+    if (other) others.set(other->lights, other->ambient);
+    const Lights& shining = other ? others : lights_;
     PredictRadianceInputs inputs;
     inputs.position_m = cast.position_m;
     inputs.normal = cast.normal;
     inputs.view = visible.view;
     inputs.view_grid = visible.grid;
-    inputs.lights = lights_.upload(graph);
-    inputs.most_lights = static_cast<uint32_t>(lights_.point_lights().size());
+    inputs.lights = shining.upload(graph);
+    inputs.most_lights = static_cast<uint32_t>(shining.point_lights().size());
     inputs.materials = materials_.import(graph);
     inputs.material_count = materials_.capacity();
     const ObservationMapIds records = observations_.import(graph);
     inputs.segments = add_average(graph, records);
-    inputs.shadows = settings_.refine.shadows;
-    inputs.gathers = settings_.refine.gathered_rays > 0;
+    inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
+    inputs.gathers = settings_.refine.gathered_rays > 0 && !other;
     inputs.access = access_.voxels;
     ReflectanceStateIds state = state_.import(graph);
     if (inputs.gathers) {
@@ -199,6 +204,12 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
         graph.keep(state.gathered);
     }
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state, inputs), inputs.segments};
+}
+
+graph::ImageId ReflectanceStage::add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
+                                              const PredictedImages& predicted, graph::ImageId position_m) const {
+    return add_sample_coverage(graph, observations_, observations_.import(graph),
+                               {position_m, visible.view, visible.grid, predicted.packed});
 }
 
 SegmentIds ReflectanceStage::add_segments(graph::FrameGraph& graph) {

@@ -42,6 +42,18 @@ struct PredictedView {
     graph::BufferId segments;  ///< gpu::SegmentAlbedo per label
 };
 
+/// Lights that a view is lit by, in place of those of the reconstruction, which stay as they are. Light that came from
+/// all around is that of the former lights, and left out.
+struct OtherLights {
+    std::vector<Light> lights;
+    glm::dvec3 ambient{0};
+    /// As they fall from the lights of the reconstruction, one after the other; false: every light reaches every
+    /// surface. Where a light was moved, its shadows are not known.
+    bool shadows = false;
+
+    bool operator==(const OtherLights&) const = default;
+};
+
 /// What is known of the segments, by label.
 struct SegmentIds {
     graph::BufferId albedo;     ///< gpu::SegmentAlbedo per label
@@ -118,9 +130,14 @@ class ReflectanceStage {
     /// after that.
     void relight(std::span<const Light> lights, glm::dvec3 ambient);
 
-    /// What a camera sees that was cast into the model.
+    /// What a camera sees that was cast into the model. `other`: lights in place of those of the reconstruction; may be
+    /// null. Throws Error as Lights::set does.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                              const RaycastImages& cast);
+                              const RaycastImages& cast, const OtherLights* other = nullptr);
+
+    /// How well it is known what a camera sees; `predicted` is of the same view (shading/sample_coverage.h).
+    graph::ImageId add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
+                                const PredictedImages& predicted, graph::ImageId position_m) const;
 
     /// What is known of each segment.
     SegmentIds add_segments(graph::FrameGraph& graph);

@@ -53,6 +53,7 @@ void add_live(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
+void add_view(CLI::App& app);
 void add_eval(CLI::App& app);
 void add_lights(CLI::App& app);
 void add_settings(CLI::App& app);

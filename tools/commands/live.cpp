@@ -37,6 +37,12 @@ void add_live(CLI::App& app, int& exit_code) {
         run.run.hints.lights = "--lights FILE, --lighting SEQUENCE";
         arguments->live.source = run.run.sequence;
         arguments->live.run = run.run;
+        if (run.shows()) {
+            arguments->live.accompany = [&run](const RunOptions& options, RunCompanion& companion,
+                                               std::function<void()> end_source) {
+                return show_run(run.viewer, options, &companion, std::move(end_source));
+            };
+        }
         exit_code = live(arguments->live).exit_code();
     });
 }

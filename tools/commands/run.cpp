@@ -52,7 +52,9 @@ int start(RunArguments& arguments) {
         run_options.map = map_in(arguments.resume.value_or(run_options.out));
         run_options.started_in = working_folder();
     }
-    return run(run_options).exit_code();
+    if (!arguments.shows()) return run(run_options).exit_code();
+    const auto window = show_run(arguments.viewer, run_options, nullptr, {});
+    return run(run_options, window.get()).exit_code();
 }
 
 }  // namespace

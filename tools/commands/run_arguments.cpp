@@ -11,6 +11,7 @@
 #include "reconstruction/store/map_file.h"
 #include "tools/commands/parse.h"
 #include "tools/commands/scene_choices.h"
+#include "tools/commands/viewer_arguments.h"
 
 namespace patina::tools {
 
@@ -39,6 +40,10 @@ void declare(CLI::App& command, RunArguments& arguments) {
     arguments.sequence.add_to(command, run);
     command.get_option("sequence")->required(false);  // a run that goes on has its own
     command.add_option("--out", run.out, "Folder for the results");
+    CLI::Option* window =
+        command.add_flag("--window", arguments.window, "Show the scene in a window while it is reconstructed");
+    declare_viewer(command, arguments.viewer, "--window-extent");
+    command.get_option("--offscreen")->excludes(window);
     command.add_option("--dump-every", run.dump_every, "Write frames/NNNNNN.exr of every so many frames");
     command
         .add_option("--gains", run.gains,

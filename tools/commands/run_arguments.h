@@ -6,6 +6,7 @@
 
 #include "tools/commands/commands.h"
 #include "tools/run/run.h"
+#include "tools/viewer/viewer_options.h"
 
 namespace patina::tools {
 
@@ -15,6 +16,10 @@ struct RunArguments {
     SequenceArguments sequence;
     std::optional<std::filesystem::path> extends;  ///< the folder whose map the run begins from
     std::optional<std::filesystem::path> resume;   ///< the folder whose map the run goes on from; none: it begins
+    bool window = false;                           ///< the scene is shown while it grows; so it is off screen
+    ViewerOptions viewer;
+
+    bool shows() const { return window || !viewer.offscreen.empty(); }
 };
 
 /// Adds the options. Both must live until the command line is parsed.

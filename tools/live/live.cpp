@@ -74,7 +74,9 @@ Outcome live(const LiveOptions& options) {
     run_options.sequence.clear();
     RecordedInput opened = options.simulate.empty() ? open_camera(options) : open_played(options);
     LiveRun companion(std::move(opened.input), opened.recorder, options.record, options.seconds);
-    return run(run_options, &companion);
+    if (!options.accompany) return run(run_options, &companion);
+    const auto besides = options.accompany(run_options, companion, [&companion] { companion.end_source(); });
+    return run(run_options, besides.get());
 }
 
 }  // namespace patina::tools

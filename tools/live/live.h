@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "tools/program/outcome.h"
@@ -14,6 +16,11 @@ struct LiveOptions {
     std::string source;            ///< the name of a camera; not used with `simulate`
     std::string simulate;          ///< a recording that plays as a camera would; empty: `source` is opened
     std::filesystem::path record;  ///< a recording of all frames, dropped ones included; empty: none
+    /// Makes who goes along besides, such as a window, of who does already; empty: nobody. `end_source` ends the
+    /// source.
+    std::function<std::unique_ptr<RunCompanion>(const RunOptions& run, RunCompanion& live,
+                                                std::function<void()> end_source)>
+        accompany;
     double seconds = 0;  ///< after the first frame, the source is stopped; 0: it ends by itself or by the user
 };
 

@@ -112,6 +112,18 @@ std::string LiveRun::detail() const {
                        counts.captured, counts.dropped, pose.median_ms, pose.p95_ms, picture.median_ms, picture.p95_ms);
 }
 
+std::vector<std::pair<std::string, std::string>> LiveRun::figures() const {
+    const sensor::LiveCounts counts = input_.capture->counts();
+    const LatencySummary pose = latest(to_pose_s_), picture = latest(to_picture_s_);
+    std::vector<std::pair<std::string, std::string>> lines{
+        {"captured", std::to_string(counts.captured)},
+        {"dropped", std::to_string(counts.dropped)},
+        {"pose after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", pose.median_ms, pose.p95_ms)},
+        {"picture after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", picture.median_ms, picture.p95_ms)}};
+    if (recorder_) lines.emplace_back("recording", record_.string());
+    return lines;
+}
+
 void LiveRun::add_to(RunSummary& summary) const {
     LiveSummary live;
     live.captured = counts_.captured;

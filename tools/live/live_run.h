@@ -42,6 +42,10 @@ class LiveRun : public RunCompanion {
     void end() override;
     std::vector<std::string> shortfalls() const override;
     void add_to(RunSummary& summary) const override;
+    std::vector<std::pair<std::string, std::string>> figures() const override;
+
+    /// Ends the source: the run is whole then.
+    void end_source() { input_.capture->stop(); }
 
   private:
     void look(SessionCore& session);

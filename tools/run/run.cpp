@@ -71,6 +71,12 @@ void write_text(const std::filesystem::path& path, const std::string& content) {
     file.finish();
 }
 
+vulkan::DeviceOptions device_options(const RunOptions& options, RunCompanion* companion) {
+    vulkan::DeviceOptions device = Access::options(options.device);
+    if (companion) companion->prepare(device);
+    return device;
+}
+
 /// One run from source to folder. What fails after frames were fused costs itself alone: everything else is written
 /// where it still can be, the most valuable first.
 class Run {
@@ -80,7 +86,7 @@ class Run {
           console_(console),
           folder_(folder),
           companion_(companion),
-          device_(options.device),
+          device_(Access::device(device_options(options, companion))),
           session_(Access::vulkan(device_), options, companion ? companion->source(Access::vulkan(device_)) : nullptr),
           pipeline_(session_.pipeline()),
           dumps_(folder, session_.info().frames, options.dump_every) {

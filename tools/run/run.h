@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "export/scene_files.h"
@@ -28,12 +29,14 @@ struct RunOptions : SequenceOptions {
     std::filesystem::path dump_graph;  ///< writes PATH.dot and PATH.json of the last frame's last graph; empty: none
 };
 
-/// Accompanies a run with a live source, from before the first frame to the summary.
+/// Accompanies a run from its device to its summary: a live source, a window.
 class RunCompanion {
   public:
     virtual ~RunCompanion() = default;
 
-    /// The source; called once. `device` outlives it.
+    /// Adds what the device has to have for it.
+    virtual void prepare(vulkan::DeviceOptions&) {}
+    /// The source; called once. Null: that of the options. `device` outlives it.
     virtual std::unique_ptr<Source> source(vulkan::Device& device) = 0;
     /// Changes the session's callbacks before it begins.
     virtual void adjust(SessionCallbacks& callbacks) = 0;
@@ -44,6 +47,8 @@ class RunCompanion {
     /// What the source or its recording fell short of, one sentence each.
     virtual std::vector<std::string> shortfalls() const = 0;
     virtual void add_to(RunSummary& summary) const = 0;
+    /// What a user is shown of it while it goes along: what, and how it is now.
+    virtual std::vector<std::pair<std::string, std::string>> figures() const { return {}; }
 };
 
 /// Reconstructs a sequence and writes the run's folder, whole (OutputFolder). If the user or an error stops the run, it

@@ -33,6 +33,26 @@ TEST_F(RunnerTest, UploadsComputesAndReadsBack) {
     }
 }
 
+TEST_F(RunnerTest, OnePixelOfAnImageIsReadBackAndTheFramesTimeIsKnownOnceItHasFinished) {
+    const Extent2D extent{7, 5};
+    std::vector<uint32_t> pixels(extent.area());
+    std::iota(pixels.begin(), pixels.end(), 100u);
+    graph::FrameGraph frame = runner().begin();
+    const graph::ImageId image =
+        frame.upload("image", {extent, vulkan::Format::kR32u}, std::as_bytes(std::span(pixels)));
+    const graph::Readback first = frame.read_back_pixel(image, {0, 0}), last = frame.read_back_pixel(image, {6, 4}),
+                          whole = frame.read_back(image);
+    EXPECT_THROW(frame.read_back_pixel(image, {7, 0}), Error);
+    const graph::FrameTime time = frame.time();
+    EXPECT_FALSE(time.ms());
+    run(std::move(frame));
+    EXPECT_EQ(first.as<uint32_t>(), std::vector<uint32_t>{100});
+    EXPECT_EQ(last.as<uint32_t>(), std::vector<uint32_t>{134});
+    EXPECT_EQ(whole.as<uint32_t>(), pixels);
+    EXPECT_EQ(time.ms().has_value(), device().caps().timestamps);
+    EXPECT_GE(time.ms().value_or(0), 0);
+}
+
 TEST_F(RunnerTest, FramesOfOneShapeAreCompiledOnce) {
     const auto persistent = device().create_buffer({"persistent", 64 * sizeof(float)});
     for (int i = 0; i < 5; ++i) {

@@ -6,6 +6,7 @@
 #include "passes/reflectance/average_segments.h"
 #include "passes/shading/pack_records.h"
 #include "passes/shading/predict_radiance.h"
+#include "passes/shading/sample_coverage.h"
 #include "passes/shading/sample_reflectance.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
 
@@ -156,12 +157,15 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
                           kd = frame.read_back(predicted.kd), label = frame.read_back(predicted.label),
                           gloss = frame.read_back(predicted.ks_alpha), rgb = frame.read_back(predicted.rgb),
-                          light = frame.read_back(predicted.light);
+                          light = frame.read_back(predicted.light),
+                          coverage = frame.read_back(
+                              add_sample_coverage(frame, observations_.map(), observations_.map().import(frame),
+                                                  {model.position_m, visible.view, visible.grid, predicted.packed}));
     runner_.submit(std::move(frame));
     runner_.wait();
-    return {position.image<glm::vec4>(),    widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
-            widen(gloss.image<uint64_t>()), widen(rgb.image<uint64_t>()),    widen(light.image<uint64_t>()),
-            label.image<uint32_t>()};
+    return {position.image<glm::vec4>(),       widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
+            widen(gloss.image<uint64_t>()),    widen(rgb.image<uint64_t>()),    widen(light.image<uint64_t>()),
+            widen(coverage.image<uint64_t>()), label.image<uint32_t>()};
 }
 
 std::vector<gpu::SampledReflectance> ShadingRig::sample(const std::vector<glm::vec3>& points_m,

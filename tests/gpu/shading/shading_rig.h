@@ -25,7 +25,7 @@ struct RecordPlace {
 
 /// What the shading makes of a view.
 struct ShadedView {
-    Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb, light;
+    Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb, light, coverage;
     Image<uint32_t> label;
 };
 

@@ -1,0 +1,45 @@
+#include "reconstruction/model_view.h"
+
+#include "passes/fusion/shade_color.h"
+#include "passes/shading/restore_detail.h"
+
+namespace patina {
+
+namespace {
+
+ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds& voxels,
+                                         const VisibleBlocks& visible, const RaycastImages& model,
+                                         const RestoreDetailInputs& inputs, const OtherLights* other) {
+    ReflectanceStage& stage = *stages.reflectance;
+    const auto [predicted, segments] = stage.add_predict(graph, voxels, visible, model, other);
+    // Under other lights than those of the frames, their colours would bring back the shadows of these.
+    const ReflectanceStageSettings& settings = stage.settings();
+    const bool detailed = stages.settings.fusion.color && settings.refine.albedo && settings.detail && !other;
+    return {detailed ? add_restore_detail(graph, predicted, inputs) : predicted, predicted,
+            stage.add_coverage(graph, visible, predicted, model.position_m), segments};
+}
+
+}  // namespace
+
+ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera,
+                           const OtherLights* other) {
+    const GeometryStage& geometry = stages.geometry;
+    const VoxelMapIds voxels = geometry.map().import(graph);
+    const VisibleBlocks visible = geometry.add_visible_to_view(graph, voxels, camera);
+    const RaycastImages model =
+        geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), camera.intrinsics);
+    ModelImages view;
+    view.position_m = model.position_m;
+    view.normal = model.normal;
+    view.color = add_shade_color(graph, geometry.map(), voxels, visible, model.position_m);
+    if (stages.segmentation) view.label = stages.segmentation->add_view(graph, surface_of(visible, model));
+    if (stages.reflectance) {
+        const RestoreDetailInputs inputs{model.position_m, model.normal, view.color,
+                                         static_cast<float>(camera.intrinsics.fx),
+                                         stages.reflectance->settings().voxel_m};
+        view.reflectance = add_reflectance(graph, stages, voxels, visible, model, inputs, other);
+    }
+    return view;
+}
+
+}  // namespace patina

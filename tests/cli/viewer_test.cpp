@@ -1,0 +1,145 @@
+// The viewer as a user meets it: off screen, and in a window on a display without a screen.
+
+#include <cstdlib>
+#include <set>
+
+#include "sensor/files/picture_file.h"
+#include "tests/cli/run_folder.h"
+
+namespace patina::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr Extent2D kExtent{96, 64};
+constexpr const char* kLayers[] = {"color",   "rerendering", "kd",         "ks",      "alpha",
+                                   "normals", "segments",    "confidence", "coverage"};
+
+bool installed(const std::string& program) { return shell("command -v " + program + " > /dev/null") == 0; }
+
+class Viewer : public RunFolderTest {
+  protected:
+    /// A run of a built-in scene that keeps its map.
+    void run_with_map(std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"run",    "synthetic:cubes",    "--frames", "4",         "--out",
+                                           out(),    "--checkpoint-every", "4",        "--texture", "off",
+                                           "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = patina(arguments);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    }
+
+    Outcome view(const fs::path& to, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"view", out(), "--offscreen", to, "--extent", "96x64"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return patina(arguments);
+    }
+
+    static Image<SrgbPixel> read(const fs::path& file) {
+        return std::get<Image<SrgbPixel>>(sensor::read_color(file, kExtent));
+    }
+
+    static size_t distinct(const Image<SrgbPixel>& picture) {
+        std::set<std::array<uint8_t, 3>> colors;
+        for (const SrgbPixel& pixel : picture.pixels()) colors.insert({pixel.r, pixel.g, pixel.b});
+        return colors.size();
+    }
+
+    void expect_no_viewer_is_one_sentence(const Outcome& outcome) {
+        EXPECT_THAT(expect_failure(outcome), HasSubstr("this patina has no viewer"));
+    }
+
+    /// Whether this program was built without one.
+    static bool absent() {
+        const Outcome outcome = patina({"view", "/nowhere", "--offscreen", "/nowhere/x.png"});
+        return outcome.err.find("this patina has no viewer") != std::string::npos;
+    }
+};
+
+TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
+    if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
+    run_with_map({"--labels", "truth", "--materials", "truth"});  // known from the first frame on
+    std::vector<std::vector<SrgbPixel>> pictures;
+    for (const char* layer : kLayers) {
+        const fs::path file = beside(std::string(layer) + ".png"), again = beside("again.png");
+        const Outcome outcome = view(file, {"--layer", layer, "--no-panels"});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.out, HasSubstr(std::string("1 frames; layer ") + layer));
+        ASSERT_EQ(view(again, {"--layer", layer, "--no-panels", "--quiet"}).exit_code, 0);
+        EXPECT_EQ(read(file).pixels(), read(again).pixels()) << layer;
+        EXPECT_GT(distinct(read(file)), 3u) << layer << " is not blank";
+        pictures.push_back(read(file).pixels());
+        for (size_t i = 0; i + 1 < pictures.size(); ++i)
+            EXPECT_NE(pictures[i], pictures.back()) << kLayers[i] << " and " << layer;
+    }
+    // With panels over it.
+    ASSERT_EQ(view(beside("panels.png"), {"--layer", "color"}).exit_code, 0);
+    EXPECT_NE(read(beside("panels.png")).pixels(), pictures.front());
+    // Around the model, as numbered pictures.
+    ASSERT_EQ(view(beside("orbit-##.png"), {"--orbit", "3", "--no-panels"}).exit_code, 0);
+    EXPECT_NE(read(beside("orbit-00.png")).pixels(), read(beside("orbit-02.png")).pixels());
+    EXPECT_FALSE(fs::exists(beside("orbit-03.png")));
+}
+
+TEST_F(Viewer, ARunDrawsItsSceneWhileItGrowsAndItsResultIsTheSame) {
+    if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
+    const std::vector<std::string> run{"run",  "synthetic:cubes", "--frames", "3",       "--lighting",
+                                       "none", "--texture",       "off",      "--quiet", "--out"};
+    std::vector<std::string> plain = run, drawn = run;
+    plain.push_back(beside("plain"));
+    drawn.insert(drawn.end(), {beside("drawn"), "--offscreen", beside("frame-#.png"), "--window-extent", "96x64",
+                               "--no-panels", "--layer", "normals"});
+    ASSERT_EQ(patina(plain).exit_code, 0);
+    const Outcome outcome = patina(drawn);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    for (int i = 0; i < 3; ++i) EXPECT_GT(distinct(read(beside("frame-" + std::to_string(i) + ".png"))), 3u) << i;
+    EXPECT_NE(read(beside("frame-0.png")).pixels(), read(beside("frame-2.png")).pixels());
+    EXPECT_EQ(files_in(beside("plain")).at("scene.glb"), files_in(beside("drawn")).at("scene.glb"));
+}
+
+TEST_F(Viewer, BadInputIsOneSentence) {
+    if (absent()) return expect_no_viewer_is_one_sentence(view(beside("x.png"), {}));
+    EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("does not exist"));
+    fs::create_directory(out());
+    EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("--checkpoint-every"));
+    EXPECT_THAT(expect_failure(view(beside("x.png"), {"--layer", "colour"}), 2), HasSubstr("color"));
+    EXPECT_FALSE(fs::exists(beside("x.png")));
+    const Outcome no_display =
+        patina({"run", sequence(), "--out", out(), "--window", "--quiet"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
+    EXPECT_THAT(expect_failure(no_display), HasSubstr("--offscreen"));
+    const Outcome other = patina({"run", sequence(), "--out", out(), "--offscreen", beside("x.gif"), "--quiet"});
+    EXPECT_THAT(expect_failure(other), HasSubstr("must be a .png, an .mp4 or an .avi"));
+}
+
+TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
+    if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
+    for (const char* program : {"Xvfb", "xdotool"})
+        if (!installed(program)) GTEST_SKIP() << program << " is not installed";
+    run_with_map({"--lighting", "none"});
+    // A display of its own, whose number Xvfb chooses; a key for the layer, the wheel for the free camera, then the
+    // window is closed as a user would.
+    const std::string said = beside("said"), script = R"(
+        exec 3> display
+        Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
+        for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
+        export DISPLAY=:$(cat display)
+        $PATINA view )" + out().string() + R"( --extent 320x240 > said 2> complaint & viewer=$!
+        window=
+        for i in $(seq 300); do window=$(xdotool search --name '^patina' 2> /dev/null) && break; sleep 0.1; done
+        sleep 2
+        xdotool windowfocus $window
+        xdotool mousemove --window $window 160 200
+        xdotool key 6; sleep 1
+        xdotool click 4; sleep 1
+        xdotool key ctrl+q
+        wait $viewer; ended=$?
+        kill $server; wait $server 2> /dev/null
+        exit $ended)";
+    const int exit_code = shell("cd " + beside(".").string() + "\n" + script);
+    EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
+    EXPECT_THAT(files_in(beside("."))["said"], HasSubstr("layer normals"));
+}
+
+}  // namespace
+}  // namespace patina::testing

@@ -1,0 +1,172 @@
+#include "tools/viewer/window_run.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "reconstruction/session/session_core.h"
+#include "tools/program/inputs.h"
+#include "tools/report/run_summary.h"
+#include "tools/viewer/export_folder.h"
+#include "tools/viewer/make_display.h"
+
+namespace patina::tools {
+
+namespace {
+
+/// Beside fusion, drawing takes a tenth of its time at most.
+constexpr double kShare = 0.1 / 1.1;
+/// How long the user is waited for while the run is paused.
+constexpr double kPaused_s = 1.0 / 30;
+
+const char* word_of(TrackingState state) {
+    switch (state) {
+        case TrackingState::kTracking: return "tracking";
+        case TrackingState::kWeak: return "weak";
+        case TrackingState::kLost: return "lost";
+    }
+    return "";
+}
+
+}  // namespace
+
+WindowRun::WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
+                     std::function<void()> end_source)
+    : options_(options),
+      out_(run.out),
+      inner_(inner),
+      end_source_(std::move(end_source)),
+      display_(make_display(options, "patina", inputs_of(run))) {}
+
+WindowRun::~WindowRun() = default;
+
+void WindowRun::prepare(vulkan::DeviceOptions& options) {
+    display_->ask(options);
+    if (inner_) inner_->prepare(options);
+}
+
+std::unique_ptr<Source> WindowRun::source(vulkan::Device& device) {
+    viewer_.emplace(device, *display_, kShare, options_.panels);
+    viewer_->state().layer = options_.layer;
+    return inner_ ? inner_->source(device) : nullptr;
+}
+
+void WindowRun::adjust(SessionCallbacks& callbacks) {
+    if (inner_) inner_->adjust(callbacks);
+    // A live source is ended instead, and the run is whole then; but for the time before its first frame.
+    callbacks.stop = [this, stop = callbacks.stop] {
+        return (closed() && !(end_source_ && begun_)) || (stop && stop());
+    };
+    callbacks.progress = [this, show = callbacks.progress](const SessionProgress& progress) {
+        progress_ = progress.total ? fmt::format("{} of {} {}", progress.done, *progress.total, progress.task)
+                                   : fmt::format("{} {}", progress.done, progress.task);
+        show(progress);
+    };
+}
+
+bool WindowRun::closed() {
+    if (closed_ || !display_) return closed_;
+    display_->poll(0);
+    closed_ = display_->closed();
+    if (closed_ && end_source_ && begun_) end_source_();
+    return closed_;
+}
+
+void WindowRun::after_step(SessionCore& session) {
+    if (inner_) inner_->after_step(session);
+    begun_ = true;
+    const Frame* frame = session.fused() ? session.fused() : session.held_out();
+    if (frame) sensor_ = *frame->world_from_camera;
+    if (!problem_.empty() || !display_) return;
+    if (!frame && display_->wants_all()) return;  // nothing has changed
+    try {
+        show(session);
+    } catch (const std::exception& error) {
+        // The run needs no window. Of a device that was lost the run finds out itself.
+        problem_ = fmt::format("drawing ended: {}", reason_of(error));
+    }
+}
+
+void WindowRun::show(SessionCore& session) {
+    if (closed()) return;
+    if (viewer_->due()) draw(session, 0);
+    while (viewer_->state().paused && !closed()) {
+        session.stop_if_interrupted();
+        draw(session, kPaused_s);
+        session.pipeline().runner().wait();
+    }
+}
+
+void WindowRun::draw(SessionCore& session, double patience_s) {
+    display_->poll(patience_s);
+    const Scenery scenery{&session.pipeline(), session.info().depth, sensor_, std::nullopt, session.lighting()};
+    viewer_->draw(scenery, facts_of(session));
+    take_wishes(session);
+}
+
+void WindowRun::take_wishes(SessionCore& session) {
+    if (std::exchange(viewer_->state().export_asked, false)) export_now(session);
+}
+
+void WindowRun::export_now(SessionCore& session) {
+    try {
+        const std::filesystem::path folder = free_folder_beside(out_);
+        session.scene().save(folder);
+        message_ = fmt::format("exported to {}", folder.string());
+    } catch (const Error& error) {
+        message_ = fmt::format("not exported: {}", error.what());
+    }
+}
+
+ViewerFacts WindowRun::facts_of(SessionCore& session) const {
+    ViewerFacts facts;
+    Pipeline& pipeline = session.pipeline();
+    facts.lines.emplace_back("device", session.device().caps().name);
+    facts.lines.emplace_back("progress", progress_);
+    if (const auto& last = session.last()) {
+        facts.lines.emplace_back("camera", last->fused ? word_of(last->state) : "not fused: " + last->reason);
+    }
+    for (auto& line : figures()) facts.lines.push_back(std::move(line));
+    const PipelineCounters counted = pipeline.counters();
+    facts.lines.emplace_back("segments", std::to_string(counted.segments.live));
+    facts.lines.emplace_back("drawn", fmt::format("{} frames, {:.1f} s", viewer_->drawn(), viewer_->spent_s()));
+    for (const PoolState& pool : counted.pools)
+        facts.pools.push_back({pool.name, pool.used, pool.capacity, pool.refused});
+    facts.passes = slowest_passes(pipeline.runner());
+    facts.message = message_;
+    facts.can_pause = !display_->wants_all();
+    facts.can_export = session.ledger().used() > 0;
+    return facts;
+}
+
+void WindowRun::end() {
+    viewer_.reset();
+    try {
+        if (display_) display_->finish();
+    } catch (const std::exception& error) {
+        if (problem_.empty()) problem_ = reason_of(error);
+    }
+    display_.reset();
+    if (inner_) inner_->end();
+}
+
+std::vector<std::string> WindowRun::shortfalls() const {
+    std::vector<std::string> list = inner_ ? inner_->shortfalls() : std::vector<std::string>();
+    if (!problem_.empty()) list.push_back(problem_);
+    return list;
+}
+
+void WindowRun::add_to(RunSummary& summary) const {
+    if (inner_) inner_->add_to(summary);
+}
+
+std::vector<std::pair<std::string, std::string>> WindowRun::figures() const {
+    return inner_ ? inner_->figures() : std::vector<std::pair<std::string, std::string>>();
+}
+
+std::unique_ptr<RunCompanion> show_run(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
+                                       std::function<void()> end_source) {
+    return std::make_unique<WindowRun>(options, run, inner, std::move(end_source));
+}
+
+}  // namespace patina::tools
