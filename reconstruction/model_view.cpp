@@ -11,6 +11,7 @@ ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stage
                                          const VisibleBlocks& visible, const RaycastImages& model,
                                          const RestoreDetailInputs& inputs, const OtherLights* other) {
     ReflectanceStage& stage = *stages.reflectance;
+    stage.share_albedo(graph);
     const auto [predicted, segments] = stage.add_predict(graph, voxels, visible, model, other);
     // Under other lights than those of the frames, their colours would bring back the shadows of these.
     const ReflectanceStageSettings& settings = stage.settings();

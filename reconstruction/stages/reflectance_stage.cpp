@@ -178,6 +178,14 @@ void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient
     settings_.refine.gathered_rays = 0;
 }
 
+void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
+    if (!gathers()) return;
+    ReflectanceStateIds state = state_.import(graph);
+    add_surface_albedo(graph, observations_, observations_.import(graph), state, lights_.upload(graph),
+                       RefinedPart{}.cube_m);
+    graph.keep(state.gathered);
+}
+
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast,
                                             const OtherLights* other) {
@@ -198,12 +206,8 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
     inputs.gathers = settings_.refine.gathered_rays > 0 && !other;
     inputs.access = access_.voxels;
-    ReflectanceStateIds state = state_.import(graph);
-    if (inputs.gathers) {
-        add_surface_albedo(graph, observations_, records, state, inputs.lights, RefinedPart{}.cube_m);
-        graph.keep(state.gathered);
-    }
-    return {add_predict_radiance(graph, map_, voxels, observations_, records, state, inputs), inputs.segments};
+    return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
+            inputs.segments};
 }
 
 graph::ImageId ReflectanceStage::add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,

@@ -130,6 +130,10 @@ class ReflectanceStage {
     /// after that.
     void relight(std::span<const Light> lights, glm::dvec3 ambient);
 
+    /// Lets records tell each other of their albedo, before a view is predicted; refine_all() does so, too. A frame
+    /// adds nothing else to the model.
+    void share_albedo(graph::FrameGraph& graph);
+
     /// What a camera sees that was cast into the model. `other`: lights in place of those of the reconstruction; may be
     /// null. Throws Error as Lights::set does.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,

@@ -1,4 +1,3 @@
-#include "tools/program/mebibytes.h"
 #include "tools/report/report_tables.h"
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "export/html.h"
+#include "tools/program/mebibytes.h"
 #include "tools/report/report_page.h"
 #include "tools/report/verdict.h"
 
