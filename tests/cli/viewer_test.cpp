@@ -125,10 +125,13 @@ TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
         for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
         export DISPLAY=:$(cat display)
         $PATINA view )" + out().string() + R"( --extent 320x240 > said 2> complaint & viewer=$!
-        window=
-        for i in $(seq 300); do window=$(xdotool search --name '^patina' 2> /dev/null) && break; sleep 0.1; done
-        sleep 2
-        xdotool windowfocus $window
+        window=$(timeout 120 xdotool search --sync --onlyvisible --name '^patina' | head -n 1)
+        # Until the window has the focus, keys are lost.
+        for i in $(seq 100); do
+            xdotool windowfocus $window 2> /dev/null
+            [ $(xdotool getwindowfocus) = $window ] && break
+            sleep 0.2
+        done
         xdotool mousemove --window $window 160 200
         xdotool key 6; sleep 1
         xdotool click 4; sleep 1
