@@ -119,33 +119,27 @@ TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
     run_with_map({"--lighting", "none"});
     // A display of its own, whose number Xvfb chooses; a key for the layer, the wheel for the free camera, then the
     // window is closed as a user would.
-    const std::string script = R"(
+    const std::string said = beside("said"), script = R"(
         exec 3> display
         Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
         for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
         export DISPLAY=:$(cat display)
-        $PATINA view "$OUT" --extent 320x240 > said 2> complaint & viewer=$!
-        for i in $(seq 600); do
-            window=$(xdotool search --onlyvisible --name '^patina' 2> /dev/null | head -n 1)
-            [ -n "$window" ] && break
-            sleep 0.2
-        done
+        $PATINA view )" + out().string() + R"( --extent 320x240 > said 2> complaint & viewer=$!
+        window=$(timeout 120 xdotool search --sync --onlyvisible --name '^patina' | head -n 1)
         # Until the window has the focus, keys are lost.
         for i in $(seq 100); do
-            xdotool windowfocus "$window" 2> /dev/null
-            [ "$(xdotool getwindowfocus 2> /dev/null)" = "$window" ] && break
+            xdotool windowfocus $window 2> /dev/null
+            [ $(xdotool getwindowfocus) = $window ] && break
             sleep 0.2
         done
-        xdotool mousemove --window "$window" 160 200
-        xdotool key 6
-        for i in $(seq 100);
-    do grep - q "layer normals" said&& break;
-    sleep 0.2;
-    done xdotool click 4;
-    sleep 1 xdotool key ctrl + q wait $viewer;
-    ended = $ ? kill $server; wait $server 2> /dev/null
+        xdotool mousemove --window $window 160 200
+        xdotool key 6; sleep 1
+        xdotool click 4; sleep 1
+        xdotool key ctrl+q
+        wait $viewer; ended=$?
+        kill $server; wait $server 2> /dev/null
         exit $ended)";
-    const int exit_code = shell("cd " + beside(".").string() + "\nOUT=" + out().string() + "\n" + script);
+    const int exit_code = shell("cd " + beside(".").string() + "\n" + script);
     EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
     EXPECT_THAT(files_in(beside("."))["said"], HasSubstr("layer normals"));
 }
