@@ -86,6 +86,19 @@ TEST_F(ReconstructionApiTest, PosesAreGivenUnlessTrackingIsAskedFor) {
     EXPECT_FALSE(Reconstruction(device_, options).tracks());
 }
 
+// Tracking predicts what the model looks like before the frame's own light is gathered.
+TEST_F(ReconstructionApiTest, TrackedFramesGatherLight) {
+    ReconstructionOptions options = lit();
+    options.poses = Poses::kTrack;
+    Reconstruction reconstruction(device_, options);
+    EXPECT_TRUE(reconstruction.add(wall_.frame()).fused);
+    for (int i = 0; i < 2; ++i) reconstruction.add(wall_.frame());
+    reconstruction.wait();
+    const std::vector<PassTime> passes = reconstruction.statistics().passes;
+    for (const char* name : {"reflectance.gather_irradiance", "tracking.hide_highlights"})
+        EXPECT_THAT(passes, Contains(Field(&PassTime::name, StartsWith(name))));
+}
+
 TEST_F(ReconstructionApiTest, WhatCannotBeMetIsOneSentence) {
     ReconstructionOptions options = lit();
     options.materials = Materials::kTruth;
