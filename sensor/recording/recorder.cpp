@@ -275,7 +275,7 @@ void Recorder::fail(const std::string& problem) {
     changed_.notify_all();
 }
 
-ReadingTap tap_to(std::shared_ptr<Recorder> recorder) {
+std::function<void(const Reading&)> tap_to(std::shared_ptr<Recorder> recorder) {
     if (!recorder) return {};
     return [recorder = std::move(recorder)](const Reading& reading) {
         if (const auto* skipped = std::get_if<Skipped>(&reading)) return recorder->skip(*skipped);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "sensor/live/live_source.h"
+#include "patina/source.h"
 #include "sensor/recording/container.h"
 #include "sensor/recording/log_keeper.h"
 #include "sensor/recording/recorded_frame.h"
@@ -131,6 +132,6 @@ class Recorder {
 };
 
 /// Hands every reading to a recorder; empty where there is none.
-ReadingTap tap_to(std::shared_ptr<Recorder> recorder);
+std::function<void(const Reading&)> tap_to(std::shared_ptr<Recorder> recorder);
 
 }  // namespace patina::sensor

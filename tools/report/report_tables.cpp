@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "export/html.h"
-#include "tools/program/mebibytes.h"
 #include "tools/report/report_page.h"
 #include "tools/report/verdict.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 constexpr const char* kNotObserved = "not observed";
 
-std::string size_text(uint64_t bytes) { return fmt::format("{:.1f} MiB", tools::mebibytes(bytes)); }
+std::string size_text(uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
 
 double fraction(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
