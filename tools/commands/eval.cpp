@@ -59,7 +59,7 @@ void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, 
         return;
     }
     const RigidTransform truth_from_run = eval::world_of_run(sequence, run);
-    const auto kept = kept_arguments(run);
+    const auto kept = kept_arguments(map_in(run));
     kept->sequence.finish(kept->run);
     kept->run.map = map_in(run);
     kept->run.resume = true;
