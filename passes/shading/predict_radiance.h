@@ -24,6 +24,7 @@ struct PredictRadianceInputs {
     bool shadows = true;                          ///< false: every light reaches every surface, as in the paper
     MapAccess access = MapAccess::kStorage;
     bool gathers = false;  ///< records gathered light from all around (reflectance/gather_irradiance.h), which arrives
+    bool shares = true;    ///< RecordSurroundings::around counts, where it is known
 };
 
 /// The records, with those that a view can show by voxel.
@@ -50,10 +51,10 @@ struct PredictedImages {
 /// trilinear mean of the eight records around the point (Section 3.7), each weighted by its certainty and by how much
 /// its surface is the point's: normals agree, its tangent plane passes by. Where none of them is known, the nearest
 /// known one within a voxel more counts, of the same surface if there is one. Where records are not
-/// sure of it, the mean of the segment counts by inverse variances (kTextureDeviation), and it is all there is where no
-/// record knows. How much of a light reaches the
-/// point is interpolated likewise; all of it, where none was marched yet. The segment is that of the nearest record
-/// with a label. Throws Error when the images differ in extent.
+/// sure of it, the albedo of the surface around them counts by inverse variances (kSurfaceDeviation), or the mean of
+/// the segment (kTextureDeviation), which is all there is where no record knows. How much of a light reaches the point
+/// is interpolated likewise; all of it, where none was marched yet. The segment is that of the nearest record with a
+/// label. Throws Error when the images differ in extent.
 PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& voxel_map, const VoxelMapIds& voxels,
                                      const ObservationMap& map, const ObservationMapIds& records,
                                      const ReflectanceStateIds& state, const PredictRadianceInputs& inputs);

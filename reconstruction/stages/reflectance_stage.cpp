@@ -63,6 +63,7 @@ void ReflectanceStage::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
     state_.reset(graph);
     away_.reset(graph);
     any_left_ = false;
+    shared_ = false;
     reclaim_at_ = settings_.reclaim_every;
     reclaim_turn_ = 0;
     // Uploaded before a frame that replaces them.
@@ -132,6 +133,7 @@ void ReflectanceStage::add_low_exposure(graph::FrameGraph& graph, const Surround
 
 RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                                  const FrameContext& frame) {
+    shared_ = false;
     ObservationMapIds records = observations_.import(graph);
     const CollectedRecords collected = add_collect_observations(
         graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
@@ -169,6 +171,7 @@ void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& v
     ReflectanceSettings refine = settings_.refine;
     if (!gathers) refine.gathered_rays = 0;
     add_refine_all_reflectance(graph, models(part), voxels, records, access_, refine);
+    shared_ = true;
     ObservationMap::keep(graph, records);
 }
 
@@ -179,7 +182,8 @@ void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient
 }
 
 void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
-    if (!gathers()) return;
+    if (!gathers() || shared_) return;
+    shared_ = true;
     ReflectanceStateIds state = state_.import(graph);
     add_surface_albedo(graph, observations_, observations_.import(graph), state, lights_.upload(graph),
                        RefinedPart{}.cube_m);
@@ -188,7 +192,7 @@ void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
 
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast,
-                                            const OtherLights* other) {
+                                            const OtherLights* other, bool shared) {
     Lights others;
     if (other) others.set(other->lights, other->ambient);
     const Lights& shining = other ? others : lights_;
@@ -206,6 +210,7 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
     inputs.gathers = settings_.refine.gathered_rays > 0 && !other;
     inputs.access = access_.voxels;
+    inputs.shares = shared;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
             inputs.segments};
 }
@@ -247,6 +252,7 @@ void ReflectanceStage::visit(graph::StateVisitor& visitor) {
     state_.visit(visitor);
     away_.visit(visitor);
     visitor.value("reflectance.any_left", any_left_);
+    visitor.value("reflectance.shared", shared_);
     visitor.value("reflectance.reclaim_at", reclaim_at_);
     visitor.value("reflectance.reclaim_turn", reclaim_turn_);
 }

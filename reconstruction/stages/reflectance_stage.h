@@ -130,14 +130,15 @@ class ReflectanceStage {
     /// after that.
     void relight(std::span<const Light> lights, glm::dvec3 ambient);
 
-    /// Lets records tell each other of their albedo, before a view is predicted; refine_all() does so, too. A frame
-    /// adds nothing else to the model.
+    /// Lets records tell each other of their albedo before a view is predicted, where any changed since they did so
+    /// last, here or in refine_all(). The frame adds nothing else to the model.
     void share_albedo(graph::FrameGraph& graph);
 
     /// What a camera sees that was cast into the model. `other`: lights in place of those of the reconstruction; may be
-    /// null. Throws Error as Lights::set does.
+    /// null. `shared`: what records heard of each other's albedo counts. It depends on when views were predicted, so
+    /// that nothing that goes on in the model may. Throws Error as Lights::set does.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                              const RaycastImages& cast, const OtherLights* other = nullptr);
+                              const RaycastImages& cast, const OtherLights* other = nullptr, bool shared = true);
 
     /// How well it is known what a camera sees; `predicted` is of the same view (shading/sample_coverage.h).
     graph::ImageId add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
@@ -173,6 +174,7 @@ class ReflectanceStage {
     bool any_left_ = false;    ///< records, since the map was reset
     uint64_t reclaim_at_ = 0;  ///< the frame from which on that is due
     uint32_t reclaim_turn_ = 0;
+    bool shared_ = false;  ///< no record changed since they told each other of their albedo
     ReflectanceAccess access_;
 };
 

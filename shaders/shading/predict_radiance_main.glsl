@@ -38,6 +38,8 @@ layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer
 
 layout(constant_id = 1) const uint kGathers = 0u;  // 1: records know what arrives from all around
 
+layout(constant_id = 2) const uint kShares = 1u;  // 1: the albedo of the surface around records counts
+
 const float kLeastAlpha = 0.01;
 const float kKnownWeight = 0.1;  // of a channel, from which on the records' own kd is shown
 
@@ -79,7 +81,7 @@ Reflectance interpolate(SurfacePoint point) {
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
-        const uint alike = gathered[have ? record : 0u].around;
+        const uint alike = kShares != 0u ? gathered[have ? record : 0u].around : 0u;
         const float weight =
             add_record(sums, point, record, content, alike, t - vec3(corner), share.x * share.y * share.z);
         near_record[i] = have ? record : 0u;

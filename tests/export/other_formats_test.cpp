@@ -22,15 +22,10 @@ namespace patina {
 namespace {
 
 using test::bytes_of;
+using test::small_scene;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::Not;
-
-SceneParts small_scene() {
-    const TemporaryFolder folder;
-    test::write_small_glb(folder / "scene.glb");
-    return read_scene_parts(folder / "scene.glb");
-}
 
 template <class Value>
 Value value_at(const std::string& bytes, size_t at) {

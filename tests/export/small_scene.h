@@ -4,6 +4,7 @@
 
 #include "export/scene_parts.h"
 #include "export/write_glb.h"
+#include "tests/export/temporary_folder.h"
 
 namespace patina::test {
 
@@ -48,6 +49,13 @@ inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel =
                    .segment_names = {"", "wall 1", "object \"2\""},
                    .lights = {{{0.5, -2, 1}, {3, 6, 3}, 0.05}},
                    .candela_per_intensity = kCandela});
+}
+
+/// The same, read back.
+inline SceneParts small_scene() {
+    const TemporaryFolder folder;
+    write_small_glb(folder / "scene.glb");
+    return read_scene_parts(folder / "scene.glb");
 }
 
 }  // namespace patina::test

@@ -15,15 +15,10 @@
 namespace patina {
 namespace {
 
+using test::small_scene;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::Not;
-
-SceneParts small_scene() {
-    const TemporaryFolder folder;
-    test::write_small_glb(folder / "scene.glb");
-    return read_scene_parts(folder / "scene.glb");
-}
 
 /// A square of so many vertices along an edge, in one page of noise, which JPEG cannot make small.
 SceneParts noisy_scene(uint32_t edge, uint32_t texels) {

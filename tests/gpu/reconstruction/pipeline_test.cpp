@@ -1,6 +1,7 @@
 #include "reconstruction/pipeline.h"
 
 #include <algorithm>
+#include <array>
 
 #include "reconstruction/session/rgbd_frame.h"
 #include "scenes/files/scene_file.h"
@@ -149,6 +150,27 @@ TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     EXPECT_LT(kd_errors[kd_errors.size() * 8 / 10], 0.08) << "4 cm voxels do not follow the shadows' borders";
     EXPECT_LT(rgb_errors[rgb_errors.size() / 2], 0.02);
     EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
+}
+
+// What records hear of each other's albedo depends on when views are cast; tracking may not.
+TEST_F(PipelineTest, CastingViewsChangesNoPose) {
+    const LabelledCubes cubes(device(), 6);
+    std::array<std::vector<RigidTransform>, 2> poses;
+    for (const bool views : {false, true}) {
+        ReconstructionSettings settings = small_settings_with_reflectance();
+        settings.reflectance->refine.gathered_rays = 4;
+        settings.tracking.emplace();
+        settings.tracking->finest = 0;  // the pictures are small
+        Pipeline pipeline(device(), settings);
+        cubes.prepare(pipeline);
+        for (uint32_t i = 0; i < 6; ++i) {
+            pipeline.add(cubes.frame(i));
+            if (views) pipeline.view(cubes.info.color, *cubes.frames[i].world_from_camera);
+            EXPECT_EQ(pipeline.tracking_report()->state, TrackingState::kTracking) << i;
+            poses[views].push_back(pipeline.tracking_report()->world_from_depth);
+        }
+    }
+    EXPECT_EQ(poses[0], poses[1]);
 }
 
 TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {

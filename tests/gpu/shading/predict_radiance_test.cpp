@@ -142,6 +142,28 @@ TEST_F(PredictRadiance, UnderGatheredLightPicturesShowWhatTheRecordsHave) {
     }
 }
 
+// 0.05 is the deviation of a record that is half sure, and 0.015 that from the albedo around: 9 % is the record's own.
+TEST_F(PredictRadiance, TheAlbedoAroundOutweighsWhatARecordIsNotSureOf) {
+    const glm::dvec3 own(0.25, 0.5, 0.75), around(0.5, 0.75, 0.25);
+    for (const bool shares : {true, false}) {
+        ShadingRig rig = this->rig(wall_, 0.02f);
+        rig.shares = shares;
+        rig.paint([&](const RecordPlace&) {
+            reference::ShadedRecord record = painted(own, 0);
+            record.certainty = glm::dvec3(0.5);
+            record.around = around;
+            return record;
+        });
+        const double weight = 0.05 * 0.05 / (0.015 * 0.015);
+        const glm::dvec3 expected = shares ? (own + weight * around) / (1 + weight) : own;
+        const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+        const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+            ASSERT_LT(off(view.kd.at(x, y), expected), 0.005) << x << ' ' << y;
+        });
+        EXPECT_GT(hits, 0u);
+    }
+}
+
 TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {
     const auto ramp = [](glm::dvec3 p) {
         return glm::dvec3(0.5 + 0.5 * p.x, 0.4 - 0.4 * p.y, 0.5 + 0.3 * (p.x + p.y));
@@ -359,6 +381,7 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
             ShadedRecord record = painted({share(random), share(random), share(random)}, random() % 3, random());
             record.certainty = random() % 3 == 0 ? glm::dvec3(0) : glm::dvec3(0.3 + 0.7 * share(random));
             record.marched = random() % 4 != 0;
+            if (random() % 3 == 0) record.around = {share(random), share(random), share(random)};
             return record;
         });
         reference::ShadedScene scene = rig.scene();

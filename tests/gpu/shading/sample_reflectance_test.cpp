@@ -113,6 +113,7 @@ TEST_F(SampleReflectance, AgreesWithTheReferenceOnRandomRecords) {
         record.kd = {share(random), share(random), share(random)};
         record.label = random() % 3;
         record.certainty = random() % 3 == 0 ? glm::dvec3(0) : glm::dvec3(0.3 + 0.7 * share(random));
+        if (random() % 3 == 0) record.around = {share(random), share(random), share(random)};
         return record;
     });
     std::vector<glm::vec3> points, normals;

@@ -104,6 +104,7 @@ void ShadingRig::write(const Stored& stored) {
     ids.albedo = replace(ids.albedo, stored.albedo);
     ids.visibility = replace(ids.visibility, stored.visibility);
     state.status = replace(state.status, stored.status);
+    state.gathered = replace(state.gathered, stored.gathered);
     ObservationMap::keep(frame, ids);
     ReflectanceState::keep(frame, state);
     runner_.submit(std::move(frame));
@@ -125,6 +126,9 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
         stored.visibility.emplace_back(painted.reached & 0xffffffff, painted.reached >> 32);
         stored.status.push_back(
             {painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, incident ? pack_rays(*incident) : glm::uvec2(0)});
+        const uint32_t around = painted.around ? glm::packF3x9_E1x5(glm::vec3(*painted.around)) : 0;
+        stored.gathered.push_back({{}, around, 0});
+        if (painted.around) painted.around = glm::dvec3(glm::unpackF3x9_E1x5(around));
         record.label = painted.label;
         painted.kd = glm::dvec3(glm::unpackF3x9_E1x5(kd));
         painted_[voxel] = painted;
@@ -151,7 +155,8 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         static_cast<uint32_t>(lights.point_lights().size()),
         shadows,
         preferred_map_access(runner_.device().caps(), map),
-        incident.has_value()};
+        incident.has_value(),
+        shares};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),

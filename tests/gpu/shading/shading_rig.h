@@ -59,11 +59,14 @@ class ShadingRig {
     SegmentMaterials materials;
     std::optional<reference::GatheredRays> incident;  ///< light from all around of every record that is painted
 
+    bool shares = true;  ///< what records know of the albedo around counts in views
+
   private:
     struct Stored {
         std::vector<gpu::VoxelRecord> records;
         std::vector<glm::uvec2> albedo, visibility;
         std::vector<gpu::RecordStatus> status;
+        std::vector<gpu::RecordSurroundings> gathered;
     };
     Stored read();
     void write(const Stored& stored);

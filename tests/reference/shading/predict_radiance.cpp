@@ -77,6 +77,19 @@ Albedo mean_kd(const std::vector<Neighbour>& around) {
     return {sum / glm::max(weights, 1e-20), weights / std::max(shares, 1e-20)};
 }
 
+/// The albedo of the surface around, of the records that know it.
+std::optional<glm::dvec3> mean_around(const std::vector<Neighbour>& near) {
+    glm::dvec3 sum(0);
+    double shares = 0;
+    for (const Neighbour& neighbour : near) {
+        if (!neighbour.record->around) continue;
+        const double share = neighbour.weight * neighbour.share;
+        sum += share * *neighbour.record->around;
+        shares += share;
+    }
+    return shares > 0 ? std::optional(sum / shares) : std::nullopt;
+}
+
 /// The share of the surface around the point that light i reaches; nothing where no record knows.
 std::optional<double> share_lit(const std::vector<Neighbour>& around, size_t i) {
     double lit = 0, all = 0;
@@ -122,14 +135,17 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
     if (scene.materials.count(result.label)) result.gloss = scene.materials.at(result.label);
     const auto whole = scene.segment_kd.find(result.label);
     const bool has_segment = whole != scene.segment_kd.end();
-    if (filled && !fill && !has_segment) return result;
+    const std::optional<glm::dvec3> alike = fill ? std::nullopt : mean_around(around);
+    if (filled && !fill && !has_segment && !alike) return result;
     result.known = true;
     const Albedo own = fill ? Albedo{fill->kd, fill->certainty} : mean_kd(around);
     result.kd = own.kd;
-    if (has_segment) {
-        // Inverse variances: of kd, in units of 0.05 squared, and of voxels about their segment's mean, 0.1.
+    if (alike || has_segment) {
+        // Inverse variances: of kd, in units of 0.05 squared; of voxels about their segment's mean, 0.1; and about the
+        // albedo around, 0.015.
         const glm::dvec3 sure = own.weight / glm::max(1.0 - own.weight, 1e-3);
-        result.kd = (sure * own.kd + 0.25 * whole->second) / (sure + 0.25);
+        const double weight = alike ? 0.05 * 0.05 / (0.015 * 0.015) : 0.25;
+        result.kd = (sure * own.kd + weight * (alike ? *alike : whole->second)) / (sure + weight);
     }
     result.rgb = scene.ambient * result.kd;
     for (size_t i = 0; i < scene.lights.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -21,6 +22,7 @@ struct ShadedRecord {
     bool marched = true;      ///< `reached` is known
     uint64_t reached = 0;     ///< a bit per light
     uint32_t label = 0;
+    std::optional<glm::dvec3> around{};  ///< albedo of the surface around it
 };
 
 struct ShadedLight {
