@@ -84,8 +84,7 @@ void wire_reference(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds&
     std::optional<graph::ImageId> color;
     if (stages.track_shades()) color = add_shade_color(graph, stages.geometry.map(), voxels, visible, cast.position_m);
     if (color && stages.reflectance && tracking.settings().hide_highlights) {
-        const PredictedImages seen =
-            stages.reflectance->add_predict(graph, voxels, visible, cast, nullptr, false).images;
+        const PredictedImages seen = stages.reflectance->add_predict_picture(graph, voxels, visible, cast);
         color = add_hide_highlights(graph, {*color, seen.kd, seen.light, seen.rgb});
     }
     tracking.add_reference(graph, cast, color, camera);

@@ -43,7 +43,7 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
                                  : inputs.most_lights <= gpu::kLightsOfOneWord ? gpu::kLightsOfOneWord
                                                                                : gpu::kMaxPointLights;
     pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
-    pass.specialise("kShares", inputs.shares ? 1u : 0u);
+    pass.specialise("kOfPicture", inputs.of_picture ? 1u : 0u);
     pass.read("Status", state.status).read("Gathered", state.gathered);
     PredictedImages out;
     out.packed = packed;

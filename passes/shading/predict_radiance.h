@@ -24,7 +24,9 @@ struct PredictRadianceInputs {
     bool shadows = true;                          ///< false: every light reaches every surface, as in the paper
     MapAccess access = MapAccess::kStorage;
     bool gathers = false;  ///< records gathered light from all around (reflectance/gather_irradiance.h), which arrives
-    bool shares = true;    ///< RecordSurroundings::around counts, where it is known
+    /// kd is the one that rgb is made with, so that kd x light and the highlight are rgb. It may be above 1, and
+    /// RecordSurroundings::around does not count.
+    bool of_picture = false;
 };
 
 /// The records, with those that a view can show by voxel.

@@ -192,7 +192,18 @@ void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
 
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast,
-                                            const OtherLights* other, bool shared) {
+                                            const OtherLights* other) {
+    return predict(graph, voxels, visible, cast, other, false);
+}
+
+PredictedImages ReflectanceStage::add_predict_picture(graph::FrameGraph& graph, const VoxelMapIds& voxels,
+                                                      const VisibleBlocks& visible, const RaycastImages& cast) {
+    return predict(graph, voxels, visible, cast, nullptr, true).images;
+}
+
+PredictedView ReflectanceStage::predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
+                                        const VisibleBlocks& visible, const RaycastImages& cast,
+                                        const OtherLights* other, bool of_picture) {
     Lights others;
     if (other) others.set(other->lights, other->ambient);
     const Lights& shining = other ? others : lights_;
@@ -210,7 +221,7 @@ PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const Voxe
     inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
     inputs.gathers = settings_.refine.gathered_rays > 0 && !other;
     inputs.access = access_.voxels;
-    inputs.shares = shared;
+    inputs.of_picture = of_picture;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
             inputs.segments};
 }

@@ -135,10 +135,14 @@ class ReflectanceStage {
     void share_albedo(graph::FrameGraph& graph);
 
     /// What a camera sees that was cast into the model. `other`: lights in place of those of the reconstruction; may be
-    /// null. `shared`: what records heard of each other's albedo counts. It depends on when views were predicted, so
-    /// that nothing that goes on in the model may. Throws Error as Lights::set does.
+    /// null. Throws Error as Lights::set does.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                              const RaycastImages& cast, const OtherLights* other = nullptr, bool shared = true);
+                              const RaycastImages& cast, const OtherLights* other = nullptr);
+
+    /// The same with the kd that rgb is made with (PredictRadianceInputs::of_picture), for whoever takes a picture
+    /// apart into its diffuse part and highlights. It does not depend on when views were predicted.
+    PredictedImages add_predict_picture(graph::FrameGraph& graph, const VoxelMapIds& voxels,
+                                        const VisibleBlocks& visible, const RaycastImages& cast);
 
     /// How well it is known what a camera sees; `predicted` is of the same view (shading/sample_coverage.h).
     graph::ImageId add_coverage(graph::FrameGraph& graph, const VisibleBlocks& visible,
@@ -159,6 +163,8 @@ class ReflectanceStage {
     bool gathers() const { return settings_.refine.gathered_rays > 0; }
 
   private:
+    PredictedView predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                          const RaycastImages& cast, const OtherLights* other, bool of_picture);
     graph::BufferId add_average(graph::FrameGraph& graph, const ObservationMapIds& records) const;
     ReflectanceModels models(const RefinedPart& part) {
         return {map_, observations_, lights_, materials_, state_, part};

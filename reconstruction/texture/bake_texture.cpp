@@ -79,7 +79,7 @@ void TextureBake::add(const TexturePicture& picture) {
         geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), cast.intrinsics);
     inputs.position_m = model.position_m;
     if (stages_.reflectance) {
-        const PredictedImages seen = stages_.reflectance->add_predict(graph, voxels, visible, model).images;
+        const PredictedImages seen = stages_.reflectance->add_predict_picture(graph, voxels, visible, model);
         inputs.reflected = {seen.kd, seen.rgb, seen.light};
     }
     for (const TextureBand& band : bands_)

@@ -38,7 +38,8 @@ layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer
 
 layout(constant_id = 1) const uint kGathers = 0u;  // 1: records know what arrives from all around
 
-layout(constant_id = 2) const uint kShares = 1u;  // 1: the albedo of the surface around records counts
+// 1: kd is the one that rgb is made with, without regard to the albedo of the surface around records
+layout(constant_id = 2) const uint kOfPicture = 0u;
 
 const float kLeastAlpha = 0.01;
 const float kKnownWeight = 0.1;  // of a channel, from which on the records' own kd is shown
@@ -81,7 +82,7 @@ Reflectance interpolate(SurfacePoint point) {
         const bool have = record != kNoRecord;
         const uvec4 content = PACKED(have ? record : 0u);
         const vec3 share = mix(1.0 - t, t, vec3(corner));
-        const uint alike = kShares != 0u ? gathered[have ? record : 0u].around : 0u;
+        const uint alike = kOfPicture != 0u ? 0u : gathered[have ? record : 0u].around;
         const float weight =
             add_record(sums, point, record, content, alike, t - vec3(corner), share.x * share.y * share.z);
         near_record[i] = have ? record : 0u;
@@ -225,9 +226,10 @@ void main() {
         if (kMostLights > kLightsOfOneWord) load_further_visibility();
         const bool marched = normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
-        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, shaded_kd(own, found),
-                                 gloss, indirect_light(marched));
-        known_kd = found.known ? vec4(found.kd, 1.0) : vec4(0.0);
+        const vec3 of_picture = shaded_kd(own, found);
+        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, gloss,
+                                 indirect_light(marched));
+        known_kd = found.known ? vec4(kOfPicture != 0u ? of_picture : found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, marched ? seen.arrives : kNotMarched);
     }

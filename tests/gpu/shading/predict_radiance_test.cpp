@@ -145,9 +145,9 @@ TEST_F(PredictRadiance, UnderGatheredLightPicturesShowWhatTheRecordsHave) {
 // 0.05 is the deviation of a record that is half sure, and 0.015 that from the albedo around: 9 % is the record's own.
 TEST_F(PredictRadiance, TheAlbedoAroundOutweighsWhatARecordIsNotSureOf) {
     const glm::dvec3 own(0.25, 0.5, 0.75), around(0.5, 0.75, 0.25);
-    for (const bool shares : {true, false}) {
+    for (const bool of_picture : {false, true}) {
         ShadingRig rig = this->rig(wall_, 0.02f);
-        rig.shares = shares;
+        rig.of_picture = of_picture;
         rig.paint([&](const RecordPlace&) {
             reference::ShadedRecord record = painted(own, 0);
             record.certainty = glm::dvec3(0.5);
@@ -155,13 +155,36 @@ TEST_F(PredictRadiance, TheAlbedoAroundOutweighsWhatARecordIsNotSureOf) {
             return record;
         });
         const double weight = 0.05 * 0.05 / (0.015 * 0.015);
-        const glm::dvec3 expected = shares ? (own + weight * around) / (1 + weight) : own;
+        const glm::dvec3 expected = of_picture ? own : (own + weight * around) / (1 + weight);
         const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
         const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
             ASSERT_LT(off(view.kd.at(x, y), expected), 0.005) << x << ' ' << y;
         });
         EXPECT_GT(hits, 0u);
     }
+}
+
+// Records that reflect more than they receive, as under light that was found too weak.
+TEST_F(PredictRadiance, APictureIsItsKdTimesLightAndHighlights) {
+    const glm::dvec3 own(1.5, 0.5, 2.5), light(0.25, 0.5, 0.125);
+    ShadingRig rig = this->rig(wall_, 0.02f);
+    rig.of_picture = true;
+    rig.incident = reference::GatheredRays{light, 64, 0};
+    rig.lights.set({}, light);
+    rig.materials.set(3, glm::vec3(0.1f), 0.25f);
+    rig.paint([&](const RecordPlace&) {
+        reference::ShadedRecord record = painted(own, 3);
+        record.certainty = glm::dvec3(0.3);
+        record.around = glm::dvec3(0.5);
+        return record;
+    });
+    const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+    const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+        const glm::dvec3 kd(view.kd.at(x, y)), received(view.light.at(x, y)), rgb(view.rgb.at(x, y));
+        ASSERT_LT(off(view.kd.at(x, y), own), 0.02) << x << ' ' << y;
+        ASSERT_LT(glm::length(rgb - kd * received - 0.1 * received), 0.005) << x << ' ' << y;
+    });
+    EXPECT_GT(hits, 0u);
 }
 
 TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {

@@ -156,7 +156,7 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         shadows,
         preferred_map_access(runner_.device().caps(), map),
         incident.has_value(),
-        shares};
+        of_picture};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),

@@ -59,7 +59,7 @@ class ShadingRig {
     SegmentMaterials materials;
     std::optional<reference::GatheredRays> incident;  ///< light from all around of every record that is painted
 
-    bool shares = true;  ///< what records know of the albedo around counts in views
+    bool of_picture = false;  ///< views have the kd that their pictures are made with
 
   private:
     struct Stored {
