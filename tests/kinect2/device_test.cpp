@@ -162,7 +162,7 @@ TEST(Kinect2Device, OverrunIsCountedAndMixesNoFrames) {
     // Until some were lost and some came through: how many, the machine's other work decides.
     const auto shown = [&] { return rig.device->statistics().overruns > 0 && !sequences.empty(); };
     for (int round = 0; round < 6 || (round < 100 && !shown()); ++round) {
-        rig.transport->pass(1800);  // 225 transfers of infrared at once, while 36 may wait
+        rig.transport->pass_asleep(1800);  // 225 transfers of infrared at once, while 36 may wait
         while (rig.device->statistics().transfers + rig.device->statistics().overruns < rig.transport->exchanges()) {
             std::this_thread::sleep_for(100us);
         }

@@ -57,6 +57,14 @@ void SimulatedTransport::pass(uint64_t intervals) {
     for (uint64_t i = 0; i < intervals && sink_; ++i) pass_interval();
 }
 
+void SimulatedTransport::pass_asleep(uint64_t intervals) {
+    asleep_ = true;
+    pass(intervals);
+    asleep_ = false;
+    for (Transfer& transfer : kept_) hand_over(transfer);
+    kept_.clear();
+}
+
 void SimulatedTransport::pass_interval() {
     device_->pass_interval([this](const SentPacket& packet) { fill_infrared(packet); },
                            [this](std::span<const uint8_t> bytes) {
@@ -72,15 +80,22 @@ void SimulatedTransport::fill_infrared(const SentPacket& packet) {
     infrared_.packets[filled_] = {packet.complete, static_cast<uint32_t>(packet.bytes.size())};
     if (++filled_ < infrared_.packets.size()) return;
     filled_ = 0;
-    ++exchanges_;
-    sink_->exchange(infrared_);
+    hand_over(infrared_);
 }
 
 void SimulatedTransport::fill_color(std::span<const uint8_t> bytes) {
     std::ranges::copy(bytes, color_.bytes.begin());
     color_.packets[0] = {true, static_cast<uint32_t>(bytes.size())};
+    hand_over(color_);
+}
+
+void SimulatedTransport::hand_over(Transfer& transfer) {
+    if (asleep_) {
+        kept_.push_back(transfer);
+        return;
+    }
     ++exchanges_;
-    sink_->exchange(color_);
+    sink_->exchange(transfer);
 }
 
 }  // namespace patina::sensor::kinect2::testing

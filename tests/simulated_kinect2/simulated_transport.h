@@ -5,6 +5,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "sensor/kinect2/transport.h"
 #include "tests/simulated_kinect2/simulated_device.h"
@@ -24,6 +25,8 @@ class SimulatedTransport final : public Transport {
 
     /// Lets intervals of 125 us pass.
     void pass(uint64_t intervals);
+    /// As pass(), for an event thread that slept: all transfers are handed over together, when the intervals are over.
+    void pass_asleep(uint64_t intervals);
     /// How many transfers the sink of the present run has had.
     uint64_t exchanges() const { return exchanges_; }
 
@@ -43,6 +46,7 @@ class SimulatedTransport final : public Transport {
     void pass_interval();
     void fill_infrared(const SentPacket& packet);
     void fill_color(std::span<const uint8_t> bytes);
+    void hand_over(Transfer& transfer);
 
     std::shared_ptr<SimulatedDevice> device_;
     Clock clock_;
@@ -50,6 +54,8 @@ class SimulatedTransport final : public Transport {
     TransferSink* sink_ = nullptr;
     Transfer infrared_{StreamKind::kInfrared}, color_{StreamKind::kColor};
     size_t filled_ = 0;  ///< packets of infrared_
+    bool asleep_ = false;
+    std::vector<Transfer> kept_;  ///< while asleep
     bool ended_ = false;
     std::atomic<uint64_t> exchanges_ = 0;
     std::jthread thread_;
