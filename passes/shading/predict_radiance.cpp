@@ -48,6 +48,7 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
     PredictedImages out;
     out.packed = packed;
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
+    out.picture_kd = pass.create("picture_kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});
     out.ks_alpha = pass.create("ks_alpha", {extent, vulkan::Format::kRgba16f});
     out.rgb = pass.create("rgb", {extent, vulkan::Format::kRgba16f});

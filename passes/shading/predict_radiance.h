@@ -37,14 +37,17 @@ struct PackedRecords {
 
 /// What the model looks like. All zero where nothing was hit.
 struct PredictedImages {
-    graph::ImageId kd;     ///< W x H rgba16f: diffuse albedo; a is 1 where it is known, else all is 0
+    graph::ImageId kd;  ///< W x H rgba16f: diffuse albedo; a is 1 where it is known, else all is 0
+    /// W x H rgba16f: the one that rgb is made with, as `kd`; it may be above 1. Where records gathered light, what
+    /// they reflect over that, so that errors of the light cancel out; else `kd`.
+    graph::ImageId picture_kd;
     graph::ImageId label;  ///< W x H r32ui: segment, 0 where none is known
     graph::ImageId
         ks_alpha;        ///< W x H rgba16f: specular albedo and Ward roughness of the segment; 0 without a material
     graph::ImageId rgb;  ///< W x H rgba16f: linear pixel value; a is 1 where kd is known, else all is 0
-    /// W x H rgba16f: what kd multiplies in rgb, the irradiance over pi with shadows and ambient term; a: the part of
-    /// the lamps' light that shadows leave, 0 on surfaces that face none, gpu::kNotMarched where no record around knows
-    /// it; also where kd is not known.
+    /// W x H rgba16f: what picture_kd multiplies in rgb, the irradiance over pi with shadows and ambient term; a: the
+    /// part of the lamps' light that shadows leave, 0 on surfaces that face none, gpu::kNotMarched where no record
+    /// around knows it; also where kd is not known.
     graph::ImageId light;
     PackedRecords packed{};  ///< what it was made from
 };

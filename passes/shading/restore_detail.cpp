@@ -7,10 +7,13 @@ namespace patina {
 
 PredictedImages add_restore_detail(graph::FrameGraph& frame, const PredictedImages& predicted,
                                    const RestoreDetailInputs& inputs) {
-    const Extent2D extent =
-        frame.common_extent({inputs.position_m, inputs.normal, inputs.color, predicted.kd, predicted.rgb});
+    const Extent2D extent = frame.common_extent(
+        {inputs.position_m, inputs.normal, inputs.color, predicted.kd, predicted.picture_kd, predicted.rgb});
     auto pack = frame.compute("shading.pack_detail", spirv::pack_detail);
-    pack.read("color", inputs.color).read("light", predicted.light).read("kd", predicted.kd);
+    pack.read("color", inputs.color)
+        .read("light", predicted.light)
+        .read("kd", predicted.kd)
+        .read("picture_kd", predicted.picture_kd);
     const graph::ImageId detail = pack.create("detail", {extent, vulkan::Format::kRgba32u});
     pack.dispatch_covering(extent);
 

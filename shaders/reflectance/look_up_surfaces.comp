@@ -23,7 +23,7 @@ layout(std430, binding = 7) buffer Gathered { RecordSurroundings gathered[]; };
 layout(push_constant) uniform Push { SurfaceAlbedoParams params; };
 #include "lib/records/reflected_light.glsl"
 
-const float kLightError = 0.15;    // of the light that is gathered, relative
+const float kLightError = 0.3;     // of the light that is gathered, relative
 const float kMissingError = 0.3;   // and where some is missing, as a part of that
 const float kLeastMissing = 0.05;  // of the records around, from which on they show that light is missing
 const float kBrightAlbedo = 0.8;

@@ -28,10 +28,11 @@ layout(push_constant) uniform Push { ReflectanceParams params; };
 #include "lib/records/record_colors.glsl"
 #include "lib/records/record_directions.glsl"
 
-const float kNoise = 0.002;            // of an observed colour, linear: 8-bit sRGB's steps in dark tones
-const float kRelativeNoise = 0.02;     // and that of bright ones, with the camera's own
-const float kHighlightError = 0.5;     // what of a predicted highlight may be wrong
-const float kClippedShare = 1e-3;      // the weight of what is only a lower bound: counts where there is nothing else
+const float kNoise = 0.002;         // of an observed colour, linear: 8-bit sRGB's steps in dark tones
+const float kRelativeNoise = 0.02;  // and that of bright ones, with the camera's own
+const float kHighlightError = 0.5;  // what of a predicted highlight may be wrong
+const float kClippedShare = 1e-3;   // the weight of a lower bound that lies low: counts where there is nothing else
+const float kInfinite = 1e30;
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
@@ -58,11 +59,11 @@ struct Irradiance {
 uint direction_word[kMaxObservations];
 vec3 direction_of[kMaxObservations];  // to the viewer
 float normal_cosine[kMaxObservations];
-vec3 highlight[kMaxObservations];     // at first without ks and what does not depend on the light
-vec3 diffuse[kMaxObservations];       // what is left of the colour
-float brightness[kMaxObservations];   // of that
-float trust[kMaxObservations];        // its inverse variance, relative to one without a highlight; 0: no observation
-float whole_trust[kMaxObservations];  // less where a channel is clipped
+vec3 highlight[kMaxObservations];    // at first without ks and what does not depend on the light
+vec3 diffuse[kMaxObservations];      // what is left of the colour
+float brightness[kMaxObservations];  // of that
+float trust[kMaxObservations];       // its inverse variance, relative to one without a highlight; 0: no observation
+float robust[kMaxObservations];      // the same, less for what is far off the others
 
 // What arrives from all around beside the lamps.
 Irradiance indirect_light(GatheredLight light) {
@@ -134,7 +135,6 @@ void set_trust(uint count, float noise) {
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         const float doubt = mean_of(highlight[k]) * share;
         trust[k] = k < count ? normal_cosine[k] / (1.0 + doubt * doubt) : 0.0;
-        whole_trust[k] = (direction_word[k] & kAnyClipped) != 0u ? kClippedShare * trust[k] : trust[k];
     }
 }
 
@@ -152,7 +152,8 @@ Center find_center(Center center, float noise) {
         float weights = 1e-20, shift = 0.0, spread = 0.0;
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float off = brightness[k] - center.brightness;
-            const float weight = whole_trust[k] * robust_share(off, inverse_scale);
+            const bool bound = (direction_word[k] & kAnyClipped) != 0u && off < 0.0;
+            const float weight = (bound ? kClippedShare : 1.0) * trust[k] * robust_share(off, inverse_scale);
             weights += weight;
             shift += weight * off;
             spread += weight * abs(off);
@@ -176,17 +177,30 @@ struct Estimate {
     float known;    // the share of what was seen that is not clipped
 };
 
-// By channel, as clipping is.
+// By channel, as clipping is. A clipped channel that is brighter than the mean of the others makes it: were it left
+// out, a white sheet of paper would have the colours of the few views in which a channel happens not to be clipped.
 Estimate robust_mean(Center center, float noise) {
     const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
-    vec3 weights = vec3(1e-20), squares = vec3(0.0), mean = vec3(0.0);
+    vec3 weights = vec3(0.0), mean = vec3(0.0);
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
+        brightness[k] -= center.brightness;
+        robust[k] = trust[k] * robust_share(brightness[k], inverse_scale);
+        const vec3 share = robust[k] * vec3(not(observation_clipped(direction_word[k])));
+        weights += share;
+        mean += share * diffuse[k];
+    }
+    const vec3 unclipped_mean = mix(mean / max(weights, 1e-20), vec3(kInfinite), equal(weights, vec3(0.0)));
+    weights = vec3(1e-20);
+    mean = vec3(0.0);
+    vec3 squares = vec3(0.0);
     float whole = 0.0, spread = 0.0, trusted = 1e-20, unclipped = 0.0;
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         trusted += trust[k];
         unclipped += (direction_word[k] & kAnyClipped) != 0u ? 0.0 : trust[k];
-        const float off = brightness[k] - center.brightness;
-        const float weight = trust[k] * robust_share(off, inverse_scale);
-        const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), observation_clipped(direction_word[k]));
+        const float off = brightness[k], weight = robust[k];
+        const uvec3 low =
+            uvec3(observation_clipped(direction_word[k])) & uvec3(lessThanEqual(diffuse[k], unclipped_mean));
+        const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), bvec3(low));
         weights += share;
         squares += share * share;
         mean += share * diffuse[k];

@@ -8,7 +8,8 @@ layout(local_size_x = kRestoreDetailGroup, local_size_y = kRestoreDetailGroup) i
 layout(binding = 0, rgba16f) uniform readonly image2D color;
 layout(binding = 1, rgba16f) uniform readonly image2D light;
 layout(binding = 2, rgba16f) uniform readonly image2D kd;
-layout(binding = 3, rgba32ui) uniform writeonly uimage2D detail;
+layout(binding = 3, rgba16f) uniform readonly image2D picture_kd;
+layout(binding = 4, rgba32ui) uniform writeonly uimage2D detail;
 
 const float kLeastLight = 0.004;  // irradiance over pi: a white surface would be as dark as 8 bits' first step
 
@@ -18,5 +19,7 @@ void main() {
     const vec4 known = imageLoad(kd, pixel), seen = imageLoad(color, pixel), received = imageLoad(light, pixel);
     const bool lit = seen.a > 0.0 && all(greaterThan(received.rgb, vec3(kLeastLight)));
     const vec3 apparent = min(seen.rgb / max(received.rgb, vec3(kLeastLight)), 1e4);
-    imageStore(detail, pixel, pack_detail(Detail(known.rgb, apparent, received.a, lit, known.a > 0.0)));
+    imageStore(
+        detail, pixel,
+        pack_detail(Detail(known.rgb, imageLoad(picture_kd, pixel).rgb, apparent, received.a, lit, known.a > 0.0)));
 }

@@ -32,6 +32,7 @@ layout(binding = 15, rgba16f) uniform writeonly image2D
     light;  // irradiance / pi; a: the part that shadows leave, kNotMarched where it is not known
 layout(std430, binding = 16) readonly buffer Status { RecordStatus status[]; };
 layout(std430, binding = 17) readonly buffer Gathered { RecordSurroundings gathered[]; };
+layout(binding = 18, rgba16f) uniform writeonly image2D picture_kd;  // what light multiplies in rgb
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
@@ -211,7 +212,7 @@ void main() {
     grid_low = view.grid_low.xyz;
     grid_size = view.grid_size.xyz;
     const vec4 hit = imageLoad(position_m, pixel);
-    vec4 known_kd = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
+    vec4 known_kd = vec4(0.0), shaded_with = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
     uint segment = 0u;
     if (hit.w > 0.0) {
         const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, imageLoad(normal, pixel).xyz,
@@ -227,13 +228,15 @@ void main() {
         const bool marched = normalise_shares();
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
         const vec3 of_picture = shaded_kd(own, found);
+        shaded_with = found.known ? vec4(of_picture, 1.0) : vec4(0.0);
         const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, gloss,
                                  indirect_light(marched));
-        known_kd = found.known ? vec4(kOfPicture != 0u ? of_picture : found.kd, 1.0) : vec4(0.0);
+        known_kd = kOfPicture != 0u ? shaded_with : found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, marched ? seen.arrives : kNotMarched);
     }
     imageStore(kd, pixel, known_kd);
+    imageStore(picture_kd, pixel, shaded_with);
     imageStore(label, pixel, uvec4(segment));
     imageStore(ks_alpha, pixel, gloss);
     imageStore(rgb, pixel, shaded);

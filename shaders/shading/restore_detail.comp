@@ -28,12 +28,16 @@ const float kMostBrighter = 4.0;  // than the voxels' kd: what is still brighter
 const float kShading = 0.1;       // relative contrast that normals and light are off by within a voxel,
 const float kHighlight = 0.5;     // and that of what highlights leave in a mean of views, over ks / kd
 
-// The albedo with its detail.
-vec3 restored(ivec2 pixel, vec4 hit, Detail own) {
+struct Albedos {
+    vec3 kd, picture_kd;
+};
+
+// The albedos with their detail.
+Albedos restored(ivec2 pixel, vec4 hit, Detail own) {
     const float reach_m = kReachVox * params.voxel_m;
     const float step_px = max(reach_m * params.focal_px / hit.w / float(kTaps), 1.0);
     const vec3 facing = imageLoad(normal, pixel).xyz;
-    vec3 sum_kd = vec3(0.0), sum_apparent = vec3(0.0);
+    vec3 sum_kd = vec3(0.0), sum_picture_kd = vec3(0.0), sum_apparent = vec3(0.0);
     float least = own.shadow, most = own.shadow, shares = 0.0, sum = 0.0, squares = 0.0;
     for (int y = -kTaps; y <= kTaps; ++y) {
         // Every second one, as on a draughts-board: they tell as much.
@@ -48,6 +52,7 @@ vec3 restored(ivec2 pixel, vec4 hit, Detail own) {
             if (!tap.lit || !tap.known || tap.shadow < 0.0) continue;
             const float share = exp(-2.0 * dot(away_m, away_m) / (reach_m * reach_m));
             sum_kd += share * tap.kd;
+            sum_picture_kd += share * tap.picture_kd;
             sum_apparent += share * tap.apparent;
             const float brightness = mean_of(tap.apparent);
             shares += share;
@@ -57,12 +62,15 @@ vec3 restored(ivec2 pixel, vec4 hit, Detail own) {
             most = max(most, tap.shadow);
         }
     }
-    const vec3 detailed = min(own.apparent / max(sum_apparent, vec3(1e-6)) * sum_kd, kMostBrighter * own.kd);
+    const vec3 detail = own.apparent / max(sum_apparent, vec3(1e-6));
     const float even = 1.0 - smoothstep(kEvenLight, kUnevenLight, most - least);
     // What the contrast owes to paint, if it is as strong as what it may owe to shading and highlights.
     const float contrast2 = max(squares * shares / max(sum * sum, 1e-12) - 1.0, 0.0);
     const float doubt = kShading + kHighlight * mean_of(imageLoad(ks_alpha, pixel).rgb) / max(mean_of(own.kd), 0.01);
-    return mix(own.kd, min(detailed, vec3(1.0)), even * contrast2 / (contrast2 + doubt * doubt));
+    const float counts = even * contrast2 / (contrast2 + doubt * doubt);
+    const vec3 kd = min(min(detail * sum_kd, kMostBrighter * own.kd), vec3(1.0));
+    return Albedos(mix(own.kd, kd, counts),
+                   mix(own.picture_kd, min(detail * sum_picture_kd, kMostBrighter * own.picture_kd), counts));
 }
 
 void main() {
@@ -71,11 +79,12 @@ void main() {
     const vec4 hit = imageLoad(position_m, pixel), shaded = imageLoad(rgb, pixel);
     const Detail own = unpack_detail(imageLoad(detail, pixel));
     const bool lit = hit.w > 0.0 && own.lit, marched = own.shadow >= 0.0;
-    vec4 detailed = vec4(own.kd, own.known ? 1.0 : 0.0);
-    if (lit && !own.known) detailed = vec4(min(own.apparent, vec3(1.0)), 1.0);
-    if (lit && own.known && marched) detailed.rgb = restored(pixel, hit, own);
+    Albedos detailed = Albedos(own.kd, own.picture_kd);
+    if (lit && !own.known) detailed = Albedos(min(own.apparent, vec3(1.0)), min(own.apparent, vec3(1.0)));
+    if (lit && own.known && marched) detailed = restored(pixel, hit, own);
     const vec3 received = imageLoad(light, pixel).rgb;
-    const vec3 relit = shaded.rgb + (detailed.rgb - own.kd) * received;
-    imageStore(detailed_kd, pixel, detailed);
-    imageStore(detailed_rgb, pixel, vec4(lit && !marched ? own.apparent * received : relit, detailed.a));
+    const vec3 relit = shaded.rgb + (detailed.picture_kd - own.picture_kd) * received;
+    const float known = own.known || lit ? 1.0 : 0.0;
+    imageStore(detailed_kd, pixel, vec4(detailed.kd, known));
+    imageStore(detailed_rgb, pixel, vec4(lit && !marched ? own.apparent * received : relit, known));
 }

@@ -152,7 +152,7 @@ TEST_F(RefineAlbedoTest, AMaterialThatIsNotKnownLeavesItsHighlightInKd) {
     EXPECT_LT(max_of(glm::abs(refine(record).kd - (material.kd + 0.5 * highlight / irradiance))), 1.5 * kPacking);
 }
 
-TEST_F(RefineAlbedoTest, ClippedChannelsCountOnlyWhereThereIsNothingElse) {
+TEST_F(RefineAlbedoTest, DarkClippedChannelsCountOnlyWhereThereIsNothingElse) {
     const Ward material{{0.6, 0.5, 0.4}, {}, 1};
     FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
     observe(record, material);
@@ -171,6 +171,16 @@ TEST_F(RefineAlbedoTest, ClippedChannelsCountOnlyWhereThereIsNothingElse) {
     EXPECT_LT(max_of(glm::abs(refined.kd - material.kd * glm::dvec3(0.6, 1, 1))), 1.5 * kPacking);
     EXPECT_LT(refined.certainty.r, 0.3);
     EXPECT_GT(refined.certainty.g, 0.9);
+}
+
+// White paper that is too bright for all pictures but one, in which it is blurred with what is beside it.
+TEST_F(RefineAlbedoTest, ClippedChannelsThatAreBrighterThanTheOthersCount) {
+    const Ward material{{0.9, 0.8, 0.7}, {}, 1};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material);
+    for (size_t k = 1; k < record.observations.size(); ++k) record.observations[k].clipped = {true, false, false};
+    record.observations[0].rgb.r *= 0.9f;
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking);
 }
 
 TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {

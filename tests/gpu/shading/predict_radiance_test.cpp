@@ -168,7 +168,6 @@ TEST_F(PredictRadiance, TheAlbedoAroundOutweighsWhatARecordIsNotSureOf) {
 TEST_F(PredictRadiance, APictureIsItsKdTimesLightAndHighlights) {
     const glm::dvec3 own(1.5, 0.5, 2.5), light(0.25, 0.5, 0.125);
     ShadingRig rig = this->rig(wall_, 0.02f);
-    rig.of_picture = true;
     rig.incident = reference::GatheredRays{light, 64, 0};
     rig.lights.set({}, light);
     rig.materials.set(3, glm::vec3(0.1f), 0.25f);
@@ -178,13 +177,17 @@ TEST_F(PredictRadiance, APictureIsItsKdTimesLightAndHighlights) {
         record.around = glm::dvec3(0.5);
         return record;
     });
-    const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
-    const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
-        const glm::dvec3 kd(view.kd.at(x, y)), received(view.light.at(x, y)), rgb(view.rgb.at(x, y));
-        ASSERT_LT(off(view.kd.at(x, y), own), 0.02) << x << ' ' << y;
-        ASSERT_LT(glm::length(rgb - kd * received - 0.1 * received), 0.005) << x << ' ' << y;
-    });
-    EXPECT_GT(hits, 0u);
+    for (const bool of_picture : {false, true}) {
+        rig.of_picture = of_picture;
+        const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+        const size_t hits = for_each_hit(view, 0, [&](uint32_t x, uint32_t y) {
+            const glm::dvec3 kd(view.picture_kd.at(x, y)), received(view.light.at(x, y)), rgb(view.rgb.at(x, y));
+            ASSERT_LT(off(view.picture_kd.at(x, y), own), 0.02) << x << ' ' << y;
+            ASSERT_EQ(view.kd.at(x, y) == view.picture_kd.at(x, y), of_picture) << "else around counts";
+            ASSERT_LT(glm::length(rgb - kd * received - 0.1 * received), 0.005) << x << ' ' << y;
+        });
+        EXPECT_GT(hits, 0u);
+    }
 }
 
 TEST_F(PredictRadiance, AKdThatVariesLinearlyDoesSoBetweenTheRecords) {

@@ -31,7 +31,7 @@ DetailView striped_wall(Extent2D extent) {
     view.position_m = view.color = view.rgb = Image<glm::dvec4>(extent);
     view.normal = Image<glm::dvec4>(extent, {0, 0, -1, 0});
     view.light = Image<glm::dvec4>(extent, {light, 1});
-    view.kd = Image<glm::dvec4>(extent, {kd, 1});
+    view.kd = view.picture_kd = Image<glm::dvec4>(extent, {kd, 1});
     view.ks_alpha = Image<glm::dvec4>(extent, {0, 0, 0, 0});
     for (uint32_t y = 0; y < extent.height; ++y) {
         for (uint32_t x = 0; x < extent.width; ++x) {
@@ -61,6 +61,7 @@ class RestoreDetail : public GpuTest {
                                                      std::as_bytes(std::span(positions)));
         PredictedImages predicted;
         predicted.kd = halves("kd", view.kd);
+        predicted.picture_kd = halves("picture_kd", view.picture_kd);
         predicted.rgb = halves("rgb", view.rgb);
         predicted.light = halves("light", view.light);
         predicted.ks_alpha = halves("ks_alpha", view.ks_alpha);
@@ -100,6 +101,24 @@ TEST_F(RestoreDetail, PaintFinerThanAVoxelComesBack) {
     }
 }
 
+TEST_F(RestoreDetail, PicturesKeepTheAlbedoThatTheyAreMadeWith) {
+    DetailView view =
+        striped_wall(kExtent);  // kd is right; less light arrives than is known, so that pictures have less
+    for (uint32_t y = 0; y < kExtent.height; ++y) {
+        for (uint32_t x = 0; x < kExtent.width; ++x) {
+            for (Image<glm::dvec4>* of_half : {&view.picture_kd, &view.rgb, &view.color}) {
+                glm::dvec4& v = of_half->at(x, y);
+                v = {0.5 * glm::dvec3(v), 1};
+            }
+        }
+    }
+    const Result got = restore(view);
+    for (uint32_t x = 8; x + 8 < kExtent.width; ++x) {
+        EXPECT_LT(off(got.kd.at(x, 20), paint(x)), 0.12) << x;
+        EXPECT_LT(off(got.rgb.at(x, 20), glm::dvec3(view.color.at(x, 20))), 0.05) << x;
+    }
+}
+
 TEST_F(RestoreDetail, AShadowsBorderIsNotTakenForPaint) {
     DetailView view = striped_wall(kExtent);
     for (uint32_t y = 0; y < kExtent.height; ++y) {
@@ -115,7 +134,7 @@ TEST_F(RestoreDetail, AShadowsBorderIsNotTakenForPaint) {
 
 TEST_F(RestoreDetail, WhatIsNotKnownYetTakesItsColourOverTheLight) {
     DetailView view = striped_wall(kExtent);
-    view.kd = view.rgb = Image<glm::dvec4>(kExtent, {0, 0, 0, 0});
+    view.kd = view.picture_kd = view.rgb = Image<glm::dvec4>(kExtent, {0, 0, 0, 0});
     const Result got = restore(view);
     EXPECT_LT(off(got.kd.at(20, 20), paint(20)), 2e-3);
     EXPECT_EQ(got.kd.at(20, 20).a, 1.0f);
@@ -153,11 +172,17 @@ TEST_F(RestoreDetail, AgreesWithTheReference) {
             view.color.pixels()[i] = {varied(0, 0.6), any(random) < 0.9 ? 1 : 0};
             view.light.pixels()[i] = {varied(0, 1), any(random) < 0.1 ? -1 : 0.9 + 0.1 * any(random)};
             view.kd.pixels()[i] = any(random) < 0.9 ? glm::dvec4(varied(0.1, 0.7), 1) : glm::dvec4(0);
+            view.picture_kd.pixels()[i] = view.kd.pixels()[i] * glm::dvec4(varied(0.5, 1.5), 1);
             view.rgb.pixels()[i] = {varied(0.5, 1), view.kd.pixels()[i].a};
             view.ks_alpha.pixels()[i] = {varied(0, 0.1), 0.2};
             if (any(random) < 0.05) view.position_m.pixels()[i] = glm::dvec4(0);
         }
-        for (Image<glm::dvec4>* image : {&view.color, &view.light, &view.kd, &view.rgb, &view.ks_alpha}) {
+        for (Image<glm::dvec4>* image : {&view.kd, &view.picture_kd}) {
+            for (glm::dvec4& v : image->pixels()) {
+                v = glm::dvec4(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(glm::vec3(v))), v.a);
+            }
+        }
+        for (Image<glm::dvec4>* image : {&view.color, &view.light, &view.rgb, &view.ks_alpha}) {
             for (glm::dvec4& v : image->pixels()) v = glm::unpackHalf4x16(glm::packHalf4x16(glm::vec4(v)));
         }
         const Result got = restore(view);

@@ -160,9 +160,9 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
-                          kd = frame.read_back(predicted.kd), label = frame.read_back(predicted.label),
-                          gloss = frame.read_back(predicted.ks_alpha), rgb = frame.read_back(predicted.rgb),
-                          light = frame.read_back(predicted.light),
+                          kd = frame.read_back(predicted.kd), picture_kd = frame.read_back(predicted.picture_kd),
+                          label = frame.read_back(predicted.label), gloss = frame.read_back(predicted.ks_alpha),
+                          rgb = frame.read_back(predicted.rgb), light = frame.read_back(predicted.light),
                           coverage = frame.read_back(
                               add_sample_coverage(frame, observations_.map(), observations_.map().import(frame),
                                                   {model.position_m, visible.view, visible.grid, predicted.packed}));
@@ -170,7 +170,7 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
     runner_.wait();
     return {position.image<glm::vec4>(),       widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
             widen(gloss.image<uint64_t>()),    widen(rgb.image<uint64_t>()),    widen(light.image<uint64_t>()),
-            widen(coverage.image<uint64_t>()), label.image<uint32_t>()};
+            widen(coverage.image<uint64_t>()), label.image<uint32_t>(),         widen(picture_kd.image<uint64_t>())};
 }
 
 std::vector<gpu::SampledReflectance> ShadingRig::sample(const std::vector<glm::vec3>& points_m,

@@ -27,6 +27,7 @@ struct RecordPlace {
 struct ShadedView {
     Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb, light, coverage;
     Image<uint32_t> label;
+    Image<glm::vec4> picture_kd;
 };
 
 /// A model whose geometry and records come from the passes, and whose albedo, visibility and labels are painted on, for

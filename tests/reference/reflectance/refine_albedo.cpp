@@ -1,7 +1,9 @@
 #include "tests/reference/reflectance/refine_albedo.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace patina::reference {
@@ -15,12 +17,12 @@ double mean_of(glm::dvec3 rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
 /// An observation without its highlight.
 struct Rest {
     glm::dvec3 diffuse;
-    glm::dvec3 share;  ///< 1, kClippedShare where clipped
+    std::array<bool, 3> clipped{};
     double trust = 0;
     double robust = 1;
 
     double brightness() const { return mean_of(diffuse); }
-    double whole() const { return std::min({share.r, share.g, share.b}); }
+    bool whole() const { return !clipped[0] && !clipped[1] && !clipped[2]; }
 };
 
 /// Where brightnesses lie, and their weighted mean distance from there.
@@ -41,7 +43,8 @@ Middle reweight(std::vector<Rest>& rests, double noise) {
     for (int i = 0; i < 3; ++i) {
         double weights = 1e-20, sum = 0, spread = 0;
         for (const Rest& rest : rests) {
-            const double weight = rest.trust * rest.whole() * share(rest);
+            const bool counts = rest.whole() || rest.brightness() >= mean;
+            const double weight = rest.trust * (counts ? 1 : kClippedShare) * share(rest);
             weights += weight;
             sum += weight * rest.brightness();
             spread += weight * std::abs(rest.brightness() - mean);
@@ -51,6 +54,17 @@ Middle reweight(std::vector<Rest>& rests, double noise) {
     }
     for (Rest& rest : rests) rest.robust = share(rest);
     return {mean, scale / 1.5};
+}
+
+/// Infinite if a channel is clipped in every observation.
+double mean_of_unclipped(const std::vector<Rest>& rests, int channel) {
+    double sum = 0, weights = 0;
+    for (const Rest& rest : rests) {
+        if (rest.clipped[static_cast<size_t>(channel)]) continue;
+        sum += rest.trust * rest.robust * rest.diffuse[channel];
+        weights += rest.trust * rest.robust;
+    }
+    return weights > 0 ? sum / weights : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -77,8 +91,7 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     std::vector<glm::dvec3> highlights;
     for (const SeenColor& seen : observations) {
         highlights.push_back(shade(gloss, point, lights, glm::dvec3(0), seen.to_viewer));
-        Rest rest{seen.rgb - highlights.back(), glm::dvec3(1)};
-        for (int c = 0; c < 3; ++c) rest.share[c] = seen.clipped[static_cast<size_t>(c)] ? kClippedShare : 1;
+        const Rest rest{seen.rgb - highlights.back(), seen.clipped};
         brightness += rest.brightness() / static_cast<double>(observations.size());
         rests.push_back(rest);
     }
@@ -88,13 +101,6 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         rests[k].trust = glm::dot(observations[k].to_viewer, point.normal) / (1 + doubt * doubt);
     }
     const Middle middle = reweight(rests, noise);
-    double center = 0, center_weight = 0;
-    for (const Rest& rest : rests) {
-        center += rest.trust * rest.robust * rest.whole() * rest.brightness();
-        center_weight += rest.trust * rest.robust * rest.whole();
-    }
-    center /= center_weight;
-
     const double rays = gathered.met + gathered.missed;
     glm::dvec3 around = ambient, around_error(0);
     double unreflected = 1;
@@ -125,13 +131,15 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     for (int c = 0; c < 3; ++c) {
         if (irradiance[c] <= 0.004) continue;
         double weights = 0, squares = 0, sum = 0, spread = 0, robust_weights = 0;
+        const double unclipped_mean = mean_of_unclipped(rests, c);
         for (const Rest& rest : rests) {
-            const double robust = rest.trust * rest.robust, weight = robust * rest.share[c];
+            const bool low = rest.clipped[static_cast<size_t>(c)] && rest.diffuse[c] <= unclipped_mean;
+            const double robust = rest.trust * rest.robust, weight = robust * (low ? kClippedShare : 1);
             weights += weight;
             squares += weight * weight;
             sum += weight * rest.diffuse[c];
             robust_weights += robust;
-            spread += robust * std::pow(rest.brightness() - center, 2);
+            spread += robust * std::pow(rest.brightness() - middle.mean, 2);
         }
         double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
         variance *= 1 - mirror + mirror * unreflected * unreflected;

@@ -117,7 +117,7 @@ std::vector<glm::dvec3> surface_albedo(const std::vector<ToldAlbedo>& records) {
         const Mean alike = interpolated(sums, place.tint, {kTint, 0, 0, static_cast<int>(record.label), 0, 0, 0}, 1);
         for (int c = 0; c < 3; ++c) {
             const double told = impossible ? record.raw_kd[c] : std::min(look.reflected[c] / look.light[c], 1.0);
-            const double near = told / more, deviation = (0.15 + 0.3 * (more - 1)) * near + 0.015;
+            const double near = told / more, deviation = (0.3 + 0.3 * (more - 1)) * near + 0.015;
             const double own = 1 / (deviation * deviation);
             const double weight = record.label != 0 && alike.records >= 3 ? 100 : 0;
             const double segment = weight > 0 ? alike.reflected[c] / alike.light[c] : 0;

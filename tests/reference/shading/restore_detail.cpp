@@ -12,7 +12,7 @@ double mean(glm::dvec3 v) { return (v.x + v.y + v.z) / 3; }
 
 struct Neighbour {
     double share;
-    glm::dvec3 kd, apparent;
+    glm::dvec3 kd, picture_kd, apparent;
     double shadow;
 };
 
@@ -48,34 +48,41 @@ std::vector<Neighbour> neighbours(const DetailView& view, Pixel p) {
             if (there.w <= 0 || glm::length(away) >= 2 * view.voxel_m || off_plane >= view.voxel_m / 2) continue;
             if (!is_lit(view, q) || view.kd.at(q.x, q.y).a == 0 || view.light.at(q.x, q.y).a < 0) continue;
             found.push_back({std::exp(-2 * glm::dot(away, away) / (view.voxel_m * view.voxel_m)),
-                             glm::dvec3(view.kd.at(q.x, q.y)), apparent(view, q), view.light.at(q.x, q.y).a});
+                             glm::dvec3(view.kd.at(q.x, q.y)), glm::dvec3(view.picture_kd.at(q.x, q.y)),
+                             apparent(view, q), view.light.at(q.x, q.y).a});
         }
     }
     return found;
 }
 
-glm::dvec3 restored(const DetailView& view, Pixel p) {
-    const glm::dvec3 known(view.kd.at(p.x, p.y));
-    glm::dvec3 mean_kd(0), mean_apparent(0);
+struct Albedos {
+    glm::dvec3 kd, of_picture;
+};
+
+Albedos restored(const DetailView& view, Pixel p) {
+    const glm::dvec3 known(view.kd.at(p.x, p.y)), of_picture(view.picture_kd.at(p.x, p.y));
+    glm::dvec3 mean_kd(0), mean_picture_kd(0), mean_apparent(0);
     double shares = 0, brightness = 0, variance = 0, least = view.light.at(p.x, p.y).a, most = least;
     const std::vector<Neighbour> around = neighbours(view, p);
     for (const Neighbour& n : around) {
         shares += n.share;
         mean_kd += n.share * n.kd;
+        mean_picture_kd += n.share * n.picture_kd;
         mean_apparent += n.share * n.apparent;
         least = std::min(least, n.shadow);
         most = std::max(most, n.shadow);
     }
-    if (shares == 0) return known;
+    if (shares == 0) return {known, of_picture};
     brightness = mean(mean_apparent) / shares;
     for (const Neighbour& n : around) variance += n.share * std::pow(mean(n.apparent) - brightness, 2) / shares;
     const double contrast2 = variance / (brightness * brightness);
     const double doubt = 0.1 + 0.5 * mean(glm::dvec3(view.ks_alpha.at(p.x, p.y))) / std::max(mean(known), 0.01);
     const double border = std::clamp((most - least - 0.05) / 0.2, 0.0, 1.0);
     const double even = 1 - border * border * (3 - 2 * border);
-    glm::dvec3 detail = apparent(view, p) * mean_kd / glm::max(mean_apparent, 1e-6);
-    detail = glm::min(glm::min(detail, 4.0 * known), 1.0);
-    return glm::mix(known, detail, even * contrast2 / (contrast2 + doubt * doubt));
+    const double counts = even * contrast2 / (contrast2 + doubt * doubt);
+    const glm::dvec3 detail = apparent(view, p) / glm::max(mean_apparent, 1e-6);
+    return {glm::mix(known, glm::min(glm::min(detail * mean_kd, 4.0 * known), 1.0), counts),
+            glm::mix(of_picture, glm::min(detail * mean_picture_kd, 4.0 * of_picture), counts)};
 }
 
 }  // namespace
@@ -86,18 +93,18 @@ Detailed restore_detail(const DetailView& view) {
         for (uint32_t x = 0; x < view.kd.extent().width; ++x) {
             const Pixel p{x, y};
             if (view.position_m.at(x, y).w <= 0 || !is_lit(view, p)) continue;
-            const glm::dvec3 before(view.kd.at(x, y));
+            const glm::dvec3 before(view.picture_kd.at(x, y));
             const bool known = view.kd.at(x, y).a > 0;
             const bool marched = view.light.at(x, y).a >= 0;
-            glm::dvec3 kd = before;
+            Albedos now{glm::dvec3(view.kd.at(x, y)), before};
             if (!known)
-                kd = glm::min(apparent(view, p), 1.0);
+                now.kd = now.of_picture = glm::min(apparent(view, p), 1.0);
             else if (marched)
-                kd = restored(view, p);
-            const glm::dvec3 added = (kd - before) * glm::dvec3(view.light.at(x, y));
+                now = restored(view, p);
+            const glm::dvec3 added = (now.of_picture - before) * glm::dvec3(view.light.at(x, y));
             const glm::dvec3 rgb =
                 glm::dvec3(marched ? view.rgb.at(x, y) : view.color.at(x, y)) + (marched ? added : glm::dvec3(0));
-            result.kd.at(x, y) = glm::dvec4(kd, 1);
+            result.kd.at(x, y) = glm::dvec4(now.kd, 1);
             result.rgb.at(x, y) = glm::dvec4(rgb, 1);
         }
     }

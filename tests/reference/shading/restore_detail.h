@@ -8,7 +8,7 @@ namespace patina::reference {
 
 /// What one camera sees of a model with reflectance, and the settings of the pass.
 struct DetailView {
-    Image<glm::dvec4> position_m, normal, color, light, kd, rgb, ks_alpha;
+    Image<glm::dvec4> position_m, normal, color, light, kd, picture_kd, rgb, ks_alpha;
     double focal_px = 0, voxel_m = 0;
 };
 
