@@ -8,6 +8,7 @@
 #include "reconstruction/segment_intervals.h"
 #include "reconstruction/streaming/map_tiles.h"
 #include "reconstruction/streaming/surface_cells.h"
+#include "reconstruction/texture/split_triangles.h"
 
 namespace patina {
 
@@ -122,12 +123,29 @@ std::vector<TexturePage> Pipeline::bake_texture(const TextureLayout& layout,
                                                 const std::function<void(const TakePicture&)>& give) {
     if (layout.pages.empty()) return {};
     refine_all();
-    TextureBake bake(runner_, stages_, layout);
+    TextureBake bake(runner_, stages_, sampled_between_vertices(layout));
     give([&](const TexturePicture& picture) {
         fusion_.require(picture.color.camera, picture.world_from_camera);
         bake.add(picture);
     });
     return bake.finish();
+}
+
+/// A simplified surface has few vertices, between which its albedo may change.
+TextureLayout Pipeline::sampled_between_vertices(const TextureLayout& layout) {
+    TextureLayout fine{layout.texel_m, layout.pages, {}, layout.boxes};
+    for (const TexturedSurface& piece : layout.pieces) {
+        if (piece.reflectance.kd.empty() || !stages_.reflectance) {
+            fine.pieces.push_back(piece);
+            continue;
+        }
+        const double record_m = double{stages_.reflectance->observations().settings().voxel_m};
+        TexturedSurface& split = fine.pieces.emplace_back(with_short_edges(piece, record_m));
+        const MeshReflectance sampled = sample_part_by_part(split.mesh);
+        split.reflectance.kd = sampled.kd;
+        split.reflectance.labels = sampled.labels;
+    }
+    return fine;
 }
 
 void Pipeline::refine_all() {

@@ -148,6 +148,7 @@ class Pipeline {
   private:
     void fuse_waiting();
     MeshReflectance sample_part_by_part(const Mesh& mesh);
+    TextureLayout sampled_between_vertices(const TextureLayout& layout);
 
     graph::Runner runner_;
     Stages stages_;

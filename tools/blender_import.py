@@ -1,14 +1,17 @@
 """Opens a run's scene.glb in Blender, ready to render with Cycles:
 
-  blender --python tools/blender_import.py -- RUN [--pose N] [--render OUT.png]
+  blender --python tools/blender_import.py -- RUN [--pose N] [--render OUT.png] [--plain] [--bounces N]
 
 Replaces all objects of the open file. Sets what the importer gets wrong: materials, brightness and radius of lamps,
 bulbs, ambient light, colour management. --pose places the camera at pose N of RUN/trajectory.txt, from 0. --render
-writes a picture of the recording's size; add -b before --python to do without a window. docs/guide/blender.md has the
-same by hand.
+writes a picture of the recording's size; add -b before --python to do without a window. --plain leaves materials and
+lamps as Blender's importer makes them, and sets exposure, colours and ambient light alone. --bounces is how often light is reflected on its way, 0 as in Patina's
+re-rendering. docs/guide/blender.md has
+the same by hand.
 """
 import argparse
 import json
+import math
 import pathlib
 import struct
 import sys
@@ -17,6 +20,7 @@ import bpy
 import mathutils
 import numpy
 
+LUMENS_PER_WATT = 683  # as the importer has it
 POINT_LAMP_RADIUS_M = 0.01  # of lamps whose radius is unknown
 Z_UP_FROM_Y_UP = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
 CAMERA_AXES = mathutils.Matrix.Diagonal((1, -1, -1, 1))  # Blender's cameras look along -z with y up
@@ -28,16 +32,23 @@ def description_of(path):
     return json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])
 
 
-def import_scene(path):
+def import_scene(path, plain):
     """Returns the root object, whose children are in the recording's world."""
     numpy.bool = bool  # the importer of Debian 12's Blender 3.4 uses this name, which its NumPy 1.24 no longer has
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     for material in list(bpy.data.materials):
         bpy.data.materials.remove(material)
+    if plain:
+        bpy.ops.import_scene.gltf(filepath=str(path))
+        return root_object()
     # Unitless: a lamp of intensity I gives a white diffuse surface at distance r the value I / (pi r^2), as in Patina
     # once set_lamps() has brought candela back to pixel values.
     bpy.ops.import_scene.gltf(filepath=str(path), convert_lighting_mode="COMPAT")
+    return root_object()
+
+
+def root_object():
     return next(thing for thing in bpy.data.objects if thing.parent is None)
 
 
@@ -96,10 +107,10 @@ def set_lamps(things, candela_per_intensity):
             bulb.visible_shadow = False
 
 
-def set_world(scene, ambient):
+def set_world(scene, ambient, strength):
     background = scene.world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (*ambient, 1)
-    background.inputs["Strength"].default_value = 1
+    background.inputs["Strength"].default_value = strength
 
 
 def add_camera(scene, root, pose, camera):
@@ -119,10 +130,12 @@ def add_camera(scene, root, pose, camera):
     scene.render.resolution_x, scene.render.resolution_y = camera["width"], camera["height"]
 
 
-def set_render(scene):
+def set_render(scene, bounces):
     scene.view_settings.view_transform = "Standard"
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 64
+    if bounces is not None:
+        scene.cycles.max_bounces = bounces
     scene.cycles.use_denoising = False  # Debian builds Blender without OpenImageDenoise
 
 
@@ -131,6 +144,8 @@ def arguments():
     parser.add_argument("run", type=pathlib.Path)
     parser.add_argument("--pose", type=int, default=0)
     parser.add_argument("--render", type=pathlib.Path)
+    parser.add_argument("--plain", action="store_true")
+    parser.add_argument("--bounces", type=int)
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
 
 
@@ -140,18 +155,22 @@ def main():
         sys.exit("tools/blender_import.py sets what Blender 3.4's importer makes; this is " + bpy.app.version_string)
     scene = bpy.context.scene
     description = description_of(given.run / "scene.glb")
-    root = import_scene(given.run / "scene.glb")
-    for material in description.get("materials", []):
-        if material["name"] in bpy.data.materials:
-            set_material(bpy.data.materials[material["name"]], material)
+    candela = description["scenes"][0].get("extras", {}).get("photometric", {}).get("candela_per_intensity", 1)
+    root = import_scene(given.run / "scene.glb", given.plain)
     bpy.context.view_layer.update()  # of matrix_world
-    photometric = description["scenes"][0].get("extras", {}).get("photometric", {})
-    set_lamps(list(bpy.data.objects), photometric.get("candela_per_intensity", 1))
+    if given.plain:
+        scene.view_settings.exposure = math.log2(LUMENS_PER_WATT / candela)
+    else:
+        for material in description.get("materials", []):
+            if material["name"] in bpy.data.materials:
+                set_material(bpy.data.materials[material["name"]], material)
+        set_lamps(list(bpy.data.objects), candela)
     lights = given.run / "lights.json"
-    set_world(scene, json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0))
+    ambient = json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0)
+    set_world(scene, ambient, candela / LUMENS_PER_WATT if given.plain else 1)
     poses = [line for line in (given.run / "trajectory.txt").read_text().splitlines() if not line.startswith("#")]
     add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["depth"])  # whose poses they are
-    set_render(scene)
+    set_render(scene, given.bounces)
     if given.render:
         scene.render.filepath = str(given.render.absolute())
         bpy.ops.render.render(write_still=True)

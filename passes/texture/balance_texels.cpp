@@ -7,6 +7,10 @@
 
 namespace patina {
 
+namespace {
+constexpr float kMostFactor = 4.0f;
+}
+
 glm::uvec2 blocks_of(Extent2D page) {
     return (glm::uvec2(page.width, page.height) + gpu::kTextureBlock - 1u) / gpu::kTextureBlock;
 }
@@ -23,14 +27,16 @@ graph::BufferId add_average_texels(graph::FrameGraph& frame, const TextureBand& 
     return averaged;
 }
 
-TextureBalance add_balance_blocks(graph::FrameGraph& frame, graph::BufferId blocks, Extent2D page, double texel_m) {
+TextureBalance add_balance_blocks(graph::FrameGraph& frame, graph::BufferId blocks, Extent2D page, double texel_m,
+                                  bool known) {
     const glm::uvec2 count = blocks_of(page);
     const double block_m = texel_m * gpu::kTextureBlock;
     const auto stride = static_cast<uint32_t>(std::max(std::lround(kBalanceReach_m / gpu::kBalanceTaps / block_m), 1L));
     auto pass = frame.compute("texture.balance_blocks", spirv::balance_blocks);
     pass.read("Blocks", blocks);
     const graph::BufferId balance = pass.create("Balance", uint64_t{count.x} * count.y * sizeof(glm::vec4));
-    pass.push(gpu::BalanceBlocksParams{count, stride, static_cast<float>(kBalanceReach_m)});
+    pass.push(gpu::BalanceBlocksParams{count, stride, static_cast<float>(kBalanceReach_m), known ? kMostFactor : 1.0f,
+                                       0, 0, 0});
     pass.dispatch_covering(Extent2D{count.x, count.y});
     return {blocks, balance};
 }

@@ -35,6 +35,7 @@ void copy_rows(const TextureBand& band, std::span<const uint32_t> words, Texture
 
 TextureBake::TextureBake(graph::Runner& runner, Stages& stages, const TextureLayout& layout)
     : runner_(runner), stages_(stages), pages_(layout.pages), texel_m_(layout.texel_m) {
+    for (const TexturedSurface& piece : layout.pieces) known_ = known_ || !piece.reflectance.kd.empty();
     for (uint32_t page = 0; page < pages_.size(); ++page) {
         const Extent2D extent = pages_[page];
         const uint32_t most = TextureBand::most_rows(extent.width);
@@ -102,7 +103,7 @@ TexturePage TextureBake::finish_page(uint32_t number) {
         graph.fill(graph.create_buffer("texture blocks", uint64_t{count.x} * count.y * sizeof(gpu::TextureBlock)), 0);
     for (const TextureBand& band : bands_)
         if (band.page() == number) blocks = add_average_texels(graph, band, band.import(graph), blocks, extent);
-    const TextureBalance balance = add_balance_blocks(graph, blocks, extent, texel_m_);
+    const TextureBalance balance = add_balance_blocks(graph, blocks, extent, texel_m_, known_);
     std::vector<std::pair<const TextureBand*, graph::Readback>> reads;
     for (const TextureBand& band : bands_) {
         if (band.page() != number) continue;

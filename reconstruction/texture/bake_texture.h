@@ -38,6 +38,7 @@ class TextureBake {
     Stages& stages_;
     std::vector<Extent2D> pages_;
     double texel_m_;
+    bool known_ = false;  ///< records know what the surface reflects
     std::vector<TextureBand> bands_;
 };
 

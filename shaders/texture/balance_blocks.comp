@@ -11,7 +11,6 @@ layout(push_constant) uniform Push { BalanceBlocksParams params; };
 
 const int kTaps = int(kBalanceTaps);
 const float kDarkest = 0.01;  // added to both means: what is black says nothing of a factor
-const float kMostFactor = 4.0;
 
 void main() {
     const uvec2 block = gl_GlobalInvocationID.xy;
@@ -38,5 +37,5 @@ void main() {
         }
     }
     const vec3 factor = (known / shares + kDarkest) / (seen / shares + kDarkest);
-    balance[own] = vec4(clamp(factor, 1.0 / kMostFactor, kMostFactor), 1.0);
+    balance[own] = vec4(clamp(factor, 1.0 / params.most_factor, params.most_factor), 1.0);
 }

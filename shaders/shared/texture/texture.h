@@ -64,6 +64,10 @@ struct BalanceBlocksParams {
     uvec2 blocks;   // of the page
     uint stride;    // blocks from one tap to the next
     float reach_m;  // of the taps: what is farther away is another surface
+    float most_factor;
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 struct FinishTexelsParams {

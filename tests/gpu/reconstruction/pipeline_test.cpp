@@ -152,6 +152,38 @@ TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
 }
 
+// A simplified surface: two triangles of a floor, whose corners lie where nothing is known of it.
+TEST_F(PipelineTest, TexturesHoldWhatRecordsKnowBetweenVertices) {
+    constexpr uint32_t kFrames = 4;
+    const LabelledCubes cubes(device(), kFrames);
+    Pipeline pipeline(device(), small_settings_with_reflectance());
+    cubes.prepare(pipeline);
+    for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
+    pipeline.refine_all();
+    const ViewReadback pending = pipeline.view(cubes.info.color, *cubes.frames.back().world_from_camera);
+    pipeline.wait();
+    const ModelView view = pending.get();
+    TexturedSurface quad;
+    for (const glm::uvec2 pixel : {glm::uvec2{60, 180}, {190, 180}, {190, 200}, {60, 200}}) {
+        ASSERT_EQ(cubes.seen.object_id.at(pixel.x, pixel.y), 1u) << "the floor";
+        quad.mesh.positions_m.emplace_back(view.position_m.at(pixel.x, pixel.y));
+        quad.mesh.normals.emplace_back(0, -1, 0);
+        quad.reflectance.kd.emplace_back(0.9, 0.1, 0.9, 1);
+        quad.reflectance.labels.push_back(1);
+        quad.pages.push_back(0);
+    }
+    quad.mesh.colors.resize(4);
+    quad.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    quad.place_px = {{0, 0}, {64, 0}, {64, 64}, {0, 64}};
+    const TextureLayout layout{0.01, {{64, 64}}, {quad}, {}};
+    const std::vector<TexturePage> pages = pipeline.bake_texture(layout, [](const Pipeline::TakePicture&) {});
+    ASSERT_EQ(pages.size(), 1u);
+    const glm::vec3 floor(cubes.seen.kd.at(60, 180));
+    for (const glm::uvec2 texel : {glm::uvec2{8, 8}, {32, 20}, {50, 55}}) {
+        EXPECT_LT(glm::length(pages[0].kd.at(texel.x, texel.y) - floor), 0.06f) << texel.x << ' ' << texel.y;
+    }
+}
+
 // What records hear of each other's albedo depends on when views are cast; tracking may not.
 TEST_F(PipelineTest, CastingViewsChangesNoPose) {
     const LabelledCubes cubes(device(), 6);
