@@ -1,6 +1,7 @@
 #include "tools/report/report.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "export/html.h"
 #include "tests/export/full_summary.h"
@@ -57,6 +58,20 @@ TEST(Report, SaysWhatTheRunDid) {
     EXPECT_THAT(html, HasSubstr("128.0 MiB"));
     EXPECT_THAT(html, HasSubstr("frame-000017.color.png is truncated"));
     EXPECT_THAT(html, HasSubstr("&quot;voxel_mm&quot;: 5"));
+}
+
+TEST(Report, NamesTheDetailAndCountsFramesThatRepeat) {
+    RunSummary summary = test::full_summary();
+    summary.detail = {{"level", "fine"}, {"because", "the depth is < 1 m"}};
+    summary.frames.used = 281;
+    summary.frames.repeated = 17;
+    const std::string html = report_html(summary, {});
+    EXPECT_THAT(html, HasSubstr("fine, since the depth is &lt; 1 m"));
+    EXPECT_THAT(html, HasSubstr("Frames that repeat the one before</dt><dd>17"));
+    EXPECT_THAT(html, HasSubstr("281 of 283 frames were used."));
+    const auto json = nlohmann::json::parse(run_json(summary));
+    EXPECT_EQ(json["detail"]["level"], "fine");
+    EXPECT_EQ(json["frames"]["repeated"], 17);
 }
 
 TEST(Report, WhatIsIncompleteComesFirst) {
@@ -150,6 +165,8 @@ TEST(Report, LeavesOutWhatThereIsNot) {
         EXPECT_THAT(html, Not(HasSubstr(absent)));
     }
     EXPECT_THAT(html, HasSubstr("0 of 0"));
+    EXPECT_THAT(html, Not(HasSubstr("repeat")));
+    EXPECT_THAT(html, Not(HasSubstr("<dt>Detail")));
 }
 
 }  // namespace
