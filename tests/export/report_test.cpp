@@ -153,6 +153,23 @@ TEST(Report, NeedsNoOtherFileAndNoNetwork) {
     }
 }
 
+TEST(Report, LaysRecordedPicturesOverTheirRendering) {
+    const std::vector<PicturePair> pairs = {{"frame <3>", {80, 60}, "recorded", "rendered"},
+                                            {"frame 9", {60, 80}, "recorded", "rendered"}};
+    const std::string html = report_html(test::full_summary(), {}, nullptr, pairs);
+    EXPECT_EQ(count_of(html, "<input type='range'"), 2u);
+    EXPECT_EQ(count_of(html, "<input type='radio'"), 2u);
+    EXPECT_EQ(count_of(html, " checked>"), 1u) << "one shows";
+    EXPECT_EQ(count_of(html, "data:image/jpeg;base64," + base64("recorded")), 2u);
+    EXPECT_EQ(count_of(html, "data:image/jpeg;base64," + base64("rendered")), 2u);
+    EXPECT_THAT(html, HasSubstr("aria-label=\"frame &lt;3&gt;: share of the recorded picture\""));
+    EXPECT_THAT(html, HasSubstr("aspect-ratio: 1.3333"));
+    EXPECT_THAT(html, HasSubstr("#pair1:checked ~ figure:nth-of-type(2)"));
+    for (const char* outside : {"http:", "https:", "url(", "@import", "<script", "<link"})
+        EXPECT_THAT(html, Not(HasSubstr(outside)));
+    EXPECT_THAT(report(), Not(HasSubstr("re-rendering"))) << "where there is no pair";
+}
+
 TEST(Report, SuitsDarkThemesAndPaper) {
     EXPECT_THAT(report(), HasSubstr("@media (prefers-color-scheme: dark)"));
     EXPECT_THAT(report(), HasSubstr("@media print"));

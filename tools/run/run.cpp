@@ -363,7 +363,8 @@ class Run {
     void write_report(const RunSummary& summary) {
         std::optional<ReportScene> scene;
         if (scene_) attempt("the scene in report.html", [&] { scene = scene_->report_scene(folder_); });
-        folder_.write("report.html", report_html(summary, dumps_.previews(), scene ? &*scene : nullptr));
+        folder_.write("report.html",
+                      report_html(summary, dumps_.previews(), scene ? &*scene : nullptr, dumps_.pairs()));
     }
 
     /// Results without run.json cannot be put in place: they stay under another name.
