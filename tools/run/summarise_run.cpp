@@ -132,6 +132,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"degenerate triangles left out", scene.degenerate_triangles},
                       {"triangles of stray parts left out", scene.loose_triangles},
                       {"triangles collapsed", scene.collapsed_triangles},
+                      {"holes closed", scene.closed_holes},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"pages of the texture", scene.texture_pages},
                       {"texels that a picture showed", scene.seen_texels},
