@@ -182,7 +182,7 @@ TEST(Report, LeavesOutWhatThereIsNot) {
         EXPECT_THAT(html, Not(HasSubstr(absent)));
     }
     EXPECT_THAT(html, HasSubstr("0 of 0"));
-    EXPECT_THAT(html, Not(HasSubstr("repeat")));
+    EXPECT_THAT(html, Not(HasSubstr("repeat the one")));
     EXPECT_THAT(html, Not(HasSubstr("<dt>Detail")));
 }
 
