@@ -75,11 +75,12 @@ class TidiedSurface {
         TidyPiece piece = tidied(mesh, reflectance, options_);
         loose_ += piece.loose_triangles;
         collapsed_ += piece.collapsed_triangles;
+        holes_ += piece.closed_holes;
         triangles_ += piece.mesh.triangles.size();
         if (hold_) {
             held.push_back(std::move(piece));
         } else {
-            writer_.add(piece.mesh, &piece.reflectance);
+            writer_.add(piece.mesh, &piece.reflectance, piece.filled);
         }
     }
 
@@ -92,7 +93,7 @@ class TidiedSurface {
             piece.loose_triangles = 0;
             if (most > 0 && part < 1) {
                 const double most_error_m = options_.most_triangles ? kAnyError_m : kMostError_m;
-                piece = reduced(piece.mesh, piece.reflectance, part, options_, most_error_m);
+                piece = reduced(piece, part, options_, most_error_m);
                 collapsed_ += piece.collapsed_triangles;
             }
             leave_out_stray_parts(piece, options_);
@@ -109,6 +110,7 @@ class TidiedSurface {
     void count(GlbSummary& summary) const {
         summary.loose_triangles = loose_;
         summary.collapsed_triangles = collapsed_;
+        summary.closed_holes = holes_;
     }
 
     SurfaceSurvey survey;
@@ -126,7 +128,7 @@ class TidiedSurface {
     GlbWriter& writer_;
     TidyOptions options_;
     bool hold_;
-    uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0;
+    uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0, holes_ = 0;
 };
 
 }  // namespace
@@ -148,7 +150,7 @@ WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene
         writer.add_textured(layout, bake(layout));
     } else {
         for (TidyPiece& piece : surface.held) {
-            writer.add(piece.mesh, &piece.reflectance);
+            writer.add(piece.mesh, &piece.reflectance, piece.filled);
             piece = {};
         }
     }

@@ -4,11 +4,11 @@
 #include <array>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "export/coarser_mesh.h"
 #include "export/mesh_parts.h"
+#include "export/same_positions.h"
 
 namespace patina {
 
@@ -32,14 +32,8 @@ class ConnectedVertices {
     ConnectedVertices(std::span<const glm::vec3> positions_m, std::span<const Triangle> triangles)
         : parent_(positions_m.size()) {
         std::iota(parent_.begin(), parent_.end(), 0u);
-        std::vector<uint32_t> order(parent_);
-        const auto key = [&](uint32_t vertex) {
-            const glm::vec3 p = positions_m[vertex];
-            return std::tuple(p.x, p.y, p.z);
-        };
-        std::ranges::sort(order, {}, key);
-        for (size_t i = 1; i < order.size(); ++i)
-            if (positions_m[order[i]] == positions_m[order[i - 1]]) join(order[i], order[i - 1]);
+        const std::vector<uint32_t> first = first_of_position(positions_m);
+        for (uint32_t i = 0; i < first.size(); ++i) join(i, first[i]);
         for (const Triangle& triangle : triangles) {
             join(triangle[0], triangle[1]);
             join(triangle[1], triangle[2]);
@@ -126,21 +120,44 @@ DividedMesh divided(const Mesh& mesh, std::span<const Triangle> triangles, const
     return all;
 }
 
-/// Of the given triangles of a mesh.
-TidyPiece collapsed(const Mesh& mesh, std::span<const Triangle> triangles, const MeshReflectance& reflectance,
-                    const Coarseness& coarseness) {
-    const DividedMesh all = divided(mesh, triangles, reflectance);
-    const std::vector<float> of_mesh = shades_of(mesh, reflectance);
+/// A copy of an element for each of the vertices; nothing where there are no elements.
+template <class Element>
+void append_copies(std::vector<Element>& elements, std::span<const uint32_t> vertices) {
+    if (elements.empty()) return;
+    for (const uint32_t vertex : vertices) elements.push_back(elements[vertex]);
+}
+
+void close_holes_of(TidyPiece& piece, const TidyOptions& options) {
+    const HoleFilling filling = close_holes(piece.mesh, {options.most_hole_m, options.in_pieces});
+    piece.closed_holes = filling.holes;
+    if (filling.holes == 0) return;
+    const auto first = static_cast<uint32_t>(piece.mesh.positions_m.size());
+    append_copies(piece.mesh.positions_m, filling.vertices);
+    append_copies(piece.mesh.normals, filling.vertices);
+    append_copies(piece.mesh.colors, filling.vertices);
+    append_copies(piece.reflectance.kd, filling.vertices);
+    append_copies(piece.reflectance.labels, filling.vertices);
+    for (const Triangle& t : filling.triangles)
+        piece.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    piece.filled.resize(first, 0);
+    piece.filled.resize(piece.mesh.positions_m.size(), 1);
+}
+
+TidyPiece collapsed(const TidyPiece& whole, const Coarseness& coarseness) {
+    const DividedMesh all = divided(whole.mesh, whole.mesh.triangles, whole.reflectance);
+    const std::vector<float> of_mesh = shades_of(whole.mesh, whole.reflectance);
     std::vector<float> shades;
     for (const uint32_t vertex : all.vertices) shades.push_back(of_mesh[vertex]);
     CoarserMesh fewer = coarser(all.mesh, shades, coarseness);
     TidyPiece piece;
     piece.mesh = std::move(fewer.mesh);
-    piece.reflectance.segments = reflectance.segments;
-    piece.collapsed_triangles = triangles.size() - piece.mesh.triangles.size();
-    if (reflectance.kd.empty()) return piece;
+    piece.reflectance.segments = whole.reflectance.segments;
+    piece.collapsed_triangles = whole.mesh.triangles.size() - piece.mesh.triangles.size();
+    if (!whole.filled.empty())
+        for (const uint32_t vertex : fewer.vertices) piece.filled.push_back(whole.filled[all.vertices[vertex]]);
+    if (whole.reflectance.kd.empty()) return piece;
     for (const uint32_t vertex : fewer.vertices) {
-        piece.reflectance.kd.push_back(reflectance.kd[all.vertices[vertex]]);
+        piece.reflectance.kd.push_back(whole.reflectance.kd[all.vertices[vertex]]);
         piece.reflectance.labels.push_back(all.labels[vertex]);
     }
     return piece;
@@ -155,25 +172,22 @@ void leave_out_stray_parts(TidyPiece& piece, const TidyOptions& options) {
 }
 
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options) {
-    std::vector<Triangle> firm = firm_triangles(mesh, options);
-    const uint64_t loose = mesh.triangles.size() - firm.size();
     TidyPiece piece;
-    if (options.error_m > 0) {
-        piece = collapsed(mesh, firm, reflectance,
-                          {.error_m = options.error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
-    } else {
-        piece = {mesh, reflectance};
-        piece.mesh.triangles = std::move(firm);
-    }
-    piece.loose_triangles = loose;
-    return piece;
+    piece.mesh = mesh;
+    piece.reflectance = reflectance;
+    leave_out_stray_parts(piece, options);
+    close_holes_of(piece, options);
+    if (options.error_m <= 0) return piece;
+    TidyPiece fewer =
+        collapsed(piece, {.error_m = options.error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
+    fewer.loose_triangles = piece.loose_triangles;
+    fewer.closed_holes = piece.closed_holes;
+    return fewer;
 }
 
-TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part, const TidyOptions& options,
-                  double most_error_m) {
+TidyPiece reduced(const TidyPiece& piece, double part, const TidyOptions& options, double most_error_m) {
     return collapsed(
-        mesh, mesh.triangles, reflectance,
-        {.part = part, .error_m = most_error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
+        piece, {.part = part, .error_m = most_error_m, .white_m = options.white_m, .locks_border = options.in_pieces});
 }
 
 }  // namespace patina

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "export/close_holes.h"
 #include "patina/scene.h"
 
 namespace patina {
@@ -13,6 +14,8 @@ struct TidyOptions {
     /// Loose parts whose box has a shorter diagonal than this, or than so large a share of the whole's, are left out:
     /// stray readings, and backs of things that were hardly seen. 0: none are.
     double least_part_m = 0.05, least_part_share = 0.03;
+    /// Holes whose border fits into a box of this diagonal are closed (close_holes.h). 0: none are.
+    double most_hole_m = 0.05;
     /// Edges are collapsed while the surface stays within about this distance of what it was. 0: none are.
     double error_m = 1e-3;
     /// What brightness from black to white counts as height there, so that patterns stay; 0: a texture holds them.
@@ -30,11 +33,13 @@ struct TidyPiece {
     MeshReflectance reflectance;
     uint64_t loose_triangles = 0;      ///< left out
     uint64_t collapsed_triangles = 0;  ///< gone with edges
+    uint64_t closed_holes = 0;
+    std::vector<uint8_t> filled{};  ///< by vertex: 1 where a hole was closed and nothing was measured; empty: nowhere
 };
 
-/// A piece without its stray parts, and with as few triangles as options.error_m asks for. Vertices are some of those
-/// there were. Segments still meet without gaps, each with its own vertices. A part that a piece's end cuts off may go
-/// on in the next piece, and stays.
+/// A piece without its stray parts and small holes, and with as few triangles as options.error_m asks for. Vertices are
+/// some of those there were. Segments still meet without gaps, each with its own vertices. A part that a piece's end
+/// cuts off may go on in the next piece, and stays.
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options);
 
 /// Takes out the triangles of stray parts, such as those that collapsing cut off.
@@ -42,7 +47,7 @@ void leave_out_stray_parts(TidyPiece& piece, const TidyOptions& options);
 
 /// Collapses edges until about `part` of the triangles are left, or the surface would be farther than `most_error_m`
 /// from what it was; those that bend least go first. Of the options, white_m and in_pieces count.
-TidyPiece reduced(const Mesh& mesh, const MeshReflectance& reflectance, double part, const TidyOptions& options = {},
-                  double most_error_m = 1e9);
+/// Counts are those of this step.
+TidyPiece reduced(const TidyPiece& piece, double part, const TidyOptions& options = {}, double most_error_m = 1e9);
 
 }  // namespace patina

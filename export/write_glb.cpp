@@ -71,6 +71,7 @@ struct Piece {
     // Where it lies in a texture; null: in none.
     const std::vector<glm::vec2>* places_px = nullptr;  ///< by vertex
     const std::vector<Extent2D>* pages = nullptr;
+    std::span<const uint8_t> filled{};  ///< by vertex; empty: nothing is
 
     const SegmentReflectance& segment(uint32_t label) const {
         static const SegmentReflectance kNone;
@@ -238,6 +239,13 @@ struct GlbWriter::State {
             arrays.add_vertices("_WARD_ALPHA", std::vector<float>(count, own.gloss->alpha));
     }
 
+    void add_filled(const Piece& piece, const MeshPart& part, tinygltf::Primitive& primitive) {
+        if (piece.filled.empty()) return;
+        std::vector<float> filled;
+        for (const uint32_t vertex : part.vertices) filled.push_back(piece.filled[vertex]);
+        primitive.attributes["_FILLED"] = arrays.add_vertices("_FILLED", filled);
+    }
+
     void set_material(const GltfMaterial& shown, tinygltf::Material& material) {
         tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
         pbr.roughnessFactor = double{shown.roughness};
@@ -290,6 +298,7 @@ void GlbWriter::State::add(const Piece& piece, const MeshPart& part, uint32_t pa
     } else if (page == kNoPage) {
         add_colors(primitive, gathered(piece.mesh.colors, part));
     }
+    if (options.raw_attributes) add_filled(piece, part, primitive);
     primitive.indices = arrays.add_indices(part.triangles, part.vertices.size());
     segment->second.primitives[page].push_back(std::move(primitive));
     summary.vertices += part.vertices.size();
@@ -327,7 +336,8 @@ void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::v
     const std::vector<Triangle> triangles = drawable_triangles(surface.mesh);
     summary.degenerate_triangles += surface.mesh.triangles.size() - triangles.size();
     if (triangles.empty()) return;
-    const Piece piece{surface.mesh, reflectance, unit_normals(surface.mesh, triangles), &surface.place_px, &extents};
+    const Piece piece{surface.mesh,      reflectance, unit_normals(surface.mesh, triangles),
+                      &surface.place_px, &extents,    surface.filled};
     const auto count = static_cast<uint32_t>(extents.size());
     std::vector<uint32_t> places;
     for (size_t i = 0; i < surface.pages.size(); ++i)
@@ -353,14 +363,14 @@ GlbWriter::GlbWriter(const std::filesystem::path& path, const GlbOptions& option
 
 GlbWriter::~GlbWriter() = default;
 
-void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance) {
+void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance, std::span<const uint8_t> filled) {
     if (reflectance && reflectance->kd.empty()) reflectance = nullptr;
     check_mesh(state_->path, mesh);
     if (reflectance) check_reflectance(state_->path, mesh, *reflectance);
     const std::vector<Triangle> triangles = drawable_triangles(mesh);
     state_->summary.degenerate_triangles += mesh.triangles.size() - triangles.size();
     if (triangles.empty()) return;
-    const Piece piece{mesh, reflectance, unit_normals(mesh, triangles)};
+    const Piece piece{mesh, reflectance, unit_normals(mesh, triangles), nullptr, nullptr, filled};
     const std::span<const uint32_t> labels =
         reflectance ? std::span<const uint32_t>(reflectance->labels) : std::span<const uint32_t>();
     for (const MeshPart& part : parts_by_label(static_cast<uint32_t>(mesh.positions_m.size()), triangles, labels))

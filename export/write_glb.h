@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace patina {
 /// How a scene is put into a GLB.
 struct GlbOptions {
     GltfFresnel fresnel = GltfFresnel::kIor;
-    bool raw_attributes = false;  ///< _KD, _KS and _WARD_ALPHA by vertex, too
+    bool raw_attributes = false;  ///< _KD, _KS, _WARD_ALPHA and _FILLED by vertex, too
 };
 
 /// What a scene.glb says besides its mesh.
@@ -45,6 +46,7 @@ struct GlbSummary {
     uint64_t degenerate_triangles = 0;  ///< left out: a repeated vertex, or no area
     uint64_t loose_triangles = 0;       ///< left out before, with stray parts (tidy_surface.h)
     uint64_t collapsed_triangles = 0;   ///< gone before, where fewer show the same
+    uint64_t closed_holes = 0;          ///< before (close_holes.h)
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
     uint64_t texture_pages = 0;
@@ -65,7 +67,7 @@ struct GlbSummary {
 /// "gloss" is "not observed", and they stand in "guess", where there is one. A metal has a base colour instead of
 /// COLOR_0. Where a vertex's albedo is not known it is the segment's mean, without one the fused colour, up to 1. On
 /// request _KD (float32 x 3) is the diffuse albedo; segments with a specular material then have _KS (float32 x 3) and
-/// _WARD_ALPHA (float32), too.
+/// _WARD_ALPHA (float32), too. Where holes were closed, _FILLED (float32) is 1 at what closes them and 0 elsewhere.
 ///
 /// A surface that lies in a texture has TEXCOORD_0 in place of COLOR_0, and its base colour is that of the texture's
 /// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a
@@ -92,7 +94,8 @@ class GlbWriter {
     /// Adds a piece with what its vertices reflect. Null or empty: it has colours alone. Segments of one label are the
     /// same in all pieces. Throws Error for a value that is not finite, an index beyond the vertices, more than a GLB
     /// holds (4 GiB), or a disk that refuses.
-    void add(const Mesh& mesh, const MeshReflectance* reflectance);
+    /// `filled`: by vertex, 1 where a hole was closed; empty: nowhere.
+    void add(const Mesh& mesh, const MeshReflectance* reflectance, std::span<const uint8_t> filled = {});
 
     /// Adds a surface that lies in a texture, and the texture; once, with all that lies in it. Throws Error as add().
     void add_textured(const TextureLayout& layout, const std::vector<TexturePage>& pages);

@@ -55,6 +55,12 @@ Gains to_gains(const std::string& word) {
     return choice<Gains>(word, "gains", {{"auto", Gains::kAuto}, {"on", Gains::kOn}, {"off", Gains::kOff}});
 }
 
+Detail to_detail(const std::string& word) {
+    return choice<Detail>(
+        word, "detail",
+        {{"auto", Detail::kAuto}, {"fine", Detail::kFine}, {"normal", Detail::kNormal}, {"coarse", Detail::kCoarse}});
+}
+
 LightingChoice to_choice(const GivenLighting& given) {
     return std::visit(
         [](const auto& choice) -> LightingChoice {

@@ -15,6 +15,7 @@ Labels to_labels(const std::string& word);
 Materials to_materials(const std::string& word);
 Poses to_poses(const std::string& word);
 Gains to_gains(const std::string& word);
+Detail to_detail(const std::string& word);
 
 /// Takes over the choices that a session and a reconstruction have in common.
 template <class Options>

@@ -34,7 +34,7 @@ std::string text_of(const toml::node& node) {
 
 }  // namespace
 
-void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file) {
+std::vector<std::string> load_settings(ReconstructionSettings& settings, const std::filesystem::path& file) {
     const std::vector<uint8_t> bytes = read_file(file, limits::kSettingsBytes);
     toml::table root;
     try {
@@ -42,18 +42,24 @@ void load_settings(ReconstructionSettings& settings, const std::filesystem::path
     } catch (const toml::parse_error& error) {
         throw Error(file.string(), ", line ", error.source().begin.line, ": ", error.description());
     }
+    std::vector<std::string> keys;
     for (const auto& [table_name, table] : root) {
         const std::string prefix(table_name.str());
         if (!table.is_table()) throw Error(file.string(), ": '", prefix, "' is not a table of settings");
-        for (const auto& [name, node] : *table.as_table())
-            set_setting(settings, prefix + '.' + std::string(name.str()), text_of(node), file.string());
+        for (const auto& [name, node] : *table.as_table()) {
+            keys.push_back(prefix + '.' + std::string(name.str()));
+            set_setting(settings, keys.back(), text_of(node), file.string());
+        }
     }
+    return keys;
 }
 
-void apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where) {
+std::string apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) throw Error(where, ": '", assignment, "' has no '=' between key and value");
-    set_setting(settings, assignment.substr(0, equals), assignment.substr(equals + 1), where);
+    std::string key = assignment.substr(0, equals);
+    set_setting(settings, key, assignment.substr(equals + 1), where);
+    return key;
 }
 
 nlohmann::ordered_json settings_json(const ReconstructionSettings& settings) {

@@ -46,11 +46,11 @@ void set_setting(ReconstructionSettings& settings, const std::string& key, const
 std::optional<std::string> get_setting(const ReconstructionSettings& settings, const std::string& key);
 
 /// Overrides settings from a TOML file, whose tables are the parts of keys before the dot. Throws Error naming the
-/// file, the key, and what is wrong.
-void load_settings(ReconstructionSettings& settings, const std::filesystem::path& file);
+/// file, the key, and what is wrong. Returns the keys.
+std::vector<std::string> load_settings(ReconstructionSettings& settings, const std::filesystem::path& file);
 
-/// Overrides one setting from "fusion.max_depth_m=3". Throws Error as set_setting() does.
-void apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where);
+/// Overrides one setting from "fusion.max_depth_m=3". Throws Error as set_setting() does. Returns the key.
+std::string apply_setting(ReconstructionSettings& settings, const std::string& assignment, const std::string& where);
 
 /// The settings of all parts that are on by their keys, in the order of setting_descriptors().
 nlohmann::ordered_json settings_json(const ReconstructionSettings& settings);

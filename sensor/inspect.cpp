@@ -5,6 +5,7 @@
 
 #include "sensor/plausibility.h"
 #include "sensor/pose_convention.h"
+#include "sensor/repeated.h"
 #include "sensor/report_lines.h"
 
 namespace patina::sensor {
@@ -83,13 +84,6 @@ class PixelSampler {
     glm::dvec3 color_sum_{0};
 };
 
-template <class Picture>
-bool same_pixels(const Picture& a, const Picture& b) {
-    if (a.index() != b.index()) return false;
-    return std::visit(
-        [&](const auto& image) { return image.pixels() == std::get<std::decay_t<decltype(image)>>(b).pixels(); }, a);
-}
-
 void raise(LargestStep& largest, double value, uint32_t frame) {
     if (value > largest.value) largest = {value, frame};
 }
@@ -162,6 +156,8 @@ void Inspector::add(const Reading& reading) {
     if (state_->last) compare_to_last(report, frame, *state_->last);
     state_->last = frame;
 }
+
+const Frame* Inspector::last() const { return state_->last ? &*state_->last : nullptr; }
 
 SequenceReport Inspector::report() const {
     SequenceReport report = state_->report;

@@ -79,6 +79,8 @@ class Inspector {
     Inspector& operator=(Inspector&&) noexcept;
 
     void add(const Reading& reading);
+    /// The last frame that was added; null before the first.
+    const Frame* last() const;
     /// Of the readings so far.
     SequenceReport report() const;
 

@@ -25,6 +25,11 @@ void Ledger::skip(uint32_t index, std::string reason) {
     settle(index);
 }
 
+void Ledger::repeat(uint32_t index) {
+    ++repeated_;
+    settle(index);
+}
+
 void Ledger::settle(uint32_t index) {
     if (index >= settled_.size()) settled_.resize(size_t{index} + 1);
     ++settled_[index];
@@ -36,9 +41,10 @@ std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
                     " were read: ", read_ < frames ? frames - read_ : read_ - frames,
                     read_ < frames ? " missing" : " too many");
     }
-    const size_t settled = used_ + dropped_ + skipped_.size();
+    const size_t settled = used_ + repeated_ + dropped_ + skipped_.size();
     if (settled != read_) {
-        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ", dropped_ + skipped_.size(),
+        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ",
+                    repeated_ + dropped_ + skipped_.size(),
                     " skipped: ", settled < read_ ? read_ - settled : settled - read_,
                     settled < read_ ? " unaccounted for" : " too many");
     }

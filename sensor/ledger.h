@@ -23,13 +23,19 @@ class Ledger {
     /// Notes that a frame could not be used, and why.
     void skip(uint32_t index, std::string reason);
 
+    /// Notes that a frame was left out because it says nothing that the one before did not. Such ones are only counted:
+    /// nothing is missing.
+    void repeat(uint32_t index);
+
     uint32_t read() const { return read_; }
     uint32_t used() const { return used_; }
     uint32_t dropped() const { return dropped_; }
+    uint32_t repeated() const { return repeated_; }
     const std::vector<Skipped>& skipped() const { return skipped_; }  ///< without those that were dropped
 
-    /// Empty when every frame of the sequence was read once, and used, skipped or dropped once; otherwise one sentence
-    /// that says by how much the numbers disagree. Of a source without a known length, what was read is what there was.
+    /// Empty when every frame of the sequence was read once, and used, repeated, skipped or dropped once; otherwise one
+    /// sentence that says by how much the numbers disagree. Of a source without a known length, what was read is what
+    /// there was.
     std::optional<std::string> discrepancy(const SequenceInfo& info) const;
 
   private:
@@ -38,6 +44,7 @@ class Ledger {
     uint32_t read_ = 0;
     uint32_t used_ = 0;
     uint32_t dropped_ = 0;
+    uint32_t repeated_ = 0;
     std::vector<Skipped> skipped_;
     std::vector<uint32_t> settled_;  ///< how often, by frame index
 };

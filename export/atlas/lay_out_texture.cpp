@@ -74,6 +74,7 @@ class SurfaceBuilder {
         surface.mesh.positions_m.push_back(position_m);
         append(surface.mesh.normals, piece_.mesh.normals, vertex);
         append(surface.mesh.colors, piece_.mesh.colors, vertex);
+        append(surface.filled, piece_.filled, vertex);
         append(surface.reflectance.kd, piece_.reflectance.kd, vertex);
         if (!piece_.reflectance.labels.empty()) surface.reflectance.labels.push_back(label);
         const glm::vec2 in_plane_m(glm::dot(position_m, chart.right), glm::dot(position_m, chart.down));

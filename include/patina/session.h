@@ -43,6 +43,16 @@ struct LightsFromMain {};
 using LightingChoice =
     std::variant<LightsBeside, NoLights, LightsFromFile, LightsFromSequence, LightsFromMain, Lighting>;
 
+/// How fine the surface is that a session makes: voxels and the band around the surface in which readings are fused,
+/// observed voxels, and how far readings are used. docs/guide/running.md has the values.
+enum class Detail {
+    kAuto,  ///< by the depth and picture size of a recording's first frames; of other sources kNormal; a map that is
+            ///< gone on from keeps its own
+    kFine,
+    kNormal,
+    kCoarse
+};
+
 /// How far a session is with one of its tasks.
 struct SessionProgress {
     std::string_view task;          ///< "frames", "lamps", "lights"
@@ -76,6 +86,7 @@ struct SessionOptions {
     Materials materials = Materials::kAuto;
     Poses poses = Poses::kAuto;
     Gains gains = Gains::kAuto;
+    Detail detail = Detail::kAuto;  ///< settings that are given go before it
     std::filesystem::path network;  ///< weights; empty: those that ship with Patina
     /// Of everything that is drawn at random, of a synthetic scene noise and samples too; empty: the fixed ones.
     std::optional<uint64_t> seed;

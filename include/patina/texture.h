@@ -17,6 +17,7 @@ struct TexturedSurface {
     MeshReflectance reflectance;      ///< of the vertices; without kd: the mesh has colours alone
     std::vector<glm::vec2> place_px;  ///< by vertex: in its page; the top left texel's centre is (0.5, 0.5)
     std::vector<uint32_t> pages;      ///< by vertex
+    std::vector<uint8_t> filled{};    ///< by vertex: 1 where a hole was closed and nothing was measured; empty: nowhere
 };
 
 /// Texels around a chart that show what is at its border, so that filters find nothing else there.

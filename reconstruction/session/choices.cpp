@@ -46,6 +46,16 @@ std::string name_of(Materials materials) {
     return "";
 }
 
+std::string name_of(Detail detail) {
+    switch (detail) {
+        case Detail::kFine: return "fine";
+        case Detail::kNormal: return "normal";
+        case Detail::kCoarse: return "coarse";
+        case Detail::kAuto: break;
+    }
+    return "auto";
+}
+
 bool uses_given_poses(const SessionOptions& options) { return options.poses != Poses::kTrack; }
 
 std::string hinted(const std::string& sentence, const std::string& hint) {

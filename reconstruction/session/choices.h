@@ -14,6 +14,7 @@ std::string name_of(const LightingChoice& lighting);  ///< "", "none", "self", o
 std::string name_of(Labels labels);
 std::string name_of(Poses poses);
 std::string name_of(Materials materials);  ///< "" where it is open
+std::string name_of(Detail detail);
 
 /// Whether poses of the source are used for more than the first frame's.
 bool uses_given_poses(const SessionOptions& options);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "reconstruction/api/access.h"
+#include "reconstruction/session/detail.h"
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/session_materials.h"
 
@@ -24,6 +25,16 @@ void choose_reflectance(ReconstructionSettings& settings, const Illumination& li
     }
     const bool gathers = info.indirect_light && settings.fusion.color;
     if (settings.reflectance && !gathers) settings.reflectance->refine.gathered_rays = 0;
+}
+
+void choose_detail_of_records(ReconstructionSettings& settings, const SessionOptions& options) {
+    if (!settings.reflectance || options.detail == Detail::kAuto) return;
+    const DetailValues chosen = values_of(options.detail);
+    const auto is_given = [&](const char* key) { return Access::is_given(options.settings, key); };
+    ReflectanceStageSettings& reflectance = *settings.reflectance;
+    if (reflectance.voxel_m == 0 && !is_given("map.voxel_m") && !is_given("reflectance.voxel_m"))
+        reflectance.voxel_m = chosen.record_m;
+    if (!is_given("observe.max_distance_m")) reflectance.observe.max_distance_m = chosen.observe_m;
 }
 
 void choose_labels(ReconstructionSettings& settings, Labels labels) {
@@ -54,6 +65,7 @@ ReconstructionSettings choose_settings(const SessionOptions& options, const Sequ
     if (options.seed) settings.seed = *options.seed;
     choose_gains(settings, options.gains, info);
     choose_reflectance(settings, light, info);
+    choose_detail_of_records(settings, options);
     choose_labels(settings, options.labels);
     choose_poses(settings, options.poses, info);
     set_specular(settings, options, std::move(network));

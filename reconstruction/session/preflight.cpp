@@ -24,6 +24,13 @@ uint32_t frames_to_take(const SessionOptions& options, const SequenceInfo& info)
     return options.frames > 0 ? std::min(all, options.frames) : all;
 }
 
+/// As far as surfaces are fused.
+double reach_of(const SessionOptions& options, Detail level, const SequenceInfo& info) {
+    Settings settings = options.settings;
+    set_detail(settings, level);
+    return std::min<double>(Access::values(settings).fusion.max_depth_m, info.max_metres);
+}
+
 bool has_reading_within(const Frame& frame, double metres_per_unit, double far_m) {
     const auto near_enough = [far_m](auto reading, double metres) {
         const double z = static_cast<double>(reading) * metres;
@@ -57,7 +64,6 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
                      const sensor::MakePayloadDecoder& make_decoder) {
     const SequenceInfo& info = source.info();
     const uint32_t frames = frames_to_take(options, info);
-    const double far_m = std::min<double>(Access::values(options.settings).fusion.max_depth_m, info.max_metres);
     // An inspector spreads its samples over the frames that it expects: one sees the first alone, one all that are read
     // where no reading is near enough.
     SequenceInfo first_info = info, all_info = info;
@@ -65,6 +71,15 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
     all_info.frames = frames;
     sensor::Inspector first(first_info, convention_check(options)), all(all_info, sensor::ConventionCheck::kOff);
     Preflight found;
+    for (uint32_t i = 0; i < *first_info.frames; ++i) {
+        const Reading* reading = source.peek(i);
+        if (!reading) break;
+        first.add(*reading);
+    }
+    const sensor::SequenceReport report = first.report();
+    found.warnings = report.warnings;
+    found.detail = choose_detail(options, info, report.depth);
+    const double far_m = reach_of(options, found.detail.level, info);
     bool any_pose = false, any_frame = false, any_reading = false;
     const auto look_at = [&](const Reading& reading) {
         if (!any_reading) all.add(reading);
@@ -79,7 +94,6 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
     for (uint32_t i = 0; i < *first_info.frames; ++i) {
         const Reading* reading = source.peek(i);
         if (!reading) break;
-        first.add(*reading);
         look_at(*reading);
     }
     const auto goes_on = [&] { return (any_frame && !any_reading) || (info.has_poses && !any_pose); };
@@ -92,7 +106,6 @@ Preflight look_ahead(sensor::LookAheadSource& source, const SessionOptions& opti
         }
     }
     if (any_frame && !any_reading) fail_out_of_reach(options, far_m, all.report());
-    found.warnings = first.report().warnings;
     return found;
 }
 

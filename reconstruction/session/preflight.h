@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "patina/session.h"
+#include "reconstruction/session/detail.h"
 #include "sensor/inspect.h"
 #include "sensor/look_ahead_source.h"
 #include "sensor/recording/recording_source.h"
@@ -16,6 +17,7 @@ namespace patina {
 struct Preflight {
     glm::dvec3 world_offset_m{0};       ///< what is taken from all positions: sensor::world_offset_m
     std::vector<std::string> warnings;  ///< of sensor::inspect, about these frames
+    DetailChoice detail;                ///< what they suggest, where the options leave it open
 };
 
 /// Whether the conventions of a recording's poses matter to a session: all but the first go unused where it tracks.

@@ -17,6 +17,7 @@
 #include "scenes/render/synthetic_source.h"
 #include "sensor/look_ahead_source.h"
 #include "sensor/recentred_source.h"
+#include "sensor/repeated.h"
 
 namespace patina {
 
@@ -83,7 +84,16 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     if (options_.hold_out == 1) throw Error("every frame is held out, which leaves none for a model");
     if (!options_.map.empty()) open_map();
     const std::shared_ptr<MapFile> earlier = earlier_map();
+    std::optional<DetailChoice> kept_detail;
+    if (earlier && options_.detail == Detail::kAuto) {
+        kept_detail = detail_in(*earlier);
+        options_.detail = kept_detail->level;
+    }
     open(std::move(source), earlier ? std::optional(world_offset_in(device_, *earlier)) : std::nullopt);
+    if (kept_detail) detail_ = *std::move(kept_detail);
+    options_.detail = detail_.level;
+    set_detail(options_.settings, detail_.level);
+    if (!scene_) report(options_.callbacks, sentence_of(detail_, options_.settings));
     if (!earlier && needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone)
         fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
@@ -100,6 +110,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
 
 /// In the world of a map that it goes on from, where `world_offset_m` is given.
 void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::dvec3>& world_offset_m) {
+    std::optional<DetailChoice> seen_detail;
     if (given) {
         source_ = std::move(given);
         expect_poses(options_, *source_);
@@ -114,13 +125,15 @@ void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::d
         auto recording = cameras::open_sequence_ahead(device_, options_.sequence, options_.format);
         expect_poses(options_, *recording);
         auto ahead = std::make_unique<sensor::LookAheadSource>(std::move(recording));
-        const Preflight seen = look_ahead(*ahead, options_, cameras::payload_decoders(device_));
+        Preflight seen = look_ahead(*ahead, options_, cameras::payload_decoders(device_));
+        seen_detail = std::move(seen.detail);
         world_offset_m_ = world_offset_m.value_or(seen.world_offset_m);
         for (const std::string& warning : seen.warnings) report(options_.callbacks, "warning: " + warning);
         source_ = std::make_unique<sensor::RecentredSource>(std::move(ahead), world_offset_m_);
     }
     truth_.emplace(options_.sequence, scene_);
     info_ = source_->info();
+    detail_ = seen_detail ? *std::move(seen_detail) : choose_detail(options_, info_, std::nullopt);
     if (options_.frames > 0 && info_.frames) info_.frames = std::min(*info_.frames, options_.frames);
     if (!scene_) inspector_.emplace(info_, convention_check(options_));
 }
@@ -159,8 +172,11 @@ bool SessionCore::step() {
         return false;
     }
     ledger_.note(*reading);
+    const std::optional<std::string> repeated = repeats_last(*reading);
     if (inspector_) inspector_->add(*reading);
-    if (const auto* skipped = std::get_if<Skipped>(&*reading)) {
+    if (repeated) {
+        repeat(std::get<Frame>(*reading).index, *repeated);
+    } else if (const auto* skipped = std::get_if<Skipped>(&*reading)) {
         last_ = FrameResult{.state = TrackingState::kLost, .reason = skipped->reason};
         if (!skipped->dropped)
             report(options_.callbacks, fmt::format("frame {} is skipped: {}", skipped->index, skipped->reason));
@@ -204,6 +220,19 @@ void SessionCore::expect_frames() const {
 void SessionCore::skip(uint32_t index, std::string reason) {
     last_ = FrameResult{.state = TrackingState::kLost, .reason = reason};
     ledger_.skip(index, std::move(reason));
+}
+
+/// Synthetic frames are never alike.
+std::optional<std::string> SessionCore::repeats_last(const Reading& reading) const {
+    const Frame* before = inspector_ ? inspector_->last() : nullptr;
+    const auto* frame = std::get_if<Frame>(&reading);
+    return before && frame ? sensor::repeats(*frame, *before) : std::nullopt;
+}
+
+void SessionCore::repeat(uint32_t index, std::string reason) {
+    last_ = FrameResult{.fused = false, .reason = std::move(reason)};
+    ledger_.repeat(index);
+    repeated_.push_back(index);
 }
 
 void SessionCore::hold_out(Frame frame) {

@@ -11,6 +11,7 @@
 #include "engine/vulkan/device.h"
 #include "patina/session.h"
 #include "reconstruction/pipeline.h"
+#include "reconstruction/session/detail.h"
 #include "reconstruction/session/find_lights.h"
 #include "reconstruction/session/sequence_truth.h"
 #include "reconstruction/session/tracked_frame.h"
@@ -80,6 +81,7 @@ class SessionCore {
     vulkan::Device& device() { return device_; }
     const SessionOptions& options() const { return options_; }
     const SequenceInfo& info() const { return info_; }  ///< its frames: those that are to be fused
+    const DetailChoice& detail() const { return detail_; }
     const ReconstructionSettings& settings() const { return pipeline_->settings(); }
     const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
     Lighting lighting() const;                                          ///< the same, in the scene's world
@@ -127,6 +129,8 @@ class SessionCore {
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);
+    std::optional<std::string> repeats_last(const Reading& reading) const;
+    void repeat(uint32_t index, std::string reason);
     void report_progress();
     std::vector<std::string> segment_names() const;
 
@@ -138,6 +142,7 @@ class SessionCore {
     std::optional<uint32_t> kept_after_;  ///< frames read when the state in it was; empty: it is another session's
     std::string checkpoint_problem_;
     bool ended_ = false;  ///< the source has
+    DetailChoice detail_;
     std::optional<SequenceTruth> truth_;
     SequenceInfo info_;
     glm::dvec3 world_offset_m_{0};
@@ -155,6 +160,7 @@ class SessionCore {
     std::optional<RigidTransform> first_given_;  ///< of the first frame that has a pose
     std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
     std::vector<uint32_t> held_out_indices_;     ///< and of those that were held out
+    std::vector<uint32_t> repeated_;             ///< and of those that repeat the one before
     std::set<std::string> full_pools_;           ///< those that were reported
     std::string stream_problem_;                 ///< Pipeline::stream_problem(), the first that was reported
 };

@@ -61,7 +61,7 @@ std::shared_ptr<MapFile> SessionCore::earlier_map() const {
 
 void SessionCore::visit(graph::StateVisitor& visitor) {
     pipeline_->visit(visitor);
-    patina::visit(visitor, ledger_, used_, held_out_indices_);
+    patina::visit(visitor, ledger_, used_, held_out_indices_, repeated_);
     patina::visit(visitor, tracked_);
     visitor.values("session.poses", poses_);
     visitor.value("session.first_given", first_given_);
@@ -114,6 +114,7 @@ void SessionCore::checkpoint(const MoreState& more) {
     const vulkan::DeviceCaps& caps = device_.caps();
     map_->set_text("device", fmt::format("{}, {}", caps.name, caps.driver));
     map_->set_text("session", identity_of(options_, info_, settings()).dump(2));
+    map_->set_text("detail", detail_json(detail_).dump(2));
     map_->set_text("lights", lights_json(illumination_).dump(2));
     map_->set_text("progress", progress_json(ledger_, info_, ended_).dump(2));
     SessionLight light{illumination_, no_light_because_, shortfalls_};

@@ -72,6 +72,22 @@ void expect_same(const std::filesystem::path& map, const nlohmann::ordered_json&
     compare(is);
 }
 
+nlohmann::ordered_json detail_json(const DetailChoice& detail) {
+    return {{"level", name_of(detail.level)}, {"because", detail.because}};
+}
+
+DetailChoice detail_in(MapFile& map) {
+    const nlohmann::ordered_json kept = map.expect_json("detail");
+    const auto word = [&](const char* key) {
+        const auto found = kept.is_object() ? kept.find(key) : kept.end();
+        return found != kept.end() && found->is_string() ? found->get<std::string>() : std::string();
+    };
+    for (const Detail level : {Detail::kFine, Detail::kNormal, Detail::kCoarse})
+        if (name_of(level) == word("level")) return {level, word("because")};
+    throw Error("'", map.file().string(), "' has the level of detail '", word("level"),
+                "', it must be fine, normal or coarse");
+}
+
 void visit(graph::StateVisitor& visitor, SessionLight& light) {
     Illumination& found = light.illumination;
     visitor.text("light.found_by", found.found_by);
@@ -101,7 +117,7 @@ void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked) {
 }
 
 void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out) {
+           std::vector<uint32_t>& held_out, std::vector<uint32_t>& repeated) {
     uint32_t read = ledger.read();
     std::vector<uint32_t> indices;
     std::vector<std::string> reasons;
@@ -112,6 +128,7 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
     visitor.value("session.read", read);
     visitor.values("session.used", fused);
     visitor.values("session.held_out", held_out);
+    visitor.values("session.repeated", repeated);
     visitor.values("session.skipped", indices);
     visitor.texts("session.skipped_because", reasons);
     ledger = {};
@@ -122,6 +139,7 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
     }
     for (const std::vector<uint32_t>* used : {&fused, &held_out})
         for (const uint32_t index : *used) ledger.use(index);
+    for (const uint32_t index : repeated) ledger.repeat(index);
     for (size_t i = 0; i < indices.size(); ++i) ledger.skip(indices[i], reasons.at(i));
 }
 

@@ -9,6 +9,7 @@
 #include "engine/graph/state_visitor.h"
 #include "patina/source.h"
 #include "reconstruction/reconstruction_settings.h"
+#include "reconstruction/session/detail.h"
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/tracked_frame.h"
 #include "reconstruction/store/map_file.h"
@@ -30,14 +31,19 @@ void expect_same(const std::filesystem::path& map, const nlohmann::ordered_json&
 /// What was taken from all positions of the session in a map.
 glm::dvec3 world_offset_in(vulkan::Device& device, MapFile& map);
 
+nlohmann::ordered_json detail_json(const DetailChoice& detail);
+
+/// The level that the map was made with. Throws Error for one that there is not.
+DetailChoice detail_in(MapFile& map);
+
 SessionLight light_in(vulkan::Device& device, MapFile& map);
 
 /// Parts of a session's state on the host, to be kept or brought back.
 void visit(graph::StateVisitor& visitor, SessionLight& light);
 void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked);
-/// Indices of the frames that were fused, and of those that were held out. Brought back, the ledger is made anew of
-/// them.
+/// Indices of the frames that were fused, of those that were held out, and of those that repeat another. Brought back,
+/// the ledger is made anew of them.
 void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out);
+           std::vector<uint32_t>& held_out, std::vector<uint32_t>& repeated);
 
 }  // namespace patina

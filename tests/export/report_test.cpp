@@ -1,6 +1,7 @@
 #include "tools/report/report.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "export/html.h"
 #include "tests/export/full_summary.h"
@@ -57,6 +58,20 @@ TEST(Report, SaysWhatTheRunDid) {
     EXPECT_THAT(html, HasSubstr("128.0 MiB"));
     EXPECT_THAT(html, HasSubstr("frame-000017.color.png is truncated"));
     EXPECT_THAT(html, HasSubstr("&quot;voxel_mm&quot;: 5"));
+}
+
+TEST(Report, NamesTheDetailAndCountsFramesThatRepeat) {
+    RunSummary summary = test::full_summary();
+    summary.detail = {{"level", "fine"}, {"because", "the depth is < 1 m"}};
+    summary.frames.used = 281;
+    summary.frames.repeated = 17;
+    const std::string html = report_html(summary, {});
+    EXPECT_THAT(html, HasSubstr("fine, since the depth is &lt; 1 m"));
+    EXPECT_THAT(html, HasSubstr("Frames that repeat the one before</dt><dd>17"));
+    EXPECT_THAT(html, HasSubstr("281 of 283 frames were used."));
+    const auto json = nlohmann::json::parse(run_json(summary));
+    EXPECT_EQ(json["detail"]["level"], "fine");
+    EXPECT_EQ(json["frames"]["repeated"], 17);
 }
 
 TEST(Report, WhatIsIncompleteComesFirst) {
@@ -138,6 +153,23 @@ TEST(Report, NeedsNoOtherFileAndNoNetwork) {
     }
 }
 
+TEST(Report, LaysRecordedPicturesOverTheirRendering) {
+    const std::vector<PicturePair> pairs = {{"frame <3>", {80, 60}, "recorded", "rendered"},
+                                            {"frame 9", {60, 80}, "recorded", "rendered"}};
+    const std::string html = report_html(test::full_summary(), {}, nullptr, pairs);
+    EXPECT_EQ(count_of(html, "<input type='range'"), 2u);
+    EXPECT_EQ(count_of(html, "<input type='radio'"), 2u);
+    EXPECT_EQ(count_of(html, " checked>"), 1u) << "one shows";
+    EXPECT_EQ(count_of(html, "data:image/jpeg;base64," + base64("recorded")), 2u);
+    EXPECT_EQ(count_of(html, "data:image/jpeg;base64," + base64("rendered")), 2u);
+    EXPECT_THAT(html, HasSubstr("aria-label=\"frame &lt;3&gt;: share of the recorded picture\""));
+    EXPECT_THAT(html, HasSubstr("aspect-ratio: 1.3333"));
+    EXPECT_THAT(html, HasSubstr("#pair1:checked ~ figure:nth-of-type(2)"));
+    for (const char* outside : {"http:", "https:", "url(", "@import", "<script", "<link"})
+        EXPECT_THAT(html, Not(HasSubstr(outside)));
+    EXPECT_THAT(report(), Not(HasSubstr("re-rendering"))) << "where there is no pair";
+}
+
 TEST(Report, SuitsDarkThemesAndPaper) {
     EXPECT_THAT(report(), HasSubstr("@media (prefers-color-scheme: dark)"));
     EXPECT_THAT(report(), HasSubstr("@media print"));
@@ -150,6 +182,8 @@ TEST(Report, LeavesOutWhatThereIsNot) {
         EXPECT_THAT(html, Not(HasSubstr(absent)));
     }
     EXPECT_THAT(html, HasSubstr("0 of 0"));
+    EXPECT_THAT(html, Not(HasSubstr("repeat the one")));
+    EXPECT_THAT(html, Not(HasSubstr("<dt>Detail")));
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ TEST(TidySurface, SegmentsMeetWithoutGapsAndKeepTheirLabels) {
 TEST(TidySurface, ALimitOfTrianglesIsMetByAllSegmentsAlike) {
     const Mesh sheet = wavy_sheet(200, 200);
     const MeshReflectance reflectance = two_segments(sheet, 200, [](uint32_t) { return 100u; });
-    const TidyPiece piece = reduced(sheet, reflectance, 0.1);
+    const TidyPiece piece = reduced({sheet, reflectance}, 0.1);
     EXPECT_LT(piece.mesh.triangles.size(), sheet.triangles.size() / 10 + 10);
     EXPECT_GT(piece.mesh.triangles.size(), sheet.triangles.size() / 12);
     EXPECT_EQ(piece.mesh.triangles.size() + piece.collapsed_triangles, sheet.triangles.size());
@@ -174,7 +174,7 @@ TEST(TidySurface, ALimitOfTrianglesIsMetByAllSegmentsAlike) {
 
 TEST(TidySurface, OfNothingIsNothing) {
     EXPECT_TRUE(tidied({}, {}, {}).mesh.positions_m.empty());
-    EXPECT_TRUE(reduced({}, {}, 0.5).mesh.positions_m.empty());
+    EXPECT_TRUE(reduced({}, 0.5).mesh.positions_m.empty());
 }
 
 }  // namespace

@@ -25,6 +25,16 @@ Ledger with_frames_0_to(uint32_t count) {
     return ledger;
 }
 
+TEST(Ledger, FramesThatRepeatOthersAreCountedAlone) {
+    Ledger ledger = with_frames_0_to(4);
+    for (uint32_t i = 0; i < 3; ++i) ledger.use(i);
+    EXPECT_NE(ledger.discrepancy(four_frames()), std::nullopt);
+    ledger.repeat(3);
+    EXPECT_EQ(ledger.discrepancy(four_frames()), std::nullopt);
+    EXPECT_EQ(ledger.repeated(), 1u);
+    EXPECT_TRUE(ledger.skipped().empty());
+}
+
 TEST(Ledger, AddsUp) {
     Ledger ledger = with_frames_0_to(3);
     ledger.note(Skipped{3, "c.png is truncated"});

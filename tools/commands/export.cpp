@@ -38,7 +38,7 @@ std::vector<SceneOutput> outputs_of(const Arguments& arguments) {
 
 /// What a finished scene cannot be given, as it has no more than it shows.
 std::string needs_map(const CLI::App& command, const Arguments& arguments, const fs::path& source) {
-    for (const char* option : {"--gltf-fresnel", "--raw-attributes", "--surface-error"})
+    for (const char* option : {"--gltf-fresnel", "--raw-attributes", "--surface-error", "--close-holes"})
         if (command.count(option) > 0) return option;
     if (command.count("--texture") > 0 && arguments.choices.texture) return "--texture";
     const std::optional<uint64_t> triangles = arguments.choices.files.tidy.most_triangles;

@@ -24,9 +24,9 @@ constexpr uint32_t kPaperSegments = 128;
 
 /// What a first run does not need comes in a group of its own, below the others.
 void fold_rare_options(CLI::App& command) {
-    constexpr std::array<std::string_view, 11> kBasic{"--help",     "--out",    "--lights", "--lighting",
-                                                      "--poses",    "--frames", "--up",     "--texture",
-                                                      "--hold-out", "--quiet",  "--resume"};
+    constexpr std::array<std::string_view, 12> kBasic{"--help",   "--out",      "--lights", "--lighting",
+                                                      "--poses",  "--frames",   "--up",     "--texture",
+                                                      "--detail", "--hold-out", "--quiet",  "--resume"};
     for (CLI::Option* option : command.get_options()) {
         const bool basic = std::ranges::find(kBasic, option->get_name()) != kBasic.end();
         if (!basic && !option->get_positional()) option->group("More options");

@@ -34,9 +34,10 @@ void declare_scene_choices(CLI::App& command, RunOptions& run) {
                     "Ward's do (constant), for renderers that take specular colours above 1")
         ->transform(one_of<GltfFresnel>({{"ior", GltfFresnel::kIor}, {"constant", GltfFresnel::kConstant}}))
         ->option_text("ior|constant");
-    command.add_flag(
-        "--raw-attributes", run.files.glb.raw_attributes,
-        "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, _WARD_ALPHA");
+    command.add_flag("--raw-attributes", run.files.glb.raw_attributes,
+                     "Write the exact kd, ks and alpha into scene.glb, too, as vertex attributes _KD, _KS, "
+                     "_WARD_ALPHA; and _FILLED, "
+                     "1 where a hole was closed");
     command
         .add_option_function<std::string>(
             "--texture", [&run](const std::string& text) { set_texture(run, text); },
@@ -47,6 +48,13 @@ void declare_scene_choices(CLI::App& command, RunOptions& run) {
         "--triangles", run.files.tidy.most_triangles,
         "Most triangles of scene.glb, about: by default 100000, or more where it would be off by more than 5 mm; "
         "0: as many as --surface-error leaves");
+    command
+        .add_option_function<double>(
+            "--close-holes", [&run](double most_mm) { run.files.tidy.most_hole_m = most_mm / 1000; },
+            "Close holes of scene.glb's surface that are no larger than this, in millimetres: 50 by default; 0 closes "
+            "none")
+        ->option_text("MM")
+        ->check(CLI::Range(0.0, 1000.0));
     command
         .add_option_function<double>(
             "--surface-error",
@@ -69,6 +77,7 @@ void take_scene_choices(const CLI::App& command, const RunOptions& given, RunOpt
         run.texel_m = given.texel_m;
     }
     if (command.count("--triangles") > 0) run.files.tidy.most_triangles = given.files.tidy.most_triangles;
+    if (command.count("--close-holes") > 0) run.files.tidy.most_hole_m = given.files.tidy.most_hole_m;
     if (command.count("--surface-error") > 0) {
         run.files.tidy.error_m = given.files.tidy.error_m;
         run.files.tidy.least_part_m = given.files.tidy.least_part_m;

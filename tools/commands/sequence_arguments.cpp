@@ -67,6 +67,15 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
             [&options](uint32_t mm) { reflectance_of(options.settings).voxel_m = static_cast<float>(mm) / 1000; },
             "Size of the voxels of reflectance, 20 or 10")
         ->check(one_of({"10", "20"}));
+    command
+        .add_option("--detail", options.detail,
+                    "How fine the surface is: voxels of 2.5 mm up to 3 m (fine), 5 mm up to 6 m (normal), 10 mm up to "
+                    "12 m (coarse); by default as the first frames' depth suggests")
+        ->transform(one_of<Detail>({{"auto", Detail::kAuto},
+                                    {"fine", Detail::kFine},
+                                    {"normal", Detail::kNormal},
+                                    {"coarse", Detail::kCoarse}}))
+        ->option_text("auto|fine|normal|coarse");
     command.add_option_function<uint64_t>(
         "--seed", [&options](const uint64_t& seed) { options.seed = seed; },
         "Another seed for everything that is drawn at random; of a synthetic scene also for noise and samples");
@@ -93,9 +102,8 @@ Materials SequenceArguments::materials_choice() const {
 }
 
 void SequenceArguments::finish(SequenceOptions& options) const {
-    ReconstructionSettings& settings = Access::values(options.settings);
-    if (!settings_file.empty()) load_settings(settings, settings_file);
-    for (const std::string& assignment : assignments) apply_setting(settings, assignment, "--set");
+    if (!settings_file.empty()) options.settings.load(settings_file);
+    for (const std::string& assignment : assignments) Access::assign(options.settings, assignment, "--set");
     options.settings_file = settings_file;
     options.lighting = lighting_choice();
     options.materials = materials_choice();

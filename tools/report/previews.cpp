@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/core/error.h"
+#include "export/page_picture.h"
 #include "tools/report/drawing.h"
 
 namespace patina {
@@ -18,6 +19,8 @@ constexpr SrgbPixel kCaptionBackground(24, 24, 24);
 const cv::Scalar kCaptionText(230, 230, 230);
 constexpr uint32_t kCaptionHeight = 24;
 constexpr uint32_t kGap = 4;
+constexpr uint32_t kPairWidth = 960;
+constexpr int kPairQuality = 85;
 
 /// A drawing, and what stands above it.
 struct Panel {
@@ -90,16 +93,32 @@ Drawing side_by_side(const std::vector<Panel>& panels, Extent2D panel) {
     return sheet;
 }
 
-}  // namespace
-
-std::string preview_png(const ColorImage& input, const FrameDump& model, const PreviewOptions& options) {
+void check_colors(const ColorImage& input, const FrameDump& model) {
     const Extent2D extent = model.rgb.extent();
     const Extent2D input_extent = std::visit([](const auto& image) { return image.extent(); }, input);
     check_extent("input", input_extent, input_extent);
     check_extent("reconstruction", extent, extent);
-    check_extent("normal", model.normal.extent(), extent);
     check_extent("valid", model.valid.extent(), extent);
+}
 
+std::string jpeg_of(const Drawing& drawing) {
+    const EncodedPicture picture = encoded_as_jpeg(drawing, kPairQuality);
+    return {picture.bytes.begin(), picture.bytes.end()};
+}
+
+}  // namespace
+
+PicturePair picture_pair(const ColorImage& input, const FrameDump& model, const std::string& caption) {
+    check_colors(input, model);
+    const Extent2D extent = fitted_extent(model.rgb.extent(), kPairWidth);
+    const Drawing rendered = draw(model.shown_rgb(), &model.valid, color_pixel);
+    return {caption, extent, jpeg_of(scaled_to(draw_input(input), extent)), jpeg_of(scaled_to(rendered, extent))};
+}
+
+std::string preview_png(const ColorImage& input, const FrameDump& model, const PreviewOptions& options) {
+    check_colors(input, model);
+    const Extent2D extent = model.rgb.extent();
+    check_extent("normal", model.normal.extent(), extent);
     if (!model.kd.empty()) check_extent("albedo", model.kd.extent(), extent);
     if (!model.label.empty()) check_extent("label", model.label.extent(), extent);
     std::vector<Panel> panels = {

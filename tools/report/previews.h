@@ -4,6 +4,7 @@
 
 #include "export/write_exr.h"
 #include "patina/frame.h"
+#include "tools/report/comparison.h"
 
 namespace patina {
 
@@ -20,5 +21,9 @@ struct PreviewOptions {
 /// `model.rgb`, scaled down where wider than asked for; the input is resampled to it. Where the model was not hit,
 /// panels are dark grey. Throws Error when the pictures of `model` differ in extent or any is empty.
 std::string preview_png(const ColorImage& input, const FrameDump& model, const PreviewOptions& options = {});
+
+/// The input colour and the model's as the same camera sees it, both of the extent of `model.rgb`, or scaled down where
+/// that is wider than 960 pixels. Errors as preview_png().
+PicturePair picture_pair(const ColorImage& input, const FrameDump& model, const std::string& caption);
 
 }  // namespace patina

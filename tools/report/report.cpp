@@ -132,7 +132,8 @@ std::string details_html(const RunSummary& summary) {
 
 }  // namespace
 
-std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures, const ReportScene* scene) {
+std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures, const ReportScene* scene,
+                        std::span<const PicturePair> pairs) {
     const SequenceInfo& sequence = summary.sequence;
     std::string html = fmt::format(
         "<h1>{}</h1>\n<p class='quiet'>Reconstructed by Patina {} from {} frames ({}), colour {}&times;{}, depth "
@@ -145,13 +146,19 @@ std::string report_html(const RunSummary& summary, std::span<const ReportPicture
     html += report_section("Warnings", report_warnings(summary.warnings));
     if (scene) html += scene_html(*scene, summary);
     html +=
+        report_section("Recorded and re-rendered",
+                       explained("Drag the border, or move it with the arrow keys. The re-rendering is from the time "
+                                 "of the frame; the finished scene can know more.",
+                                 comparison_html(pairs)));
+    html +=
         report_section("Pictures", explained("From where the colour camera was, what stands above each panel. Grey: "
                                              "the model has no surface there.",
                                              report_figures(pictures)));
     html += report_section("Tracking", explained("Gaps: the camera was lost.", tracking_plot(summary.tracking)));
     html += report_section("Details", details_html(summary));
     return report_page(sequence.name, html,
-                       fmt::format("{}{}{}{}", kStyle, plot_style(), plan_style(), swatch_style()));
+                       fmt::format("{}{}{}{}{}", kStyle, plot_style(), plan_style(), swatch_style(),
+                                   pairs.empty() ? "" : comparison_style()));
 }
 
 }  // namespace patina

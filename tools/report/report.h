@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "export/scene_parts.h"
+#include "tools/report/comparison.h"
 #include "tools/report/report_page.h"
 #include "tools/report/run_summary.h"
 
@@ -20,8 +21,8 @@ struct ReportScene {
 
 /// The text of report.html: what a person wants to know of a run, in one file that needs no other and no network. First
 /// a verdict, then the scene to turn, its materials, a plan; tables are folded away below. Reads in light and dark
-/// themes, on a phone and on paper. `pictures` may be empty, `scene` null.
+/// themes, on a phone and on paper. `pictures` and `pairs` may be empty, `scene` null.
 std::string report_html(const RunSummary& summary, std::span<const ReportPicture> pictures,
-                        const ReportScene* scene = nullptr);
+                        const ReportScene* scene = nullptr, std::span<const PicturePair> pairs = {});
 
 }  // namespace patina

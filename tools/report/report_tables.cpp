@@ -59,7 +59,11 @@ std::string facts_list(const RunSummary& summary) {
     const VoxelPoolSummary& pool = summary.voxel_pool;
     std::string html = report_fact(
         "Frames used", fmt::format("{} of {}", grouped(frames.used), grouped(summary.sequence.frames.value_or(0))));
+    if (!summary.detail.empty())
+        html += report_fact("Detail", html_escaped(fmt::format("{}, since {}", summary.detail.value("level", ""),
+                                                               summary.detail.value("because", ""))));
     html += report_fact("Frames skipped", grouped(frames.skipped.size()));
+    if (frames.repeated > 0) html += report_fact("Frames that repeat the one before", grouped(frames.repeated));
     html +=
         report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
     if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));

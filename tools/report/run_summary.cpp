@@ -24,6 +24,7 @@ Json frames_json(const FrameLedger& frames) {
     for (const Skipped& frame : frames.skipped) skipped.push_back({{"index", frame.index}, {"reason", frame.reason}});
     Json json{{"read", frames.read}, {"used", frames.used}};
     if (frames.dropped > 0) json["dropped"] = frames.dropped;
+    json["repeated"] = frames.repeated;
     json["skipped"] = std::move(skipped);
     return json;
 }
@@ -88,6 +89,7 @@ Json json_of(const RunSummary& summary) {
     run["driver"] = summary.device.driver;
     run["seed"] = summary.seed;
     run["settings"] = summary.settings;
+    if (!summary.detail.empty()) run["detail"] = summary.detail;
     run["lights"] = summary.lights;
     run["sequence"] = sequence_json(summary.sequence);
     run["frames"] = frames_json(summary.frames);

@@ -26,12 +26,13 @@ struct DeviceSummary {
     std::string driver;          ///< name and version
 };
 
-/// What became of the frames that were due: read is used plus skipped plus dropped.
+/// What became of the frames that were due: read is used plus skipped plus dropped plus repeated.
 struct FrameLedger {
     uint64_t read = 0;  ///< arrived from the source, skipped ones included
     uint64_t used = 0;  ///< fused into the model
     std::vector<Skipped> skipped;
-    uint64_t dropped = 0;  ///< a live source had newer ones
+    uint64_t dropped = 0;   ///< a live source had newer ones
+    uint64_t repeated = 0;  ///< the same picture and depth as the one before, or the same time
 };
 
 /// How full the pool of voxel blocks was at the end.
@@ -90,6 +91,7 @@ struct RunSummary {
     DeviceSummary device;
     uint64_t seed = 0;
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();  ///< as given and defaulted, in reading order
+    nlohmann::ordered_json detail = nlohmann::ordered_json::object();    ///< the level, and why; empty: not told
     nlohmann::ordered_json lights = nlohmann::ordered_json::object();    ///< which there are, and how they were found
     SequenceInfo sequence;
     FrameLedger frames;

@@ -45,6 +45,13 @@ void add_reflectance(FrameDump& dump, const ModelView::Reflectance& reflectance)
     }
 }
 
+void visit_pair(graph::StateVisitor& visitor, const std::string& name, const std::string& caption, PicturePair& pair) {
+    pair.caption = caption;
+    visitor.value(name + ".extent", pair.extent);
+    visitor.text(name + ".recorded", pair.recorded);
+    visitor.text(name + ".rendered", pair.rendered);
+}
+
 }  // namespace
 
 FrameDump to_dump(const ModelView& view) {
@@ -106,9 +113,11 @@ void FrameDumps::visit(graph::StateVisitor& visitor) {
     visitor.value("run.dump_every", dump_every_);
     preview_at_.assign(preview_at.begin(), preview_at.end());
     previews_.resize(captions.size());
+    pairs_.resize(captions.size());
     for (size_t i = 0; i < captions.size(); ++i) {
         previews_[i].caption = captions[i];
         visitor.text(fmt::format("run.preview_{}", i), previews_[i].png);
+        visit_pair(visitor, fmt::format("run.pair_{}", i), captions[i], pairs_[i]);
     }
 }
 
@@ -142,6 +151,7 @@ void FrameDumps::write_files(const Owed& owed, const FrameDump& dump) {
         std::string png = preview_png(*owed.preview_input, dump, options);
         folder_.write(fmt::format("previews/{:06}.png", owed.index), png);
         previews_.push_back({options.title, std::move(png)});
+        pairs_.push_back(picture_pair(*owed.preview_input, dump, options.title));
     }
 }
 

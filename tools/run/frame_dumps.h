@@ -44,6 +44,8 @@ class FrameDumps {
 
     /// The previews written so far, in order.
     const std::vector<ReportPicture>& previews() const { return previews_; }
+    /// Of the same frames, what was recorded and what the model looked like.
+    const std::vector<PicturePair>& pairs() const { return pairs_; }
 
   private:
     struct Owed {
@@ -60,6 +62,7 @@ class FrameDumps {
     std::deque<uint32_t> preview_at_;  ///< frame indices from which on the next preview is due
     std::deque<Owed> owed_;
     std::vector<ReportPicture> previews_;
+    std::vector<PicturePair> pairs_;  ///< as many
     std::string problem_;
     std::vector<std::string> dumped_;  ///< names of the EXR files
 };

@@ -363,7 +363,8 @@ class Run {
     void write_report(const RunSummary& summary) {
         std::optional<ReportScene> scene;
         if (scene_) attempt("the scene in report.html", [&] { scene = scene_->report_scene(folder_); });
-        folder_.write("report.html", report_html(summary, dumps_.previews(), scene ? &*scene : nullptr));
+        folder_.write("report.html",
+                      report_html(summary, dumps_.previews(), scene ? &*scene : nullptr, dumps_.pairs()));
     }
 
     /// Results without run.json cannot be put in place: they stay under another name.
@@ -378,9 +379,11 @@ class Run {
     void print_outcome(const Outcome& outcome) const {
         if (failure_.empty()) outcome.print(options_.quiet);
         if (options_.quiet || !failure_.empty()) return;
-        print_out("{} of {} frames, {} triangles in {}\n", session_.ledger().used(),
-                  session_.info().frames.value_or(session_.ledger().read()), glb_.value_or(GlbSummary{}).triangles,
-                  printable(place_.string()));
+        const uint32_t repeated = session_.ledger().repeated();
+        print_out("{} of {} frames{}, {} triangles in {}\n", session_.ledger().used(),
+                  session_.info().frames.value_or(session_.ledger().read()),
+                  repeated > 0 ? fmt::format(" ({} repeat the one before)", repeated) : "",
+                  glb_.value_or(GlbSummary{}).triangles, printable(place_.string()));
         const std::string& found_by = session_.illumination().found_by;
         if (found_by != "file" && found_by != "none") print_lights(session_.illumination());
         for (const std::string& sentence : verdict_.good) print_out("known: {}\n", printable(sentence));

@@ -10,6 +10,7 @@
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/session_materials.h"
+#include "reconstruction/session/session_state.h"
 #include "reconstruction/session/shortfalls.h"
 #include "reconstruction/setting_table.h"
 
@@ -117,11 +118,12 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
     summary.device = {caps.name, vulkan::name_of(caps.type), caps.api_version, caps.driver};
     summary.seed = session.settings().seed;
     summary.settings = settings_of(options, session.settings());
+    summary.detail = detail_json(session.detail());
     summary.lights = lights_json(session.illumination());
     summary.sequence = session.info();
     if (!summary.sequence.frames) summary.sequence.frames = session.ledger().read();
     summary.frames = {session.ledger().read(), session.ledger().used(), session.ledger().skipped(),
-                      session.ledger().dropped()};
+                      session.ledger().dropped(), session.ledger().repeated()};
     summary.world_offset_m = session.world_offset_m();
     add_pools(summary, session);
     const PipelineCounters counters = pipeline.counters();
@@ -130,6 +132,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"degenerate triangles left out", scene.degenerate_triangles},
                       {"triangles of stray parts left out", scene.loose_triangles},
                       {"triangles collapsed", scene.collapsed_triangles},
+                      {"holes closed", scene.closed_holes},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"pages of the texture", scene.texture_pages},
                       {"texels that a picture showed", scene.seen_texels},

@@ -16,10 +16,11 @@ using ::testing::ThrowsMessage;
 
 constexpr uint32_t kFrames = 5;
 
-/// A wall one metre ahead, seen by a camera that says when it ends; its third frame is damaged.
+/// A wall one metre ahead, seen by a camera that says when it ends; its third frame is damaged. Pictures differ, but in
+/// `still` ones.
 class LiveWall : public Source {
   public:
-    explicit LiveWall(bool has_poses = true) {
+    explicit LiveWall(bool has_poses = true, bool still = false) : still_(still) {
         info_.name = "wall";
         info_.depth = info_.color = {{64, 48}, 60, 60, 31.5, 23.5};
         info_.has_poses = has_poses;
@@ -33,13 +34,16 @@ class LiveWall : public Source {
         frame.index = index;
         frame.timestamp_s = index / info_.fps;
         frame.depth = Image<uint16_t>(info_.depth.extent, 1000);
-        frame.color = Image<SrgbPixel>(info_.color.extent, SrgbPixel(128));
+        Image<SrgbPixel> color(info_.color.extent, SrgbPixel(128));
+        if (!still_) color.at(0, 0).r = static_cast<uint8_t>(index);
+        frame.color = std::move(color);
         frame.world_from_camera = RigidTransform(1.0);
         return frame;
     }
 
   private:
     SequenceInfo info_;
+    bool still_;
     uint32_t next_ = 0;
 };
 
@@ -70,6 +74,18 @@ TEST_F(SessionTest, ALiveSourceEndsWhenItSaysSo) {
     EXPECT_EQ(scene.trajectory.size(), 4u);
     EXPECT_EQ(session.statistics().frames, 4u);
     for (const glm::vec3 position_m : scene.mesh.positions_m) EXPECT_NEAR(position_m.z, 1, 0.003f);
+}
+
+TEST_F(SessionTest, FramesThatRepeatAreCountedAndLeftOut) {
+    SessionOptions options;
+    options.lighting = NoLights{};
+    Session session(device_, std::make_unique<LiveWall>(true, true), options);
+    std::vector<std::string> reasons;
+    while (session.step()) reasons.push_back(session.last()->reason);
+    const auto repeats = HasSubstr("its picture and depth are those of frame");
+    EXPECT_THAT(reasons, ElementsAre("", repeats, HasSubstr("a packet was lost"), repeats, repeats));
+    EXPECT_EQ(session.statistics().frames, 1u);
+    EXPECT_EQ(session.finish().trajectory.size(), 1u);
 }
 
 TEST_F(SessionTest, TheFrameLimitHoldsForALiveSource) {
