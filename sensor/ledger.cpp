@@ -25,6 +25,12 @@ void Ledger::skip(uint32_t index, std::string reason) {
     settle(index);
 }
 
+void Ledger::undo(uint32_t count) {
+    PATINA_ASSERT(count <= used_, count, " of ", used_, " frames");
+    used_ -= count;
+    undone_ += count;
+}
+
 void Ledger::settle(uint32_t index) {
     if (index >= settled_.size()) settled_.resize(size_t{index} + 1);
     ++settled_[index];
@@ -36,10 +42,10 @@ std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
                     " were read: ", read_ < frames ? frames - read_ : read_ - frames,
                     read_ < frames ? " missing" : " too many");
     }
-    const size_t settled = used_ + dropped_ + skipped_.size();
+    const size_t settled = used_ + undone_ + dropped_ + skipped_.size();
     if (settled != read_) {
-        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ", dropped_ + skipped_.size(),
-                    " skipped: ", settled < read_ ? read_ - settled : settled - read_,
+        return text(info.name, ": ", read_, " frames were read, but ", used_ + undone_, " used and ",
+                    dropped_ + skipped_.size(), " skipped: ", settled < read_ ? read_ - settled : settled - read_,
                     settled < read_ ? " unaccounted for" : " too many");
     }
     const auto repeated = std::find_if(settled_.begin(), settled_.end(), [](uint32_t count) { return count > 1; });

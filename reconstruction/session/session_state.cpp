@@ -101,7 +101,7 @@ void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked) {
 }
 
 void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out) {
+           std::vector<uint32_t>& held_out, std::vector<uint32_t>& undone) {
     uint32_t read = ledger.read();
     std::vector<uint32_t> indices;
     std::vector<std::string> reasons;
@@ -112,6 +112,7 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
     visitor.value("session.read", read);
     visitor.values("session.used", fused);
     visitor.values("session.held_out", held_out);
+    visitor.values("session.undone", undone);
     visitor.values("session.skipped", indices);
     visitor.texts("session.skipped_because", reasons);
     ledger = {};
@@ -120,8 +121,9 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
         frame.index = index;
         ledger.note(frame);
     }
-    for (const std::vector<uint32_t>* used : {&fused, &held_out})
+    for (const std::vector<uint32_t>* used : {&fused, &held_out, &undone})
         for (const uint32_t index : *used) ledger.use(index);
+    ledger.undo(static_cast<uint32_t>(undone.size()));
     for (size_t i = 0; i < indices.size(); ++i) ledger.skip(indices[i], reasons.at(i));
 }
 

@@ -35,9 +35,9 @@ SessionLight light_in(vulkan::Device& device, MapFile& map);
 /// Parts of a session's state on the host, to be kept or brought back.
 void visit(graph::StateVisitor& visitor, SessionLight& light);
 void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked);
-/// Indices of the frames that were fused, and of those that were held out. Brought back, the ledger is made anew of
-/// them.
+/// Indices of the frames that were fused, of those that were held out, and of those of both that were undone. Brought
+/// back, the ledger is made anew of them.
 void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out);
+           std::vector<uint32_t>& held_out, std::vector<uint32_t>& undone);
 
 }  // namespace patina

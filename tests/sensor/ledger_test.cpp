@@ -25,6 +25,15 @@ Ledger with_frames_0_to(uint32_t count) {
     return ledger;
 }
 
+TEST(Ledger, WhatIsUndoneAddsUpToo) {
+    Ledger ledger = with_frames_0_to(4);
+    for (uint32_t i = 0; i < 4; ++i) ledger.use(i);
+    ledger.undo(3);
+    EXPECT_EQ(ledger.used(), 1u);
+    EXPECT_EQ(ledger.undone(), 3u);
+    EXPECT_EQ(ledger.discrepancy(four_frames()), std::nullopt);
+}
+
 TEST(Ledger, AddsUp) {
     Ledger ledger = with_frames_0_to(3);
     ledger.note(Skipped{3, "c.png is truncated"});

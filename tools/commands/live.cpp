@@ -39,8 +39,8 @@ void add_live(CLI::App& app, int& exit_code) {
         arguments->live.run = run.run;
         if (run.shows()) {
             arguments->live.accompany = [&run](const RunOptions& options, RunCompanion& companion,
-                                               std::function<void()> end_source) {
-                return show_run(run.viewer, options, &companion, std::move(end_source));
+                                               LiveControls& controls) {
+                return show_run(run.viewer, options, &companion, &controls);
             };
         }
         exit_code = live(arguments->live).exit_code();

@@ -26,12 +26,13 @@ struct DeviceSummary {
     std::string driver;          ///< name and version
 };
 
-/// What became of the frames that were due: read is used plus skipped plus dropped.
+/// What became of the frames that were due: read is used plus skipped plus dropped plus undone.
 struct FrameLedger {
     uint64_t read = 0;  ///< arrived from the source, skipped ones included
     uint64_t used = 0;  ///< fused into the model
     std::vector<Skipped> skipped;
     uint64_t dropped = 0;  ///< a live source had newer ones
+    uint64_t undone = 0;   ///< fused, and forgotten again as the user asked
 };
 
 /// How full the pool of voxel blocks was at the end.

@@ -23,7 +23,7 @@ uint64_t total_of(const RunSummary& summary, std::string_view name) {
 double share_of(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
 void judge_frames(const RunSummary& summary, Verdict& verdict) {
-    const uint64_t due = summary.sequence.frames.value_or(summary.frames.read);
+    const uint64_t due = summary.sequence.frames.value_or(summary.frames.read) - summary.frames.undone;
     if (due == 0) return;
     const std::string used = fmt::format("{} of {} frames were used", summary.frames.used, due);
     if (share_of(static_cast<double>(summary.frames.used), static_cast<double>(due)) >= kEnoughFrames) {
