@@ -33,7 +33,20 @@ struct RecordedInput {
     std::shared_ptr<LiveRecording> recording;
 };
 
-RecordedInput open_camera() {
+/// Of decoded frames.
+std::shared_ptr<LiveRecording> recording_of(const SequenceInfo& info) {
+    sensor::RecordedSequence sequence;
+    sequence.info = info;
+    return std::make_shared<LiveRecording>(std::move(sequence));
+}
+
+RecordedInput open_camera(const std::string& name) {
+    if (name != kKinect2) {
+        const auto source = open_other_camera(name);
+        auto recording = recording_of(source->info());
+        source->set_tap([recording](const Reading& reading) { recording->take(reading); });
+        return {live_input(source), recording};
+    }
     auto capture = open_kinect2();
     auto recording = std::make_shared<LiveRecording>(capture->sequence());
     capture->set_tap([recording](const sensor::RecordedFrame& frame) { recording->take(frame); });
@@ -48,9 +61,7 @@ RecordedInput open_played(const LiveOptions& options) {
     sensor::expect_apart(options.run.out, inputs);
     auto played = open_to_play(options.simulate, options.run.format);
     if (!options.record.empty()) sensor::expect_apart(options.record, inputs);
-    sensor::RecordedSequence sequence;
-    sequence.info = played->info();
-    auto recording = std::make_shared<LiveRecording>(std::move(sequence));
+    auto recording = recording_of(played->info());
     return {live_input(std::make_shared<sensor::PlayedSource>(
                 std::move(played), [recording](const Reading& reading) { recording->take(reading); })),
             recording};
@@ -60,12 +71,12 @@ RecordedInput open_played(const LiveOptions& options) {
 
 Outcome live(const LiveOptions& options) {
     if (options.simulate.empty() && !is_camera(options.source))
-        throw Error("there is no camera '", options.source, "', must be ", kKinect2,
+        throw Error("there is no camera '", options.source, "', must be ", kCameraNames,
                     "; a recording plays as one with --simulate RECORDING");
     RunOptions run_options = options.run;
     run_options.lighting = lighting_for(options);
     run_options.sequence.clear();
-    RecordedInput opened = options.simulate.empty() ? open_camera() : open_played(options);
+    RecordedInput opened = options.simulate.empty() ? open_camera(options.source) : open_played(options);
     if (!options.record.empty()) opened.recording->start(options.record);
     LiveRun companion(std::move(opened.input), std::move(opened.recording), options.run.out, options.seconds);
     if (!options.accompany) return run(run_options, &companion);
