@@ -69,6 +69,7 @@ void Pipeline::visit(graph::StateVisitor& visitor) {
     streaming_.visit(visitor);
     fusion_.visit(visitor);
     if (tracked_) tracked_->visit(visitor);
+    if (visitor.brings_back()) gathered_after_ = 0;
 }
 
 void Pipeline::begin_recording() {

@@ -109,7 +109,7 @@ TrackingReport TrackedFusion::find(const RgbdFrame& frame) {
     TrackingReport report;
     report.state = TrackingState::kLost;
     report.world_from_depth = tracking_.world_from_reference();
-    report.reason = "no keyframe of the map that is extended shows what it does";
+    report.reason = "no keyframe of the map shows what it does";
     if (const auto found = relocalised(frame)) {
         report = *found;
         elsewhere_ = false;

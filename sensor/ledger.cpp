@@ -30,6 +30,12 @@ void Ledger::repeat(uint32_t index) {
     settle(index);
 }
 
+void Ledger::undo(uint32_t count) {
+    PATINA_ASSERT(count <= used_, count, " of ", used_, " frames");
+    used_ -= count;
+    undone_ += count;
+}
+
 void Ledger::settle(uint32_t index) {
     if (index >= settled_.size()) settled_.resize(size_t{index} + 1);
     ++settled_[index];
@@ -41,10 +47,9 @@ std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
                     " were read: ", read_ < frames ? frames - read_ : read_ - frames,
                     read_ < frames ? " missing" : " too many");
     }
-    const size_t settled = used_ + repeated_ + dropped_ + skipped_.size();
+    const size_t left_out = repeated_ + dropped_ + skipped_.size(), settled = used_ + undone_ + left_out;
     if (settled != read_) {
-        return text(info.name, ": ", read_, " frames were read, but ", used_, " used and ",
-                    repeated_ + dropped_ + skipped_.size(),
+        return text(info.name, ": ", read_, " frames were read, but ", used_ + undone_, " used and ", left_out,
                     " skipped: ", settled < read_ ? read_ - settled : settled - read_,
                     settled < read_ ? " unaccounted for" : " too many");
     }

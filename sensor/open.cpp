@@ -8,6 +8,8 @@
 #include "engine/core/did_you_mean.h"
 #include "engine/core/input_file.h"
 #include "sensor/readers/native.h"
+#include "sensor/readers/oni.h"
+#include "sensor/readers/oni_file.h"
 #include "sensor/readers/open3d.h"
 #include "sensor/readers/seven_scenes.h"
 #include "sensor/readers/tum.h"
@@ -95,9 +97,10 @@ std::unique_ptr<Source> open_sequence(const fs::path& path, const std::string& f
                                       const MakePayloadDecoder& make_decoder) {
     if (names_recording(path)) return open_recording(path, make_decoder);
     expect_sequence_path(path);
+    if (is_oni_file(path)) return open_oni(path);
     const fs::path folder = folder_of(path);
     if (!is_folder(folder))
-        throw Error(path.string(), " is a file, but a sequence is a folder or a recording of Patina");
+        throw Error(path.string(), " is a file, but a sequence is a folder, or a recording of Patina or OpenNI");
     return (format.empty() ? recognised(folder) : named(format)).open(folder);
 }
 

@@ -91,6 +91,11 @@ void KeptPictures::add(const SequenceInfo& info, const Frame& frame, uint32_t or
     current_ = Current{picture, frame.color};
 }
 
+void KeptPictures::keep_first(uint32_t frames) {
+    std::erase_if(kept_, [&](const Kept& kept) { return kept.picture.order >= frames; });
+    if (current_ && current_->picture.order >= frames) current_.reset();
+}
+
 /// The stretch at hand has come to its end.
 void KeptPictures::settle() {
     kept_.push_back({current_->picture, packed(current_->color)});

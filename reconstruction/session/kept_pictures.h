@@ -25,6 +25,10 @@ class KeptPictures {
     /// Looks at a frame that was fused; `order`: how many were before it.
     void add(const SequenceInfo& info, const Frame& frame, uint32_t order);
 
+    /// Forgets pictures of frames that are no longer in the model: all but of the first `frames` that were fused. The
+    /// stretches that these were the sharpest of have none then.
+    void keep_first(uint32_t frames);
+
     /// Gives all of them to `take`, in the order of frames. `gains`: by order (Pipeline::gains); empty: all are 1.
     void give(const SequenceInfo& info, std::span<const gpu::ColorGains> gains,
               const std::function<void(const TexturePicture&)>& take);

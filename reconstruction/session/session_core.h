@@ -61,6 +61,17 @@ class SessionCore {
     /// Brings back what a program kept in the map beside the session's state; where the session went on from one.
     void bring_back(const MoreState& more);
 
+    /// Keeps the model as it is now in `map`, in place of what that holds; for go_back() of this session alone. Waits.
+    /// Throws Error where the file cannot be written.
+    void keep_model(MapFile& map);
+
+    /// Brings back a model that this session kept. The frames that were fused or held out since are forgotten and count
+    /// as undone (sensor::Ledger); the source goes on with its next frame. A tracked camera is looked for in the
+    /// model's keyframes; frames until it is found are lost. Without keyframes it is tracked from its last pose in the
+    /// model. Throws Error where the map is damaged: nothing has changed then; or where memory runs out or the device
+    /// was lost: the session is of no use then.
+    void go_back(MapFile& map);
+
     /// Waits for the device. Throws Error when no frame could be used, or the source yielded another number of frames
     /// than it has.
     void end();
@@ -161,6 +172,7 @@ class SessionCore {
     std::vector<uint32_t> used_;                 ///< indices of the frames that were fused
     std::vector<uint32_t> held_out_indices_;     ///< and of those that were held out
     std::vector<uint32_t> repeated_;             ///< and of those that repeat the one before
+    std::vector<uint32_t> undone_indices_;       ///< of used and held out ones, those that go_back() forgot
     std::set<std::string> full_pools_;           ///< those that were reported
     std::string stream_problem_;                 ///< Pipeline::stream_problem(), the first that was reported
 };

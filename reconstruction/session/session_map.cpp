@@ -18,6 +18,12 @@ nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const Sequenc
     return json;
 }
 
+/// How many of a session's frames were in a model.
+struct FramesInModel {
+    uint32_t used = 0, held_out = 0;
+};
+
+constexpr const char* kFramesInModel = "session.frames_in_model";
 constexpr const char* kWorldOffset = "session.world_offset_m";
 
 }  // namespace
@@ -61,7 +67,7 @@ std::shared_ptr<MapFile> SessionCore::earlier_map() const {
 
 void SessionCore::visit(graph::StateVisitor& visitor) {
     pipeline_->visit(visitor);
-    patina::visit(visitor, ledger_, used_, held_out_indices_, repeated_);
+    patina::visit(visitor, ledger_, {used_, held_out_indices_, repeated_, undone_indices_});
     patina::visit(visitor, tracked_);
     visitor.values("session.poses", poses_);
     visitor.value("session.first_given", first_given_);
@@ -149,6 +155,35 @@ void SessionCore::checkpoint_if_due(const MoreState& more) {
             fmt::format("the state after {} frames could not be kept: {}", ledger_.read(), reason_of(error));
         report(options_.callbacks, "warning: " + checkpoint_problem_);
     }
+}
+
+void SessionCore::keep_model(MapFile& map) {
+    Transaction change(map.database());
+    StateWriter writer(device_, map);
+    pipeline_->visit(writer);
+    FramesInModel frames{static_cast<uint32_t>(used_.size()), static_cast<uint32_t>(held_out_indices_.size())};
+    writer.value(kFramesInModel, frames);
+    writer.finish();
+    change.commit();
+}
+
+void SessionCore::go_back(MapFile& map) {
+    map.check();  // what is half brought back is of no use
+    StateReader reader(device_, map);
+    FramesInModel frames;
+    reader.value(kFramesInModel, frames);
+    pipeline_->visit(reader);
+    reader.finish();
+    if (pipeline_->keyframes()) pipeline_->begin_recording();
+    for (auto [indices, count] : {std::pair(&used_, frames.used), {&held_out_indices_, frames.held_out}}) {
+        const auto first = indices->begin() + count;
+        ledger_.undo(static_cast<uint32_t>(indices->end() - first));
+        undone_indices_.insert(undone_indices_.end(), first, indices->end());
+        indices->erase(first, indices->end());
+    }
+    poses_.resize(used_.size());
+    fused_.reset();
+    held_out_.reset();
 }
 
 void SessionCore::bring_back(const MoreState& more) {

@@ -116,8 +116,7 @@ void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked) {
     for (size_t i = 0; i < indices.size(); ++i) tracked.push_back({indices[i], {figures.at(i), reasons.at(i)}});
 }
 
-void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out, std::vector<uint32_t>& repeated) {
+void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, const FrameIndices& frames) {
     uint32_t read = ledger.read();
     std::vector<uint32_t> indices;
     std::vector<std::string> reasons;
@@ -126,9 +125,10 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
         reasons.push_back(skipped.reason);
     }
     visitor.value("session.read", read);
-    visitor.values("session.used", fused);
-    visitor.values("session.held_out", held_out);
-    visitor.values("session.repeated", repeated);
+    visitor.values("session.used", frames.fused);
+    visitor.values("session.held_out", frames.held_out);
+    visitor.values("session.repeated", frames.repeated);
+    visitor.values("session.undone", frames.undone);
     visitor.values("session.skipped", indices);
     visitor.texts("session.skipped_because", reasons);
     ledger = {};
@@ -137,9 +137,10 @@ void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uin
         frame.index = index;
         ledger.note(frame);
     }
-    for (const std::vector<uint32_t>* used : {&fused, &held_out})
+    for (const std::vector<uint32_t>* used : {&frames.fused, &frames.held_out, &frames.undone})
         for (const uint32_t index : *used) ledger.use(index);
-    for (const uint32_t index : repeated) ledger.repeat(index);
+    for (const uint32_t index : frames.repeated) ledger.repeat(index);
+    ledger.undo(static_cast<uint32_t>(frames.undone.size()));
     for (size_t i = 0; i < indices.size(); ++i) ledger.skip(indices[i], reasons.at(i));
 }
 

@@ -41,9 +41,14 @@ SessionLight light_in(vulkan::Device& device, MapFile& map);
 /// Parts of a session's state on the host, to be kept or brought back.
 void visit(graph::StateVisitor& visitor, SessionLight& light);
 void visit(graph::StateVisitor& visitor, std::vector<TrackedFrame>& tracked);
-/// Indices of the frames that were fused, of those that were held out, and of those that repeat another. Brought back,
-/// the ledger is made anew of them.
-void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, std::vector<uint32_t>& fused,
-           std::vector<uint32_t>& held_out, std::vector<uint32_t>& repeated);
+/// Indices of frames, by what became of them.
+struct FrameIndices {
+    std::vector<uint32_t>& fused;
+    std::vector<uint32_t>& held_out;
+    std::vector<uint32_t>& repeated;  ///< those that repeat the one before
+    std::vector<uint32_t>& undone;    ///< were fused or held out, and forgotten again
+};
+/// Brought back, the ledger is made anew of them.
+void visit(graph::StateVisitor& visitor, sensor::Ledger& ledger, const FrameIndices& frames);
 
 }  // namespace patina

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include <zstd.h>
 
@@ -38,7 +39,7 @@ constexpr const char* kTables = R"(
 
 void MapFile::FreeContext::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
 
-MapFile::MapFile(const std::filesystem::path& file) : database_(file), compressor_(ZSTD_createCCtx()) {
+MapFile::MapFile(Database database) : database_(std::move(database)), compressor_(ZSTD_createCCtx()) {
     if (!compressor_) throw std::bad_alloc();
     if (pragma(database_, "schema_version") == 0) {
         Transaction begin(database_);
@@ -46,9 +47,10 @@ MapFile::MapFile(const std::filesystem::path& file) : database_(file), compresso
         database_.run(patina::text("PRAGMA application_id = ", kApplication, "; PRAGMA user_version = ", kSchema));
         begin.commit();
     }
-    if (pragma(database_, "application_id") != kApplication) throw Error("'", file.string(), "' is no map of Patina's");
+    if (pragma(database_, "application_id") != kApplication)
+        throw Error("'", file().string(), "' is no map of Patina's");
     if (const int64_t schema = pragma(database_, "user_version"); schema != kSchema)
-        throw Error("'", file.string(), "' is a map of schema ", schema, ", this program reads ", kSchema);
+        throw Error("'", file().string(), "' is a map of schema ", schema, ", this program reads ", kSchema);
 }
 
 MapFile::~MapFile() = default;

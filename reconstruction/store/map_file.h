@@ -28,7 +28,8 @@ class MapFile {
     static constexpr uint64_t kPieceBytes = uint64_t{1} << 20;  ///< of an array, but for the last piece
 
     /// Opens a map, or begins one. Throws Error where the file is something else, or of another schema.
-    explicit MapFile(const std::filesystem::path& file);
+    explicit MapFile(const std::filesystem::path& file) : MapFile(Database(file)) {}
+    explicit MapFile(Database database);
     ~MapFile();
     MapFile(const MapFile&) = delete;
     MapFile& operator=(const MapFile&) = delete;

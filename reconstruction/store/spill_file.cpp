@@ -1,41 +1,14 @@
 #include "reconstruction/store/spill_file.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
-#include <system_error>
-
-#include <unistd.h>
 
 #include "engine/core/error.h"
+#include "engine/store/temporary_database.h"
 
 namespace patina {
 
-namespace {
-
-/// A database in a file that has no name any more.
-Database open_unnamed() {
-    const char* folder = std::getenv("TMPDIR");
-    std::string path = std::filesystem::path(folder && *folder ? folder : "/var/tmp") / "patina-blocks-XXXXXX";
-    const int file = mkstemp(path.data());
-    if (file < 0) throw Error("'", path, "' cannot be created: ", std::generic_category().message(errno));
-    close(file);
-    struct Remove {
-        ~Remove() { unlink(path.c_str()); }
-        const std::string& path;
-    };
-    const Remove after{path};
-    return Database(path);
-}
-
-}  // namespace
-
-SpillFile::SpillFile() : database_(open_unnamed()) {
-    // Only this process ever reads it, so nothing has to survive it.
-    database_.run(
-        "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
-        "CREATE TABLE blocks (key INTEGER PRIMARY KEY, bytes BLOB NOT NULL)");
+SpillFile::SpillFile() : database_(temporary_database("patina-blocks")) {
+    database_.run("CREATE TABLE blocks (key INTEGER PRIMARY KEY, bytes BLOB NOT NULL)");
 }
 
 void SpillFile::put(std::span<const std::pair<uint32_t, std::span<const std::byte>>> entries) {

@@ -10,8 +10,8 @@
 
 namespace patina {
 
-/// Bytes by key in a temporary file, for what memory is too small for. It lies in the folder that TMPDIR names, else in
-/// /var/tmp, and goes with the process, however that ends.
+/// Bytes by key in a temporary file, for what memory is too small for. It goes with the process
+/// (temporary_database()).
 class SpillFile {
   public:
     /// Throws Error where the file cannot be created.

@@ -1,9 +1,11 @@
 // The viewer as a user meets it: off screen, and in a window on a display without a screen.
 
 #include <cstdlib>
+#include <fstream>
 #include <set>
 
 #include "sensor/files/picture_file.h"
+#include "sensor/recording/container.h"
 #include "tests/cli/run_folder.h"
 
 namespace patina::testing {
@@ -44,6 +46,32 @@ class Viewer : public RunFolderTest {
         std::set<std::array<uint8_t, 3>> colors;
         for (const SrgbPixel& pixel : picture.pixels()) colors.insert({pixel.r, pixel.g, pixel.b});
         return colors.size();
+    }
+
+    static bool has_display() { return installed("Xvfb") && installed("xdotool"); }
+
+    /// Runs a command of the program in a window on a display of its own, whose number Xvfb chooses; then `script`, in
+    /// which $window is it; then closes it as a user would. Returns the exit code.
+    int in_window(const std::string& command, const std::string& script) const {
+        return shell("cd " + beside(".").string() + R"(
+        exec 3> display
+        Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
+        for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
+        export DISPLAY=:$(cat display)
+        $PATINA )" + command +
+                     R"( > said 2> complaint & viewer=$!
+        window=$(timeout 120 xdotool search --sync --onlyvisible --name '^patina' | head -n 1)
+        # Until the window has the focus, keys are lost.
+        for i in $(seq 100); do
+            xdotool windowfocus $window 2> /dev/null
+            [ $(xdotool getwindowfocus) = $window ] && break
+            sleep 0.2
+        done)" + script +
+                     R"(
+        xdotool key ctrl+q
+        wait $viewer; ended=$?
+        kill $server; wait $server 2> /dev/null
+        exit $ended)");
     }
 
     void expect_no_viewer_is_one_sentence(const Outcome& outcome) {
@@ -114,34 +142,56 @@ TEST_F(Viewer, BadInputIsOneSentence) {
 
 TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    for (const char* program : {"Xvfb", "xdotool"})
-        if (!installed(program)) GTEST_SKIP() << program << " is not installed";
+    if (!has_display()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
     run_with_map({"--lighting", "none"});
-    // A display of its own, whose number Xvfb chooses; a key for the layer, the wheel for the free camera, then the
-    // window is closed as a user would.
-    const std::string said = beside("said"), script = R"(
-        exec 3> display
-        Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
-        for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
-        export DISPLAY=:$(cat display)
-        $PATINA view )" + out().string() + R"( --extent 320x240 > said 2> complaint & viewer=$!
-        window=$(timeout 120 xdotool search --sync --onlyvisible --name '^patina' | head -n 1)
-        # Until the window has the focus, keys are lost.
-        for i in $(seq 100); do
-            xdotool windowfocus $window 2> /dev/null
-            [ $(xdotool getwindowfocus) = $window ] && break
-            sleep 0.2
-        done
+    const int exit_code = in_window("view " + out().string() + " --extent 320x240", R"(
         xdotool mousemove --window $window 160 200
         xdotool key 6; sleep 1
-        xdotool click 4; sleep 1
-        xdotool key ctrl+q
-        wait $viewer; ended=$?
-        kill $server; wait $server 2> /dev/null
-        exit $ended)";
-    const int exit_code = shell("cd " + beside(".").string() + "\n" + script);
+        xdotool click 4; sleep 1)");
     EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
     EXPECT_THAT(files_in(beside("."))["said"], HasSubstr("layer normals"));
+}
+
+TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
+    if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
+    if (!has_display()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
+    // Two minutes of a camera that takes two pictures a second.
+    const fs::path slow = beside("slow");
+    ASSERT_EQ(
+        patina({"synth", "cubes", "--frames", "240", "--extent", "48x40", "--no-lighting", "--quiet", "--out", slow})
+            .exit_code,
+        0);
+    std::ifstream given(slow / "trajectory.txt");
+    std::string poses, times;
+    int count = 0;
+    for (std::string line; std::getline(given, line);) {
+        if (line.starts_with('#')) continue;
+        times += std::to_string(count) + " " + std::to_string(count / 2.0) + "\n";
+        poses += std::to_string(count++ / 2.0) + line.substr(line.find(' ')) + "\n";
+    }
+    std::ofstream(slow / "timestamps.txt") << times;
+    std::ofstream(slow / "trajectory.txt") << poses;
+    const fs::path recording = beside("out-recording-1.patina");
+    const int exit_code = in_window("live --simulate " + slow.string() + " --out " + out().string() +
+                                        " --window --window-extent 640x480 --lighting none --texture off "
+                                        "--set map.voxel_m=0.02",
+                                    R"(
+        # The second button, at the bottom in the middle; it is there once the run has begun.
+        for i in $(seq 100); do
+            xdotool mousemove --window $window 277 452; sleep 0.3
+            xdotool mousedown 1; sleep 0.3; xdotool mouseup 1; sleep 0.6
+            [ -e out-recording-1.patina ] && break
+        done
+        sleep 6
+        xdotool key r; sleep 2
+        xdotool key ctrl+z; sleep 4)");
+    EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
+    const auto summary = summary_of(out());
+    EXPECT_GE(summary["frames"].value("undone", 0), 1);
+    EXPECT_EQ(summary["live"]["recordings"][0]["file"], recording.string());
+    const uint32_t frames = *sensor::RecordingFile(recording).sequence(sensor::SequenceRole::kMain).info.frames;
+    EXPECT_GE(frames, 5u);
+    EXPECT_LT(frames, summary["live"]["captured"]);
 }
 
 }  // namespace

@@ -28,10 +28,11 @@ TEST(LiveSummary, TellsWhatARecordingBesideItHas) {
     live.captured = 90;
     live.dropped = 30;
     live.seconds = 3;
-    EXPECT_FALSE(live_json(live).contains("recording"));
+    EXPECT_FALSE(live_json(live).contains("recordings"));
     EXPECT_THAT(live_table(live), Not(HasSubstr("Recorded to")));
-    live.recording = BesideSummary{"a<b.patina", 90, 2, 1000, 500};
-    EXPECT_EQ(live_json(live)["recording"]["dropped"], 2);
+    live.recordings = {{"a<b.patina", 90, 2, 1000, 500}, {"c.patina", 9, 0, 100, 50}};
+    EXPECT_EQ(live_json(live)["recordings"][0]["dropped"], 2);
+    EXPECT_EQ(live_json(live)["recordings"][1]["file"], "c.patina");
     EXPECT_THAT(live_table(live), HasSubstr("a&lt;b.patina"));
     EXPECT_THAT(live_table(live), HasSubstr("30.0"));  // frames a second
 }

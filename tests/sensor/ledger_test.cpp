@@ -35,6 +35,15 @@ TEST(Ledger, FramesThatRepeatOthersAreCountedAlone) {
     EXPECT_TRUE(ledger.skipped().empty());
 }
 
+TEST(Ledger, WhatIsUndoneAddsUpToo) {
+    Ledger ledger = with_frames_0_to(4);
+    for (uint32_t i = 0; i < 4; ++i) ledger.use(i);
+    ledger.undo(3);
+    EXPECT_EQ(ledger.used(), 1u);
+    EXPECT_EQ(ledger.undone(), 3u);
+    EXPECT_EQ(ledger.discrepancy(four_frames()), std::nullopt);
+}
+
 TEST(Ledger, AddsUp) {
     Ledger ledger = with_frames_0_to(3);
     ledger.note(Skipped{3, "c.png is truncated"});

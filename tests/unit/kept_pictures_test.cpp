@@ -52,6 +52,17 @@ Given given_by(KeptPictures& pictures, std::span<const gpu::ColorGains> gains = 
 
 const Image<SrgbPixel>& color_of(const Frame& frame) { return std::get<Image<SrgbPixel>>(frame.color); }
 
+TEST(KeptPictures, ThoseOfFramesThatWereUndoneGo) {
+    KeptPictures pictures;
+    for (uint32_t i = 0; i < 4; ++i) pictures.add(info_of_camera(), frame_at(i, 20, i), i);
+    pictures.keep_first(4);
+    EXPECT_EQ(pictures.size(), 4u);
+    pictures.keep_first(2);
+    EXPECT_EQ(given_by(pictures).x_m, (std::vector<double>{0, 1}));
+    pictures.add(info_of_camera(), frame_at(5, 20), 2);
+    EXPECT_EQ(given_by(pictures).x_m, (std::vector<double>{0, 1, 5}));
+}
+
 TEST(KeptPictures, OfAStretchTheSharpestStays) {
     KeptPictures pictures;
     const Frame sharp = frame_at(0.05, 90, 7);

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/export/temporary_folder.h"
+#include "tools/program/free_place.h"
 #include "tools/viewer/draw_budget.h"
-#include "tools/viewer/export_folder.h"
 #include "tools/viewer/free_camera.h"
 #include "tools/viewer/layers.h"
 #include "tools/viewer/light_handles.h"
@@ -183,12 +183,12 @@ TEST(DrawBudget, SlowPicturesGetSmallerAndFastOnesLargeAgain) {
     EXPECT_EQ(budget.picture_extent(window), window);
 }
 
-TEST(ExportFolder, IsOneThatIsNotThere) {
+TEST(FreePlace, IsOneThatIsNotThere) {
     const test::TemporaryFolder folder;
     const std::filesystem::path run = folder / "room";
-    EXPECT_EQ(free_folder_beside(run / ""), folder / "room-export-1");
+    EXPECT_EQ(free_place_beside(run / "", "export"), folder / "room-export-1");
     std::filesystem::create_directory(folder / "room-export-1");
-    EXPECT_EQ(free_folder_beside(run), folder / "room-export-2");
+    EXPECT_EQ(free_place_beside(run, "export"), folder / "room-export-2");
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "engine/core/printable.h"
 #include "engine/vulkan/floor.h"
 #include "sensor/kinect2/diagnosis.h"
+#include "sensor/live/other_cameras.h"
 #include "tools/commands/commands.h"
 #include "tools/program/standard_streams.h"
 
@@ -52,6 +54,7 @@ void add_doctor(CLI::App& app) {
     arguments->add_to(*command);
     command->callback([arguments] {
         print_out("{}", sensor::kinect2::format(sensor::kinect2::diagnose()));  // first: no Vulkan device ends it below
+        print_out("{}{}", printable_lines(sensor::kinect1_report()), printable_lines(sensor::openni2_report()));
         const auto devices = vulkan::list_devices();
         for (const vulkan::DeviceReport& device : devices) print(device);
         const uint32_t chosen = vulkan::choose_device(devices, arguments->selector);

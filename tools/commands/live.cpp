@@ -5,6 +5,7 @@
 #include "engine/core/error.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/run_arguments.h"
+#include "tools/program/cameras.h"
 
 namespace patina::tools {
 
@@ -18,7 +19,7 @@ void add_live(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<Arguments>();
     LiveOptions& live_options = arguments->live;
     declare(*command, arguments->run);
-    command->get_option("sequence")->description("Camera: kinect2");
+    command->get_option("sequence")->description(text("Camera: ", kCameraNames));
     command->add_option("--simulate", live_options.simulate, "Recording that plays by its clock, as a camera would");
     command->add_option("--record", live_options.record,
                         "Record all frames into this file, those that are dropped too");
@@ -39,8 +40,8 @@ void add_live(CLI::App& app, int& exit_code) {
         arguments->live.run = run.run;
         if (run.shows()) {
             arguments->live.accompany = [&run](const RunOptions& options, RunCompanion& companion,
-                                               std::function<void()> end_source) {
-                return show_run(run.viewer, options, &companion, std::move(end_source));
+                                               LiveControls& controls) {
+                return show_run(run.viewer, options, &companion, &controls);
             };
         }
         exit_code = live(arguments->live).exit_code();

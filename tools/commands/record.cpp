@@ -2,15 +2,19 @@
 
 #include <memory>
 
+#include "engine/core/error.h"
 #include "sensor/open.h"
 #include "tools/commands/commands.h"
+#include "tools/program/cameras.h"
 
 namespace patina::tools {
 
 void add_record(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("record", "Record a sequence, and one of low exposure, into one file");
     const auto options = std::make_shared<RecordOptions>();
-    command->add_option("source", options->source, "Camera (kinect2), or recording of any format that is recorded anew")
+    command
+        ->add_option("source", options->source,
+                     text("Camera (", kCameraNames, "), or recording of any format that is recorded anew"))
         ->required();
     command->add_option("--out", options->out, "File to create, such as room.patina")->required();
     command->add_option("--lighting", options->lighting,

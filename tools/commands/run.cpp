@@ -53,7 +53,7 @@ int start(RunArguments& arguments) {
         run_options.started_in = working_folder();
     }
     if (!arguments.shows()) return run(run_options).exit_code();
-    const auto window = show_run(arguments.viewer, run_options, nullptr, {});
+    const auto window = show_run(arguments.viewer, run_options, nullptr, nullptr);
     return run(run_options, window.get()).exit_code();
 }
 

@@ -7,7 +7,7 @@
 #include "sensor/live/played_source.h"
 #include "sensor/open.h"
 #include "sensor/output/apart.h"
-#include "sensor/recording/recorder.h"
+#include "tools/live/live_recording.h"
 #include "tools/live/live_run.h"
 #include "tools/program/cameras.h"
 #include "tools/program/inputs.h"
@@ -28,54 +28,59 @@ LightingChoice lighting_for(const LiveOptions& options) {
     return LightsFromSequence{beside.string(), options.simulate};
 }
 
-/// A recorder for a file that is not there yet; null where none was asked for.
-std::shared_ptr<sensor::Recorder> recorder_for(const LiveOptions& options, sensor::RecordedSequence sequence) {
-    if (options.record.empty()) return nullptr;
-    auto recorder = std::make_shared<sensor::Recorder>(options.record);
-    recorder->begin(sensor::SequenceRole::kMain, std::move(sequence));
-    return recorder;
-}
-
 struct RecordedInput {
     LiveInput input;
-    std::shared_ptr<sensor::Recorder> recorder;  ///< null where nothing is recorded
+    std::shared_ptr<LiveRecording> recording;
 };
 
-RecordedInput open_camera(const LiveOptions& options) {
+/// Of decoded frames.
+std::shared_ptr<LiveRecording> recording_of(const SequenceInfo& info) {
+    sensor::RecordedSequence sequence;
+    sequence.info = info;
+    return std::make_shared<LiveRecording>(std::move(sequence));
+}
+
+RecordedInput open_camera(const std::string& name) {
+    if (name != kKinect2) {
+        const auto source = open_other_camera(name);
+        auto recording = recording_of(source->info());
+        source->set_tap([recording](const Reading& reading) { recording->take(reading); });
+        return {live_input(source), recording};
+    }
     auto capture = open_kinect2();
-    auto recorder = recorder_for(options, capture->sequence());
-    if (recorder) capture->set_tap([recorder](const sensor::RecordedFrame& frame) { recorder->record(frame); });
+    auto recording = std::make_shared<LiveRecording>(capture->sequence());
+    capture->set_tap([recording](const sensor::RecordedFrame& frame) { recording->take(frame); });
     return {
         {capture,
          [capture](vulkan::Device& device) { return std::make_unique<cameras::Kinect2LiveSource>(device, capture); }},
-        recorder};
+        recording};
 }
 
 RecordedInput open_played(const LiveOptions& options) {
     const std::vector<std::filesystem::path> inputs = sequence_inputs(options.simulate);
     sensor::expect_apart(options.run.out, inputs);
-    auto recording = open_to_play(options.simulate, options.run.format);
+    auto played = open_to_play(options.simulate, options.run.format);
     if (!options.record.empty()) sensor::expect_apart(options.record, inputs);
-    sensor::RecordedSequence sequence;
-    sequence.info = recording->info();
-    auto recorder = recorder_for(options, std::move(sequence));
-    return {live_input(std::make_shared<sensor::PlayedSource>(std::move(recording), sensor::tap_to(recorder))),
-            recorder};
+    auto recording = recording_of(played->info());
+    return {live_input(std::make_shared<sensor::PlayedSource>(
+                std::move(played), [recording](const Reading& reading) { recording->take(reading); })),
+            recording};
 }
 
 }  // namespace
 
 Outcome live(const LiveOptions& options) {
     if (options.simulate.empty() && !is_camera(options.source))
-        throw Error("there is no camera '", options.source, "', must be ", kKinect2,
+        throw Error("there is no camera '", options.source, "', must be ", kCameraNames,
                     "; a recording plays as one with --simulate RECORDING");
     RunOptions run_options = options.run;
     run_options.lighting = lighting_for(options);
     run_options.sequence.clear();
-    RecordedInput opened = options.simulate.empty() ? open_camera(options) : open_played(options);
-    LiveRun companion(std::move(opened.input), opened.recorder, options.record, options.seconds);
+    RecordedInput opened = options.simulate.empty() ? open_camera(options.source) : open_played(options);
+    if (!options.record.empty()) opened.recording->start(options.record);
+    LiveRun companion(std::move(opened.input), std::move(opened.recording), options.run.out, options.seconds);
     if (!options.accompany) return run(run_options, &companion);
-    const auto besides = options.accompany(run_options, companion, [&companion] { companion.end_source(); });
+    const auto besides = options.accompany(run_options, companion, companion);
     return run(run_options, besides.get());
 }
 

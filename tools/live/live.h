@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "tools/live/live_controls.h"
 #include "tools/program/outcome.h"
 #include "tools/run/run.h"
 
@@ -16,10 +17,8 @@ struct LiveOptions {
     std::string source;            ///< the name of a camera; not used with `simulate`
     std::string simulate;          ///< a recording that plays as a camera would; empty: `source` is opened
     std::filesystem::path record;  ///< a recording of all frames, dropped ones included; empty: none
-    /// Makes who goes along besides, such as a window, of who does already; empty: nobody. `end_source` ends the
-    /// source.
-    std::function<std::unique_ptr<RunCompanion>(const RunOptions& run, RunCompanion& live,
-                                                std::function<void()> end_source)>
+    /// Makes who goes along besides, such as a window, of who does already; empty: nobody.
+    std::function<std::unique_ptr<RunCompanion>(const RunOptions& run, RunCompanion& live, LiveControls& controls)>
         accompany;
     double seconds = 0;  ///< after the first frame, the source is stopped; 0: it ends by itself or by the user
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/program/free_place.h"
 #include "tools/report/live_summary.h"
 
 namespace patina::tools {
@@ -38,9 +39,8 @@ LiveInput live_input(std::shared_ptr<sensor::LiveSource> source) {
     return {source, [source](vulkan::Device&) { return std::make_unique<SharedSource>(source); }};
 }
 
-LiveRun::LiveRun(LiveInput input, std::shared_ptr<sensor::Recorder> recorder, std::filesystem::path record,
-                 double seconds)
-    : input_(std::move(input)), recorder_(std::move(recorder)), record_(std::move(record)), seconds_(seconds) {}
+LiveRun::LiveRun(LiveInput input, std::shared_ptr<LiveRecording> recording, std::filesystem::path out, double seconds)
+    : input_(std::move(input)), recording_(std::move(recording)), out_(std::move(out)), seconds_(seconds) {}
 
 LiveRun::~LiveRun() { end(); }
 
@@ -86,22 +86,33 @@ void LiveRun::end() {
     input_.capture->stop();
     counts_ = input_.capture->counts();
     picture_.reset();
-    if (!recorder_) return;
-    try {
-        recorder_->finish();
-    } catch (const Error& error) {
-        recorder_problem_ = error.what();
+    recording_->stop();
+}
+
+std::string LiveRun::toggle_recording() {
+    if (recording_->file()) {
+        recording_->stop();
+        const EndedRecording& ended = recording_->ended().back();
+        if (!ended.problem.empty()) return ended.problem;
+        if (ended.counts.given == 0) return "no frame came: nothing was recorded";
+        return fmt::format("{} frames in {}", ended.counts.written, ended.file.string());
     }
-    recorded_ = recorder_->counts();
-    if (recorded_->given == 0) recorder_->discard();
+    try {
+        recording_->start(free_place_beside(out_, "recording", ".patina"));
+    } catch (const Error& error) {
+        return fmt::format("not recorded: {}", error.what());
+    }
+    return fmt::format("recording to {}", recording_->file()->string());
 }
 
 std::vector<std::string> LiveRun::shortfalls() const {
     std::vector<std::string> list;
-    if (!recorder_problem_.empty()) list.push_back(recorder_problem_);
-    if (recorded_ && recorded_->dropped > 0)
-        list.push_back(fmt::format("{} of {} frames are missing in '{}': the disk did not keep pace",
-                                   recorded_->dropped, recorded_->given, record_.string()));
+    for (const EndedRecording& ended : recording_->ended()) {
+        if (!ended.problem.empty()) list.push_back(ended.problem);
+        if (ended.counts.dropped > 0)
+            list.push_back(fmt::format("{} of {} frames are missing in '{}': the disk did not keep pace",
+                                       ended.counts.dropped, ended.counts.given, ended.file.string()));
+    }
     return list;
 }
 
@@ -120,7 +131,10 @@ std::vector<std::pair<std::string, std::string>> LiveRun::figures() const {
         {"dropped", std::to_string(counts.dropped)},
         {"pose after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", pose.median_ms, pose.p95_ms)},
         {"picture after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", picture.median_ms, picture.p95_ms)}};
-    if (recorder_) lines.emplace_back("recording", record_.string());
+    if (const auto file = recording_->file()) {
+        const std::string problem = recording_->problem();
+        lines.emplace_back("recording", problem.empty() ? file->string() : problem);
+    }
     return lines;
 }
 
@@ -132,11 +146,13 @@ void LiveRun::add_to(RunSummary& summary) const {
     live.seconds = last_s_ - first_s_.value_or(last_s_);
     live.pose = summarised(to_pose_s_);
     live.picture = summarised(to_picture_s_);
-    if (recorded_ && recorded_->given > 0) {
-        live.recording = BesideSummary{record_.string(), recorded_->given, recorded_->dropped, recorded_->bytes,
-                                       recorded_->most_queued_bytes};
+    for (const EndedRecording& ended : recording_->ended()) {
+        const sensor::RecorderCounts& counts = ended.counts;
+        if (counts.given > 0)
+            live.recordings.push_back(
+                {ended.file.string(), counts.given, counts.dropped, counts.bytes, counts.most_queued_bytes});
+        if (!ended.warning.empty()) summary.warnings.push_back(ended.warning);
     }
-    if (recorder_ && !recorder_->warning().empty()) summary.warnings.push_back(recorder_->warning());
     summary.live = std::move(live);
 }
 

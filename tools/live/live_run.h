@@ -10,7 +10,8 @@
 
 #include "reconstruction/view_readback.h"
 #include "sensor/live/live_source.h"
-#include "sensor/recording/recorder.h"
+#include "tools/live/live_controls.h"
+#include "tools/live/live_recording.h"
 #include "tools/program/camera_watch.h"
 #include "tools/program/interrupt.h"
 #include "tools/run/run.h"
@@ -28,12 +29,12 @@ struct LiveInput {
 LiveInput live_input(std::shared_ptr<sensor::LiveSource> source);
 
 /// Goes along with a live run: measures how long after its exposure a frame's pose and a picture of the model are
-/// there, ends the source when the user asks or the time is over, and reports what was dropped. A recorder that was
-/// given no frame leaves no file.
-class LiveRun : public RunCompanion {
+/// there, ends the source when the user asks or the time is over, records it, and reports what was dropped.
+class LiveRun : public RunCompanion, public LiveControls {
   public:
-    /// `recorder` may be null; `record` is its file. `seconds`: of the source; 0: no limit.
-    LiveRun(LiveInput input, std::shared_ptr<sensor::Recorder> recorder, std::filesystem::path record, double seconds);
+    /// `recording` takes what the source yields. `out`: the run's folder; recordings that the user begins lie beside
+    /// it. `seconds`: of the source; 0: no limit.
+    LiveRun(LiveInput input, std::shared_ptr<LiveRecording> recording, std::filesystem::path out, double seconds);
     ~LiveRun() override;
 
     std::unique_ptr<Source> source(vulkan::Device& device) override;
@@ -44,8 +45,9 @@ class LiveRun : public RunCompanion {
     void add_to(RunSummary& summary) const override;
     std::vector<std::pair<std::string, std::string>> figures() const override;
 
-    /// Ends the source: the run is whole then.
-    void end_source() { input_.capture->stop(); }
+    void end_source() override { input_.capture->stop(); }
+    bool is_recording() const override { return recording_->file().has_value(); }
+    std::string toggle_recording() override;
 
   private:
     void look(SessionCore& session);
@@ -53,8 +55,8 @@ class LiveRun : public RunCompanion {
 
     InterruptGuard interrupt_;
     LiveInput input_;
-    std::shared_ptr<sensor::Recorder> recorder_;
-    std::filesystem::path record_;
+    std::shared_ptr<LiveRecording> recording_;
+    std::filesystem::path out_;
     double seconds_;
 
     std::atomic<bool> begun_ = false;  ///< the session has taken a step
@@ -68,8 +70,6 @@ class LiveRun : public RunCompanion {
     std::optional<Picture> picture_;  ///< on its way
     bool ended_ = false;
     sensor::LiveCounts counts_;
-    std::optional<sensor::RecorderCounts> recorded_;
-    std::string recorder_problem_;
     std::optional<CameraWatch> watch_;  // last: it uses the capture
 };
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <variant>
 
 #include "sensor/recording/recorder.h"
 
@@ -32,6 +34,18 @@ class CameraPass {
         if (!open_) return;
         frame.index = frames_++;
         recorder_->record(std::move(frame));
+    }
+
+    void take(const Reading& reading) {
+        const std::lock_guard lock(mutex_);
+        if (!open_) return;
+        if (const auto* skipped = std::get_if<Skipped>(&reading)) {
+            recorder_->skip({frames_++, skipped->reason, skipped->dropped});
+        } else {
+            Frame frame = std::get<Frame>(reading);
+            frame.index = frames_++;
+            recorder_->record(std::move(frame));
+        }
     }
 
   private:

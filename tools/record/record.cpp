@@ -56,6 +56,16 @@ class Recording {
         capture.stop();
     }
 
+    /// The same of a camera whose exposure cannot be set: what it shows of itself.
+    void add(sensor::CameraSource& camera) {
+        if (!options_.quiet) print_error("{}\n", sensor::instruction(SequenceRole::kMain));
+        sensor::ExposureCheck exposure(SequenceRole::kMain);
+        begin(SequenceRole::kMain, camera.info());
+        camera.set_tap(sensor::tap_to(recorder_));
+        take(camera, std::nullopt, exposure);
+        finish_pass(SequenceRole::kMain, exposure);
+    }
+
     /// Records one sequence to its end.
     void add(SequenceRole role, const std::string& path, const std::string& format, const std::string& place) {
         sensor::ExposureCheck exposure(role);
@@ -203,8 +213,14 @@ class Recording {
     /// By its clock: what is looked at may be late, what is recorded is not.
     void play(SequenceRole role, std::unique_ptr<Source> recording, sensor::ExposureCheck& exposure) {
         begin(role, recording->info());
-        Progress progress("Recording", recording->info().frames, options_.quiet);
+        const std::optional<uint32_t> frames = recording->info().frames;
         sensor::PlayedSource source(std::move(recording), sensor::tap_to(recorder_));
+        take(source, frames, exposure);
+    }
+
+    /// What the source's tap records meanwhile, until the user, the time or the source ends it.
+    void take(sensor::LiveSource& source, std::optional<uint32_t> frames, sensor::ExposureCheck& exposure) {
+        Progress progress("Recording", frames, options_.quiet);
         const CameraWatch watch(source, interrupt_);
         while (std::optional<Reading> reading = source.next()) {
             if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
@@ -258,19 +274,30 @@ class Recording {
     std::vector<std::string> advice_;
 };
 
-Outcome record_camera(const RecordOptions& options) {
-    if (!options.lighting.empty() && options.lighting != options.source)
-        throw Error("the sequence of low exposure of a camera comes from the camera itself: --lighting ",
-                    options.source, ", not --lighting ", options.lighting);
-    const auto capture = open_kinect2();
+/// What was recorded before the camera failed is kept.
+template <class Camera>
+Outcome record_from(const RecordOptions& options, Camera& camera) {
     Recording recording(options);
     try {
-        recording.add(*capture);
+        recording.add(camera);
     } catch (const std::exception& error) {  // it was unplugged, perhaps
-        capture->stop();
+        camera.stop();
         recording.keep(reason_of(error));
     }
     return recording.finish();
+}
+
+Outcome record_camera(const RecordOptions& options) {
+    if (options.source != kKinect2) {
+        if (!options.lighting.empty())
+            throw Error("the exposure of ", options.source,
+                        " cannot be set, so it has no sequence of low exposure: record one with another camera");
+        return record_from(options, *open_other_camera(options.source));
+    }
+    if (!options.lighting.empty() && options.lighting != options.source)
+        throw Error("the sequence of low exposure of a camera comes from the camera itself: --lighting ",
+                    options.source, ", not --lighting ", options.lighting);
+    return record_from(options, *open_kinect2());
 }
 
 /// Wrong paths are found before the file is there.

@@ -44,12 +44,12 @@ Json live_json(const LiveSummary& live) {
               {"seconds", live.seconds},
               {"exposure_to_pose", latency_json(live.pose)},
               {"exposure_to_picture", latency_json(live.picture)}};
-    if (const auto& beside = live.recording) {
-        json["recording"] = {{"file", beside->file},
-                             {"frames", beside->frames},
-                             {"dropped", beside->dropped},
-                             {"bytes", beside->bytes},
-                             {"most_queued_bytes", beside->most_queued_bytes}};
+    for (const BesideSummary& beside : live.recordings) {
+        json["recordings"].push_back({{"file", beside.file},
+                                      {"frames", beside.frames},
+                                      {"dropped", beside.dropped},
+                                      {"bytes", beside.bytes},
+                                      {"most_queued_bytes", beside.most_queued_bytes}});
     }
     return json;
 }
@@ -60,9 +60,9 @@ std::string live_table(const LiveSummary& live) {
     facts +=
         report_fact("Frames a second",
                     fmt::format("{:.1f}", live.seconds > 0 ? static_cast<double>(live.captured) / live.seconds : 0.0));
-    if (const auto& beside = live.recording) {
-        facts += report_fact("Recorded to", html_escaped(beside->file));
-        facts += report_fact("Frames that the disk did not keep pace with", grouped(beside->dropped));
+    for (const BesideSummary& beside : live.recordings) {
+        facts += report_fact("Recorded to", html_escaped(beside.file));
+        facts += report_fact("Frames that the disk did not keep pace with", grouped(beside.dropped));
     }
     return report_facts(facts) +
            report_table(

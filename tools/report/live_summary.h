@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +29,10 @@ struct BesideSummary {
 /// How a live run kept pace with its source: captured is used, skipped and dropped, and those that came after the end.
 struct LiveSummary {
     uint64_t captured = 0, dropped = 0, damaged = 0;
-    double seconds = 0;      ///< from the first frame to the last
-    LatencySummary pose;     ///< of the frames that were fused
-    LatencySummary picture;  ///< of those that the model was rendered for
-    std::optional<BesideSummary> recording{};
+    double seconds = 0;                       ///< from the first frame to the last
+    LatencySummary pose;                      ///< of the frames that were fused
+    LatencySummary picture;                   ///< of those that the model was rendered for
+    std::vector<BesideSummary> recordings{};  ///< beside it, in the order in which they began
 };
 
 /// For run.json.

@@ -25,6 +25,7 @@ Json frames_json(const FrameLedger& frames) {
     Json json{{"read", frames.read}, {"used", frames.used}};
     if (frames.dropped > 0) json["dropped"] = frames.dropped;
     json["repeated"] = frames.repeated;
+    if (frames.undone > 0) json["undone"] = frames.undone;
     json["skipped"] = std::move(skipped);
     return json;
 }

@@ -26,13 +26,14 @@ struct DeviceSummary {
     std::string driver;          ///< name and version
 };
 
-/// What became of the frames that were due: read is used plus skipped plus dropped plus repeated.
+/// What became of the frames that were due: read is used plus skipped, dropped, repeated and undone.
 struct FrameLedger {
     uint64_t read = 0;  ///< arrived from the source, skipped ones included
     uint64_t used = 0;  ///< fused into the model
     std::vector<Skipped> skipped;
     uint64_t dropped = 0;   ///< a live source had newer ones
     uint64_t repeated = 0;  ///< the same picture and depth as the one before, or the same time
+    uint64_t undone = 0;    ///< fused, and forgotten again as the user asked
 };
 
 /// How full the pool of voxel blocks was at the end.

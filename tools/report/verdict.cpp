@@ -24,7 +24,7 @@ double share_of(double part, double whole) { return whole > 0 ? part / whole : 0
 
 void judge_frames(const RunSummary& summary, Verdict& verdict) {
     const uint64_t frames = summary.sequence.frames.value_or(summary.frames.read);
-    const uint64_t due = frames - std::min(frames, summary.frames.repeated);
+    const uint64_t due = frames - std::min(frames, summary.frames.repeated + summary.frames.undone);
     if (due == 0) return;
     const std::string used = fmt::format("{} of {} frames were used", summary.frames.used, due);
     if (share_of(static_cast<double>(summary.frames.used), static_cast<double>(due)) >= kEnoughFrames) {

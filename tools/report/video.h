@@ -9,8 +9,8 @@
 
 namespace patina {
 
-/// Writes a video, which appears whole or not at all: Motion JPEG in .avi; in .mp4 H.264, or MPEG-4 where FFmpeg does not
-/// encode that.
+/// Writes a video, which appears whole or not at all: Motion JPEG in .avi; in .mp4 H.264, or MPEG-4 where FFmpeg does
+/// not encode that.
 class VideoWriter {
   public:
     /// Throws Error when the file's extension is another, it cannot be written (OutputFile), or there is no encoder.

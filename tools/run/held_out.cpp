@@ -64,6 +64,10 @@ void HeldOut::keep(const Frame& frame, uint32_t order) {
     kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
 }
 
+void HeldOut::keep_first(uint32_t frames) {
+    std::erase_if(kept_, [&](const Kept& kept) { return kept.order >= frames; });
+}
+
 void HeldOut::visit(graph::StateVisitor& visitor) {
     struct Picture {
         uint32_t index, order;

@@ -19,6 +19,9 @@ class HeldOut {
     /// Keeps such a frame; `order`: of the last frame that was added to the reconstruction before it.
     void keep(const Frame& frame, uint32_t order);
 
+    /// Forgets those that came after the first `frames` that were added.
+    void keep_first(uint32_t frames);
+
     void visit(graph::StateVisitor& visitor);
 
     /// Renders the model from where each picture was taken, at the gains of the frame that was fused before it, and

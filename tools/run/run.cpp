@@ -100,7 +100,7 @@ class Run {
     void fuse_all() {
         try {
             while (session_.step()) {
-                if (companion_) companion_->after_step(session_);
+                accompany();
                 if (const Frame* frame = session_.fused()) after(*frame);
                 if (const Frame* frame = session_.held_out()) held_out_.keep(*frame, pipeline_.frames() - 1);
                 session_.checkpoint_if_due([this](auto& visitor, MapFile& map) { keep(visitor, map); });
@@ -181,6 +181,14 @@ class Run {
             const std::vector<uint8_t> bytes = read_file(folder_.published(name), UINT64_MAX);
             map.set_file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         }
+    }
+
+    /// The user may have gone back to an earlier model.
+    void accompany() {
+        if (!companion_) return;
+        companion_->after_step(session_);
+        pictures_.keep_first(pipeline_.frames());
+        held_out_.keep_first(pipeline_.frames());
     }
 
     void after(const Frame& frame) {

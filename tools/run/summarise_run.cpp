@@ -122,8 +122,8 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
     summary.lights = lights_json(session.illumination());
     summary.sequence = session.info();
     if (!summary.sequence.frames) summary.sequence.frames = session.ledger().read();
-    summary.frames = {session.ledger().read(), session.ledger().used(), session.ledger().skipped(),
-                      session.ledger().dropped(), session.ledger().repeated()};
+    summary.frames = {session.ledger().read(),    session.ledger().used(),     session.ledger().skipped(),
+                      session.ledger().dropped(), session.ledger().repeated(), session.ledger().undone()};
     summary.world_offset_m = session.world_offset_m();
     add_pools(summary, session);
     const PipelineCounters counters = pipeline.counters();

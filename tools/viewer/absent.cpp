@@ -16,7 +16,7 @@ namespace {
 
 void view(const ViewOptions&) { fail(); }
 
-std::unique_ptr<RunCompanion> show_run(const ViewerOptions&, const RunOptions&, RunCompanion*, std::function<void()>) {
+std::unique_ptr<RunCompanion> show_run(const ViewerOptions&, const RunOptions&, RunCompanion*, LiveControls*) {
     fail();
 }
 

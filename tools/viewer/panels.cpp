@@ -142,11 +142,31 @@ void show_picked(const ViewerState& state, Extent2D window) {
     ImGui::End();
 }
 
+/// Whether it was pressed. Why it cannot be is shown under the mouse.
+bool show_button(const char* text, const Button& button) {
+    ImGui::BeginDisabled(!button.can());
+    const bool pressed = ImGui::Button(text);
+    ImGui::EndDisabled();
+    if (!button.can() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("%s", button.lacks.c_str());
+    return pressed;
+}
+
 void show_buttons(ViewerState& state, const ViewerFacts& facts, Extent2D window) {
-    place({static_cast<float>(window.width) / 2 - 150, static_cast<float>(window.height) - 60}, 300);
-    ImGui::Begin("Run", nullptr, ImGuiWindowFlags_NoTitleBar);
+    // As large as the last message asks for, from the bottom up.
+    const ImVec2 bottom(static_cast<float>(window.width) / 2, static_cast<float>(window.height) - kMargin);
+    ImGui::SetNextWindowPos(bottom, ImGuiCond_Always, {0.5f, 1});
+    ImGui::Begin("Run", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize);
     if (facts.can_pause) {
         if (ImGui::Button(state.paused ? "Go on (space)" : "Pause (space)")) state.paused = !state.paused;
+        ImGui::SameLine();
+    }
+    if (facts.record.shown) {
+        if (show_button(facts.recording ? "Stop recording (R)" : "Record (R)", facts.record)) state.record_asked = true;
+        ImGui::SameLine();
+    }
+    if (facts.undo.shown) {
+        if (show_button("Undo (ctrl Z)", facts.undo)) state.undo_asked = true;
         ImGui::SameLine();
     }
     ImGui::BeginDisabled(!facts.can_export);
@@ -174,6 +194,8 @@ void show_help(ViewerState& state, Extent2D window) {
                 {"numpad . or F", "turn around the clicked surface"},
                 {"numpad 0", "follow the sensor, or free"},
                 {"space", "pause"},
+                {"R", "record a live source, or stop that"},
+                {"control + Z", "undo: back to the last checkpoint"},
                 {"E", "export"},
                 {"H", "this list"},
                 {"control + Q", "close"}},

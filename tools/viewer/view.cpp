@@ -7,10 +7,10 @@
 #include "export/upright.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/stored_map.h"
+#include "tools/program/free_place.h"
 #include "tools/program/map_text.h"
 #include "tools/program/standard_streams.h"
 #include "tools/render/orbit.h"
-#include "tools/viewer/export_folder.h"
 #include "tools/viewer/make_display.h"
 #include "tools/viewer/viewer.h"
 #include "tools/viewer/viewer_options.h"
@@ -123,7 +123,7 @@ class MapView {
 
     void export_now() {
         try {
-            const std::filesystem::path folder = free_folder_beside(options_.input);
+            const std::filesystem::path folder = free_place_beside(options_.input, "export");
             map_.scene().save(folder);
             message_ = fmt::format("exported to {}", folder.string());
         } catch (const Error& error) {

@@ -48,6 +48,8 @@ void take_key(const KeyPress& press, ViewerState& state) {
         case GLFW_KEY_KP_0:
         case GLFW_KEY_0: state.follow = !state.follow; break;
         case GLFW_KEY_SPACE: state.paused = !state.paused; break;
+        case GLFW_KEY_R: state.record_asked = true; break;
+        case GLFW_KEY_Z: state.undo_asked = state.undo_asked || press.control; break;
         case GLFW_KEY_E: state.export_asked = true; break;
         case GLFW_KEY_H: state.help = !state.help; break;
         default: break;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 
 #include "patina/image.h"
+#include "tools/live/live_controls.h"
 #include "tools/run/run.h"
 #include "tools/viewer/layers.h"
 
@@ -31,10 +31,10 @@ struct ViewOptions {
 /// this program was built without a viewer, the map cannot be read, there is no display, or the device was lost.
 void view(const ViewOptions& options);
 
-/// Goes along with a run and shows its scene as it grows. `inner`: who else goes along; may be null, else it must
-/// outlive this. `end_source`: ends a live source when the user closes the window; empty: the run is interrupted then.
-/// Throws Error as view() does.
+/// Goes along with a run and shows its scene as it grows. `inner`: who else goes along; may be null.
+/// `live`: of a live source, which ends when the user closes the window; null: the run is interrupted then. Both must
+/// outlive this. Throws Error as view() does.
 std::unique_ptr<RunCompanion> show_run(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
-                                       std::function<void()> end_source);
+                                       LiveControls* live);
 
 }  // namespace patina::tools

@@ -35,6 +35,8 @@ struct ViewerState {
     bool paused = false;
     bool help = false;
     bool export_asked = false;   ///< until whoever runs the viewer has done it
+    bool record_asked = false;   ///< likewise: a recording is to begin, or to end
+    bool undo_asked = false;     ///< likewise: back to the last checkpoint
     bool shadows_asked = false;  ///< likewise: shadows of the lights as they are now
 };
 
@@ -44,6 +46,14 @@ struct PassMean {
     double ms = 0;
 };
 
+/// A button of the user's.
+struct Button {
+    bool shown = false;
+    std::string lacks;  ///< why it cannot be pressed; empty where it can
+
+    bool can() const { return shown && lacks.empty(); }
+};
+
 /// What the user is shown besides the picture.
 struct ViewerFacts {
     std::vector<std::pair<std::string, std::string>> lines;  ///< what, and how it is now
@@ -51,6 +61,8 @@ struct ViewerFacts {
     std::vector<PassMean> passes;  ///< the slowest first
     std::string message;           ///< of the last thing that was done
     bool can_pause = false, can_export = false, can_cast_shadows = false;
+    Button record, undo;
+    bool recording = false;
     bool reflectance = false, segmentation = false;  ///< the model has them
 };
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "reconstruction/session/session_core.h"
+#include "tools/program/free_place.h"
 #include "tools/program/inputs.h"
 #include "tools/report/run_summary.h"
-#include "tools/viewer/export_folder.h"
 #include "tools/viewer/make_display.h"
 
 namespace patina::tools {
@@ -30,12 +30,11 @@ const char* word_of(TrackingState state) {
 
 }  // namespace
 
-WindowRun::WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
-                     std::function<void()> end_source)
+WindowRun::WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner, LiveControls* live)
     : options_(options),
       out_(run.out),
       inner_(inner),
-      end_source_(std::move(end_source)),
+      live_(live),
       display_(make_display(options, "patina", inputs_of(run))) {}
 
 WindowRun::~WindowRun() = default;
@@ -54,9 +53,7 @@ std::unique_ptr<Source> WindowRun::source(vulkan::Device& device) {
 void WindowRun::adjust(SessionCallbacks& callbacks) {
     if (inner_) inner_->adjust(callbacks);
     // A live source is ended instead, and the run is whole then; but for the time before its first frame.
-    callbacks.stop = [this, stop = callbacks.stop] {
-        return (closed() && !(end_source_ && begun_)) || (stop && stop());
-    };
+    callbacks.stop = [this, stop = callbacks.stop] { return (closed() && !(live_ && begun_)) || (stop && stop()); };
     callbacks.progress = [this, show = callbacks.progress](const SessionProgress& progress) {
         progress_ = progress.total ? fmt::format("{} of {} {}", progress.done, *progress.total, progress.task)
                                    : fmt::format("{} {}", progress.done, progress.task);
@@ -68,7 +65,7 @@ bool WindowRun::closed() {
     if (closed_ || !display_) return closed_;
     display_->poll(0);
     closed_ = display_->closed();
-    if (closed_ && end_source_ && begun_) end_source_();
+    if (closed_ && live_ && begun_) live_->end_source();
     return closed_;
 }
 
@@ -76,24 +73,36 @@ void WindowRun::after_step(SessionCore& session) {
     if (inner_) inner_->after_step(session);
     begun_ = true;
     const Frame* frame = session.fused() ? session.fused() : session.held_out();
-    if (frame) sensor_ = *frame->world_from_camera;
+    if (frame) {
+        sensor_ = *frame->world_from_camera;
+        frame_s_ = frame->timestamp_s;
+    }
     if (!problem_.empty() || !display_) return;
     if (!frame && display_->wants_all()) return;  // nothing has changed
+    bool paused = false;
+    do {
+        if (paused) session.stop_if_interrupted();
+        if (closed() || !show(session, paused)) return;
+        // What fails here in the middle leaves no model to go on with.
+        if (std::exchange(viewer_->state().undo_asked, false)) undo(session);
+        paused = viewer_->state().paused;
+    } while (paused);
+    if (session.fused()) keep_checkpoint(session);
+}
+
+bool WindowRun::show(SessionCore& session, bool paused) {
     try {
-        show(session);
+        if (paused) {
+            draw(session, kPaused_s);
+            session.pipeline().runner().wait();
+        } else if (viewer_->due()) {
+            draw(session, 0);
+        }
+        return true;
     } catch (const std::exception& error) {
         // The run needs no window. Of a device that was lost the run finds out itself.
         problem_ = fmt::format("drawing ended: {}", reason_of(error));
-    }
-}
-
-void WindowRun::show(SessionCore& session) {
-    if (closed()) return;
-    if (viewer_->due()) draw(session, 0);
-    while (viewer_->state().paused && !closed()) {
-        session.stop_if_interrupted();
-        draw(session, kPaused_s);
-        session.pipeline().runner().wait();
+        return false;
     }
 }
 
@@ -105,12 +114,62 @@ void WindowRun::draw(SessionCore& session, double patience_s) {
 }
 
 void WindowRun::take_wishes(SessionCore& session) {
-    if (std::exchange(viewer_->state().export_asked, false)) export_now(session);
+    ViewerState& state = viewer_->state();
+    if (std::exchange(state.export_asked, false)) export_now(session);
+    if (std::exchange(state.record_asked, false)) record_or_stop();
+    if (state.undo_asked && !undo_button(session).can()) {
+        message_ = fmt::format("not undone: {}", undo_button(session).lacks);
+        state.undo_asked = false;
+    }
+}
+
+void WindowRun::record_or_stop() {
+    const Button button = record_button();
+    message_ = button.can() ? live_->toggle_recording() : fmt::format("not recorded: {}", button.lacks);
+}
+
+/// Nobody goes back off screen.
+void WindowRun::keep_checkpoint(SessionCore& session) {
+    const RunMoment now = moment(session);
+    const auto start = std::chrono::steady_clock::now();
+    const auto since = [](std::chrono::steady_clock::time_point t) {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+    };
+    if (display_->wants_all() || !checkpoint_problem_.empty() || !checkpoints_.due(now, since({}))) return;
+    try {
+        session.keep_model(checkpoints_.begin());
+        checkpoints_.kept(now, since({}), since(start));
+    } catch (const Error& error) {
+        checkpoint_problem_ = fmt::format("no checkpoint could be kept: {}", error.what());
+        message_ = checkpoint_problem_;
+    }
+}
+
+void WindowRun::undo(SessionCore& session) {
+    const RunMoment before = moment(session);
+    MapFile* map = checkpoints_.choose(before);
+    if (!map) return;
+    session.go_back(*map);
+    const double lost_s = checkpoints_.went_back(before);
+    const uint32_t lost = before.frames - session.pipeline().frames();
+    message_ = fmt::format("undone: {} frames of {:.1f} s are forgotten{}", lost, lost_s,
+                           session.pipeline().tracking() ? "; show the camera a place from before" : "");
+}
+
+Button WindowRun::record_button() const {
+    return {true, live_ ? "" : "only a live source is recorded, and this one is a recording already"};
+}
+
+Button WindowRun::undo_button(SessionCore& session) const {
+    if (!checkpoint_problem_.empty()) return {true, checkpoint_problem_};
+    if (checkpoints_.can_go_back(moment(session))) return {true, ""};
+    return {true, display_->wants_all() ? "off screen no checkpoints are kept"
+                                        : "there is no checkpoint before what is shown"};
 }
 
 void WindowRun::export_now(SessionCore& session) {
     try {
-        const std::filesystem::path folder = free_folder_beside(out_);
+        const std::filesystem::path folder = free_place_beside(out_, "export");
         session.scene().save(folder);
         message_ = fmt::format("exported to {}", folder.string());
     } catch (const Error& error) {
@@ -135,6 +194,9 @@ ViewerFacts WindowRun::facts_of(SessionCore& session) const {
     facts.passes = slowest_passes(pipeline.runner());
     facts.message = message_;
     facts.can_pause = !display_->wants_all();
+    facts.record = record_button();
+    facts.undo = undo_button(session);
+    facts.recording = live_ && live_->is_recording();
     facts.can_export = session.ledger().used() > 0;
     return facts;
 }
@@ -165,8 +227,8 @@ std::vector<std::pair<std::string, std::string>> WindowRun::figures() const {
 }
 
 std::unique_ptr<RunCompanion> show_run(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
-                                       std::function<void()> end_source) {
-    return std::make_unique<WindowRun>(options, run, inner, std::move(end_source));
+                                       LiveControls* live) {
+    return std::make_unique<WindowRun>(options, run, inner, live);
 }
 
 }  // namespace patina::tools

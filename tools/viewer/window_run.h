@@ -2,12 +2,12 @@
 
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/viewer/checkpoints.h"
 #include "tools/viewer/viewer.h"
 #include "tools/viewer/viewer_options.h"
 
@@ -17,8 +17,7 @@ namespace patina::tools {
 class WindowRun : public RunCompanion {
   public:
     /// As show_run().
-    WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner,
-              std::function<void()> end_source);
+    WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner, LiveControls* live);
     ~WindowRun() override;
 
     void prepare(vulkan::DeviceOptions& options) override;
@@ -31,9 +30,16 @@ class WindowRun : public RunCompanion {
     std::vector<std::pair<std::string, std::string>> figures() const override;
 
   private:
-    void show(SessionCore& session);
+    /// Draws, where there is time; `paused`: in any case, and waits for the user. False where that failed.
+    bool show(SessionCore& session, bool paused);
     void draw(SessionCore& session, double patience_s);
     void take_wishes(SessionCore& session);
+    void record_or_stop();
+    void keep_checkpoint(SessionCore& session);
+    void undo(SessionCore& session);
+    Button record_button() const;
+    Button undo_button(SessionCore& session) const;
+    RunMoment moment(SessionCore& session) const { return {frame_s_, session.pipeline().frames()}; }
     void export_now(SessionCore& session);
     ViewerFacts facts_of(SessionCore& session) const;
     /// Whether the user has closed the window, and wants the run to end.
@@ -42,10 +48,13 @@ class WindowRun : public RunCompanion {
     ViewerOptions options_;
     std::filesystem::path out_;
     RunCompanion* inner_;
-    std::function<void()> end_source_;
+    LiveControls* live_;                ///< null where the source is not live
     std::unique_ptr<Display> display_;  ///< null once the run has ended
     std::optional<Viewer> viewer_;      ///< from the device on
     std::optional<RigidTransform> sensor_;
+    Checkpoints checkpoints_;
+    double frame_s_ = 0;  ///< timestamp of the last frame that was fused or held out
+    std::string checkpoint_problem_;
     std::string progress_, message_, problem_;
     bool begun_ = false, closed_ = false;
 };
