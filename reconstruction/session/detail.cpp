@@ -16,7 +16,8 @@ namespace {
 // the readings are nearer than 1 m; its median is 1.5 m and more.
 constexpr double kFineMedian_m = 0.8, kFineFar_m = 2, kFinePixel_m = 0.00125;
 // Coarse: a hall, of which normal voxels would each be hit by less than one pixel, and whose walls lie beyond 6 m.
-constexpr double kCoarseMedian_m = 4.5, kCoarsePixel_m = 0.005;
+// What no depth camera reaches is another unit, which others tell.
+constexpr double kCoarseMedian_m = 4.5, kCoarsePixel_m = 0.005, kFarthest_m = 30;
 
 constexpr float kBandVoxels = 4;  // half width of the band at depth 0, of voxels that were given
 
@@ -53,7 +54,8 @@ DetailChoice choose_detail(const SessionOptions& options, const SequenceInfo& in
     const std::string and_pixel = fmt::format("{}, where a pixel covers {:.1f} mm", because, 1000 * pixel_m);
     if (seen->median_m <= kFineMedian_m && seen->p95_m <= kFineFar_m && pixel_m <= kFinePixel_m)
         return {Detail::kFine, and_pixel};
-    if (seen->median_m >= kCoarseMedian_m && pixel_m >= kCoarsePixel_m) return {Detail::kCoarse, and_pixel};
+    const bool far = seen->median_m >= kCoarseMedian_m && seen->median_m <= kFarthest_m;
+    if (far && pixel_m >= kCoarsePixel_m) return {Detail::kCoarse, and_pixel};
     return {Detail::kNormal, std::move(because)};
 }
 

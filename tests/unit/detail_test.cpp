@@ -28,6 +28,7 @@ TEST(Detail, IsFineForWhatLiesOnATableAndCoarseForHalls) {
     for (const double room_m : {0.9, 1.9, 3.0, 4.0}) EXPECT_EQ(level_at(room_m, 2 * room_m, 365), Detail::kNormal);
     EXPECT_EQ(level_at(5, 9, 365), Detail::kCoarse);
     EXPECT_EQ(level_at(5, 9, 1500), Detail::kNormal) << "a pixel covers 3.3 mm";
+    EXPECT_EQ(level_at(1112, 2000, 365), Detail::kNormal) << "millimetres taken for metres";
 }
 
 TEST(Detail, ReasonsAreTold) {
