@@ -93,7 +93,6 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     if (kept_detail) detail_ = *std::move(kept_detail);
     options_.detail = detail_.level;
     set_detail(options_.settings, detail_.level);
-    if (!scene_) report(options_.callbacks, sentence_of(detail_, options_.settings));
     if (!earlier && needs_reflectance(options_) && lights_source(options_) == LightsSource::kNone)
         fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
@@ -105,6 +104,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     } else if (earlier) {
         extend(*earlier);
     }
+    if (!scene_) report(options_.callbacks, sentence_of(detail_, options_.settings));
     if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
 }
 

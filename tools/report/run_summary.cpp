@@ -24,7 +24,7 @@ Json frames_json(const FrameLedger& frames) {
     for (const Skipped& frame : frames.skipped) skipped.push_back({{"index", frame.index}, {"reason", frame.reason}});
     Json json{{"read", frames.read}, {"used", frames.used}};
     if (frames.dropped > 0) json["dropped"] = frames.dropped;
-    json["repeated"] = frames.repeated;
+    if (frames.repeated > 0) json["repeated"] = frames.repeated;
     if (frames.undone > 0) json["undone"] = frames.undone;
     json["skipped"] = std::move(skipped);
     return json;
