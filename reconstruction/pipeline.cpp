@@ -140,8 +140,10 @@ TextureLayout Pipeline::sampled_between_vertices(const TextureLayout& layout) {
             fine.pieces.push_back(piece);
             continue;
         }
+        // No shorter than a tile of texels, each of which looks at all triangles of its tile.
         const double record_m = double{stages_.reflectance->observations().settings().voxel_m};
-        TexturedSurface& split = fine.pieces.emplace_back(with_short_edges(piece, record_m));
+        const double longest_m = std::max(record_m, layout.texel_m * gpu::kTextureTile);
+        TexturedSurface& split = fine.pieces.emplace_back(with_short_edges(piece, longest_m));
         const MeshReflectance sampled = sample_part_by_part(split.mesh);
         split.reflectance.kd = sampled.kd;
         split.reflectance.labels = sampled.labels;
