@@ -188,7 +188,7 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
     EXPECT_GT(live["exposure_to_pose"]["median_ms"], 0);
     EXPECT_GT(live["exposure_to_picture"]["median_ms"], 0);
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("From exposure to"));
-    EXPECT_EQ(live["recording"]["frames"], 90u);  // dropped ones, too
+    EXPECT_EQ(live["recordings"].at(0)["frames"], 90u);  // dropped ones, too
     EXPECT_EQ(sensor::open_sequence(beside("beside.patina"))->info().frames, 90u);
 
     std::set<int64_t> used_ms;
