@@ -104,7 +104,6 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
     } else if (earlier) {
         extend(*earlier);
     }
-    if (!scene_) report(options_.callbacks, sentence_of(detail_, options_.settings));
     if (const auto warning = reach_warning()) report(options_.callbacks, "warning: " + *warning);
 }
 
@@ -172,6 +171,7 @@ bool SessionCore::step() {
         return false;
     }
     ledger_.note(*reading);
+    if (!scene_ && ledger_.read() <= 1) report(options_.callbacks, sentence_of(detail_, options_.settings));
     const std::optional<std::string> repeated = repeats_last(*reading);
     if (inspector_) inspector_->add(*reading);
     if (repeated) {
