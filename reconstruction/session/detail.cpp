@@ -33,7 +33,7 @@ void set_unless_given(Settings& settings, const char* key, Value& place, Value v
 
 DetailValues values_of(Detail level) {
     switch (level) {
-        // Four voxels are less than what depth of steep metal is off by: the rim of a dish came out with gaps.
+        // The depth of steep metal, as of a dish's rim, is off by more than four such voxels.
         case Detail::kFine: return {0.0025f, 0.016f, 3, 0.01f, 8};
         case Detail::kCoarse: return {0.01f, 0.04f, 12, 0.04f, 12};
         case Detail::kNormal: break;

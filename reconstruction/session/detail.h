@@ -33,7 +33,7 @@ DetailChoice choose_detail(const SessionOptions& options, const SequenceInfo& in
 /// such voxels hold.
 void set_detail(Settings& settings, Detail level);
 
-/// For a person: "detail: fine, voxels of 2.5 mm up to 3 m (the median depth is 0.55 m); --detail ...".
+/// For a person: "detail: fine, voxels of 2.5 mm, depth up to 3 m, since the median depth is 0.55 m, where ...".
 std::string sentence_of(const DetailChoice& choice, const Settings& settings);
 
 }  // namespace patina

@@ -183,8 +183,7 @@ Estimate robust_mean(Center center, float noise) {
     const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
     vec3 weights = vec3(0.0), mean = vec3(0.0);
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
-        brightness[k] -= center.brightness;
-        robust[k] = trust[k] * robust_share(brightness[k], inverse_scale);
+        robust[k] = trust[k] * robust_share(brightness[k] - center.brightness, inverse_scale);
         const vec3 share = robust[k] * vec3(not(observation_clipped(direction_word[k])));
         weights += share;
         mean += share * diffuse[k];
@@ -197,7 +196,7 @@ Estimate robust_mean(Center center, float noise) {
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         trusted += trust[k];
         unclipped += (direction_word[k] & kAnyClipped) != 0u ? 0.0 : trust[k];
-        const float off = brightness[k], weight = robust[k];
+        const float off = brightness[k] - center.brightness, weight = robust[k];
         const uvec3 low =
             uvec3(observation_clipped(direction_word[k])) & uvec3(lessThanEqual(diffuse[k], unclipped_mean));
         const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), bvec3(low));

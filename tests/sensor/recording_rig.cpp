@@ -1,5 +1,6 @@
 #include "tests/sensor/recording_rig.h"
 
+#include "sensor/repeated.h"
 #include "tests/sensor/sequences.h"
 
 namespace patina::sensor::testing {
@@ -13,17 +14,6 @@ void record_frames(Recorder& recorder, SequenceRole role, uint32_t frames) {
     for (const Reading& reading : test_readings(frames)) recorder.record(std::get<Frame>(reading));
 }
 
-template <class Picture>
-bool same_picture(const Picture& a, const Picture& b) {
-    if (a.index() != b.index()) return false;
-    return std::visit(
-        [&](const auto& image) {
-            const auto& other = std::get<std::decay_t<decltype(image)>>(b);
-            return image.extent() == other.extent() && image.pixels() == other.pixels();
-        },
-        a);
-}
-
 }  // namespace
 
 void write_recording(const std::filesystem::path& file, uint32_t frames, bool lighting) {
@@ -34,8 +24,8 @@ void write_recording(const std::filesystem::path& file, uint32_t frames, bool li
 }
 
 bool same_frame(const Frame& a, const Frame& b) {
-    return a.index == b.index && a.timestamp_s == b.timestamp_s && same_picture(a.color, b.color) &&
-           same_picture(a.depth, b.depth) && a.world_from_camera == b.world_from_camera &&
+    return a.index == b.index && a.timestamp_s == b.timestamp_s && same_pixels(a.color, b.color) &&
+           same_pixels(a.depth, b.depth) && a.world_from_camera == b.world_from_camera &&
            a.pose_defect == b.pose_defect && a.exposure == b.exposure;
 }
 

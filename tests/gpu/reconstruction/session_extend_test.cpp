@@ -5,11 +5,9 @@
 
 #include <gmock/gmock.h>
 
-#include "patina/session.h"
-#include "reconstruction/api/access.h"
 #include "reconstruction/session/session_core.h"
 #include "tests/export/temporary_folder.h"
-#include "tests/gpu/scenes/small_office.h"
+#include "tests/gpu/reconstruction/office_session.h"
 
 // A session that begins from the map of another one.
 
@@ -18,35 +16,11 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-constexpr uint32_t kFrames = 30;
-
-class SessionExtendTest : public ::testing::Test {
+class SessionExtendTest : public OfficeSessionTest {
   protected:
-    static void SetUpTestSuite() {
-        device_ = std::make_unique<Device>(DeviceChoice{.validation = true});
-        office_ = std::make_unique<SmallOffice>(Access::vulkan(*device_), kFrames);
-    }
-    static void TearDownTestSuite() {
-        office_.reset();
-        device_.reset();
-    }
-    void TearDown() override { EXPECT_THAT(device_->validation_messages(), IsEmpty()); }
-
-    SessionOptions options() const {
-        SessionOptions options;
-        options.lighting = Lighting{.lights = {{{0, -1, 0.5}, glm::dvec3(4)}}};
-        options.materials = Materials::kFit;
-        for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"},
-                                         {"fusion.truncation_m", "0.06"},
-                                         {"tracking.finest", "0"},
-                                         {"map.initial_blocks", "16384"},
-                                         {"reflectance.voxel_m", "0.08"}})
-            options.settings.set(key, value);
-        return options;
-    }
+    static SessionOptions options() { return office_options("16384"); }
 
     SessionOptions extending(const std::filesystem::path& map) const {
         SessionOptions further = options();
@@ -71,8 +45,6 @@ class SessionExtendTest : public ::testing::Test {
         return mapped.map;
     }
 
-    static inline std::unique_ptr<Device> device_;
-    static inline std::unique_ptr<SmallOffice> office_;
     const test::TemporaryFolder folder_;
 };
 

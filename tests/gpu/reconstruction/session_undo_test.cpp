@@ -6,10 +6,8 @@
 #include <gmock/gmock.h>
 
 #include "engine/store/temporary_database.h"
-#include "patina/session.h"
-#include "reconstruction/api/access.h"
 #include "reconstruction/session/session_core.h"
-#include "tests/gpu/scenes/small_office.h"
+#include "tests/gpu/reconstruction/office_session.h"
 
 // A session that goes back to a model that it kept: what was fused since is as if it had never been.
 
@@ -17,34 +15,11 @@ namespace patina {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
-constexpr uint32_t kFrames = 30;
-
-class SessionUndoTest : public ::testing::Test {
+class SessionUndoTest : public OfficeSessionTest {
   protected:
-    static void SetUpTestSuite() {
-        device_ = std::make_unique<Device>(DeviceChoice{.validation = true});
-        office_ = std::make_unique<SmallOffice>(Access::vulkan(*device_), kFrames);
-    }
-    static void TearDownTestSuite() {
-        office_.reset();
-        device_.reset();
-    }
-    void TearDown() override { EXPECT_THAT(device_->validation_messages(), IsEmpty()); }
-
-    static SessionOptions options() {
-        SessionOptions options;
-        options.lighting = Lighting{.lights = {{{0, -1, 0.5}, glm::dvec3(4)}}};
-        options.materials = Materials::kFit;
-        for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"},
-                                         {"fusion.truncation_m", "0.06"},
-                                         {"tracking.finest", "0"},
-                                         {"map.initial_blocks", "64"},  // the pool grows, and is small again afterwards
-                                         {"reflectance.voxel_m", "0.08"}})
-            options.settings.set(key, value);
-        return options;
-    }
+    // The pool grows, and is small again afterwards.
+    static SessionOptions options() { return office_options("64"); }
 
     static std::unique_ptr<Session> session_of(const std::vector<uint32_t>& indices, bool with_poses) {
         return std::make_unique<Session>(*device_, std::make_unique<ChosenFrames>(*office_, indices, with_poses),
@@ -55,8 +30,6 @@ class SessionUndoTest : public ::testing::Test {
         for (uint32_t i = 0; i < count; ++i) ASSERT_TRUE(session.step());
     }
 
-    static inline std::unique_ptr<Device> device_;
-    static inline std::unique_ptr<SmallOffice> office_;
     MapFile kept_{temporary_database("patina-test")};
 };
 

@@ -107,6 +107,7 @@ class BakeTest : public GpuTest {
     std::vector<gpu::SurfaceTexel> texels;
     std::vector<glm::vec4> sums;
     std::vector<uint32_t> known, words;
+    bool records_know = true;
 
   private:
     void place(const TextureBand& band, const TextureTriangles& triangles) {
@@ -128,7 +129,7 @@ class BakeTest : public GpuTest {
             frame.fill(frame.create_buffer("blocks", uint64_t{count.x} * count.y * sizeof(gpu::TextureBlock)), 0);
         for (const TextureBand& band : bands)
             blocks = add_average_texels(frame, band, band.import(frame), blocks, page);
-        const TextureBalance balance = add_balance_blocks(frame, blocks, page, kTexel_m);
+        const TextureBalance balance = add_balance_blocks(frame, blocks, page, kTexel_m, records_know);
         std::vector<std::array<graph::Readback, 4>> reads;
         for (const TextureBand& band : bands) {
             const TextureBandIds ids = band.import(frame);
@@ -227,6 +228,15 @@ TEST_F(BakeTest, PicturesOfAnotherBrightnessAreBroughtToTheRecords) {
         // What is added to both means leaves 1 to 2 % of the difference.
         EXPECT_LT(glm::distance(kd, records), 0.02f) << column;
     }
+}
+
+TEST_F(BakeTest, WithoutRecordsPicturesStayAsTheyAre) {
+    records_know = false;
+    const glm::dvec3 paint(0.3, 0.5, 0.2);
+    bake(facing_page(0.3, glm::vec3(0.8f), glm::vec3(0.8f)),
+         {picture_of_wall(0.3, glm::dvec3(0.5), [&](auto, auto) { return paint; })});
+    for (const uint32_t column : {10u, 30u, 60u})
+        EXPECT_LT(glm::distance(unpack_albedo(words[at(column, 26)]), glm::vec3(paint)), 0.01f) << column;
 }
 
 TEST_F(BakeTest, BalancingAgreesWithTheReference) {
