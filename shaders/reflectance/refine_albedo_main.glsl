@@ -28,16 +28,16 @@ layout(push_constant) uniform Push { ReflectanceParams params; };
 #include "lib/records/record_colors.glsl"
 #include "lib/records/record_directions.glsl"
 
-const float kNoise = 0.002;         // of an observed colour, linear: 8-bit sRGB's steps in dark tones
-const float kRelativeNoise = 0.02;  // and that of bright ones, with the camera's own
-const float kHighlightError = 0.5;  // what of a predicted highlight may be wrong
-const float kClippedShare = 1e-3;   // the weight of a lower bound that lies low: counts where there is nothing else
-const float kInfinite = 1e30;
+const float kNoise = 0.002;            // of an observed colour, linear: 8-bit sRGB's steps in dark tones
+const float kRelativeNoise = 0.02;     // and that of bright ones, with the camera's own
+const float kHighlightError = 0.5;     // what of a predicted highlight may be wrong
+const float kClippedShare = 1e-3;      // the weight of a lower bound that is below the mean of what is not clipped
 const float kLeastIrradiance = 0.004;  // over pi: a white surface would be as dark as 8 bits' first step
 const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter views, but normals change
 const float kLeastAlpha = 0.01;
 const float kReflectedSpreads = 1.5;
 const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
+const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views
 const float kUsualKd = 0.3;          // a usual albedo
 const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
 const uint kAnyClipped = 7u << 26;   // of a direction word
@@ -63,7 +63,7 @@ vec3 highlight[kMaxObservations];    // at first without ks and what does not de
 vec3 diffuse[kMaxObservations];      // what is left of the colour
 float brightness[kMaxObservations];  // of that
 float trust[kMaxObservations];       // its inverse variance, relative to one without a highlight; 0: no observation
-float robust[kMaxObservations];      // the same, less for what is far off the others
+float robust[kMaxObservations];      // trust, less for what is far off the others
 
 // What arrives from all around beside the lamps.
 Irradiance indirect_light(GatheredLight light) {
@@ -152,8 +152,9 @@ Center find_center(Center center, float noise) {
         float weights = 1e-20, shift = 0.0, spread = 0.0;
         [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
             const float off = brightness[k] - center.brightness;
-            const bool bound = (direction_word[k] & kAnyClipped) != 0u && off < 0.0;
-            const float weight = (bound ? kClippedShare : 1.0) * trust[k] * robust_share(off, inverse_scale);
+            // What is clipped is at least as bright as it was recorded: where that is darker, it tells nothing.
+            const bool low = (direction_word[k] & kAnyClipped) != 0u && off < -noise;
+            const float weight = (low ? kClippedShare : 1.0) * trust[k] * robust_share(off, inverse_scale);
             weights += weight;
             shift += weight * off;
             spread += weight * abs(off);
@@ -174,21 +175,24 @@ float unreflected_share(Center center, float noise, float mirror) {
 struct Estimate {
     vec3 diffuse;   // the mean
     vec3 variance;  // of it
+    bvec3 bounded;  // clipped in all views: at least so bright
     float known;    // the share of what was seen that is not clipped
 };
 
-// By channel, as clipping is. A clipped channel that is brighter than the mean of the others makes it: were it left
-// out, a white sheet of paper would have the colours of the few views in which a channel happens not to be clipped.
+// By channel, as clipping is. A clipped channel that is brighter than the mean of the others counts in full: were it
+// left out, white paper would have the colours of the few views in which a channel happens not to be clipped.
 Estimate robust_mean(Center center, float noise) {
     const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
-    vec3 weights = vec3(0.0), mean = vec3(0.0);
+    vec3 weights = vec3(1e-20), mean = vec3(0.0), seen = vec3(0.0);
     [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) {
         robust[k] = trust[k] * robust_share(brightness[k] - center.brightness, inverse_scale);
-        const vec3 share = robust[k] * vec3(not(observation_clipped(direction_word[k])));
+        const vec3 whole = vec3(not(observation_clipped(direction_word[k])));
+        const vec3 share = robust[k] * mix(vec3(kClippedShare), vec3(1.0), whole);
         weights += share;
         mean += share * diffuse[k];
+        seen += robust[k] * whole;
     }
-    const vec3 unclipped_mean = mix(mean / max(weights, 1e-20), vec3(kInfinite), equal(weights, vec3(0.0)));
+    const vec3 bound = mean / weights;
     weights = vec3(1e-20);
     mean = vec3(0.0);
     vec3 squares = vec3(0.0);
@@ -197,8 +201,7 @@ Estimate robust_mean(Center center, float noise) {
         trusted += trust[k];
         unclipped += (direction_word[k] & kAnyClipped) != 0u ? 0.0 : trust[k];
         const float off = brightness[k] - center.brightness, weight = robust[k];
-        const uvec3 low =
-            uvec3(observation_clipped(direction_word[k])) & uvec3(lessThanEqual(diffuse[k], unclipped_mean));
+        const uvec3 low = uvec3(observation_clipped(direction_word[k])) & uvec3(lessThanEqual(diffuse[k], bound));
         const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), bvec3(low));
         weights += share;
         squares += share * share;
@@ -207,7 +210,7 @@ Estimate robust_mean(Center center, float noise) {
         spread += weight * off * off;
     }
     const vec3 variance = noise * noise / weights + (spread / max(whole, 1e-20)) * squares / (weights * weights);
-    return Estimate(mean / weights, variance, unclipped / trusted);
+    return Estimate(mean / weights, variance, equal(seen, vec3(0.0)), unclipped / trusted);
 }
 
 // Kd where the voxel is lit, with its certainty.
@@ -218,7 +221,8 @@ uvec2 packed_albedo(Estimate estimate, Irradiance irradiance, float sureness) {
     const vec3 doubt = min(kd, 1.0) * min(irradiance.uncertain * inverse, 1.0);
     // Of an albedo that is usual, not of kd: else dark records were surer than bright ones, and means too dark.
     const vec3 noise = kUsualKd * min(irradiance.noise * inverse, 1.0);
-    const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise;
+    const vec3 bound = kBoundError * vec3(estimate.bounded);
+    const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise + bound * bound;
     const vec3 certainty = sureness / (1.0 + variance / (kKdDeviation * kKdDeviation));
     return uvec2(pack_shared_exponent(kd), pack_certainty(mix(vec3(0.0), certainty, lit)));
 }

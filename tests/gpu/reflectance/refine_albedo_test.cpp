@@ -183,6 +183,17 @@ TEST_F(RefineAlbedoTest, ClippedChannelsThatAreBrighterThanTheOthersCount) {
     EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking);
 }
 
+// Cream paper: red is clipped in all views, and all channels in one that shows a highlight.
+TEST_F(RefineAlbedoTest, OneHighlightOverrulesNoClippedViews) {
+    const Ward material{{0.9, 0.7, 0.6}, {}, 1};
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    observe(record, material);
+    for (FilledObservation& seen : record.observations) seen.clipped = {true, false, false};
+    record.observations[0].rgb = glm::vec3(1.4f * record.observations[0].rgb.r);
+    record.observations[0].clipped = {true, true, true};
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking);
+}
+
 TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {
     const Ward material{{0.3, 0.5, 0.2}, {}, 1};
     for (const float factor : {0.0f, 0.5f, 3.0f, 30.0f}) {

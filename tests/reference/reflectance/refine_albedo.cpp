@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace patina::reference {
@@ -43,7 +42,7 @@ Middle reweight(std::vector<Rest>& rests, double noise) {
     for (int i = 0; i < 3; ++i) {
         double weights = 1e-20, sum = 0, spread = 0;
         for (const Rest& rest : rests) {
-            const bool counts = rest.whole() || rest.brightness() >= mean;
+            const bool counts = rest.whole() || rest.brightness() >= mean - noise;
             const double weight = rest.trust * (counts ? 1 : kClippedShare) * share(rest);
             weights += weight;
             sum += weight * rest.brightness();
@@ -56,15 +55,16 @@ Middle reweight(std::vector<Rest>& rests, double noise) {
     return {mean, scale / 1.5};
 }
 
-/// Infinite if a channel is clipped in every observation.
-double mean_of_unclipped(const std::vector<Rest>& rests, int channel) {
+/// What a clipped channel must be above to count: the mean, in which clipped ones have next to no share.
+double bound_of(const std::vector<Rest>& rests, int channel) {
     double sum = 0, weights = 0;
     for (const Rest& rest : rests) {
-        if (rest.clipped[static_cast<size_t>(channel)]) continue;
-        sum += rest.trust * rest.robust * rest.diffuse[channel];
-        weights += rest.trust * rest.robust;
+        const double share =
+            rest.trust * rest.robust * (rest.clipped[static_cast<size_t>(channel)] ? kClippedShare : 1);
+        sum += share * rest.diffuse[channel];
+        weights += share;
     }
-    return weights > 0 ? sum / weights : std::numeric_limits<double>::infinity();
+    return sum / weights;
 }
 
 }  // namespace
@@ -131,9 +131,10 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     for (int c = 0; c < 3; ++c) {
         if (irradiance[c] <= 0.004) continue;
         double weights = 0, squares = 0, sum = 0, spread = 0, robust_weights = 0;
-        const double unclipped_mean = mean_of_unclipped(rests, c);
+        const auto is_clipped = [&](const Rest& rest) { return rest.clipped[static_cast<size_t>(c)]; };
+        const double bound = bound_of(rests, c), unbounded = std::ranges::all_of(rests, is_clipped) ? 0.1 : 0;
         for (const Rest& rest : rests) {
-            const bool low = rest.clipped[static_cast<size_t>(c)] && rest.diffuse[c] <= unclipped_mean;
+            const bool low = is_clipped(rest) && rest.diffuse[c] <= bound;
             const double robust = rest.trust * rest.robust, weight = robust * (low ? kClippedShare : 1);
             weights += weight;
             squares += weight * weight;
@@ -146,7 +147,8 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         result.kd[c] = std::clamp(unreflected * (sum / weights - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
         const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
         const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
-        const double all = variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error;
+        const double all =
+            variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error + unbounded * unbounded;
         result.certainty[c] = known / (1 + all / (0.05 * 0.05));
     }
     return result;
