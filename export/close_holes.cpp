@@ -106,6 +106,8 @@ class Borders {
     glm::vec3 low_{1e9f}, high_{-1e9f};
 };
 
+constexpr double kLeastWidth = 1e-4;  // of a triangle that covers something, over its length
+
 bool is_hole(const Mesh& mesh, const Loop& loop, double most_m) {
     if (loop.size() < 3 || loop.size() > kMostCorners) return false;
     glm::vec3 low(1e9f), high(-1e9f), area(0), around(0);
@@ -134,10 +136,10 @@ class LeastArea {
                 const size_t j = i + length;
                 double least = std::numeric_limits<double>::infinity();
                 const bool is_edge = length == count_ - 1;  // of the polygon itself
-                for (size_t k = i + 1; k < j && (is_edge || is_allowed(i, j)); ++k) {
-                    const double area =
-                        double{glm::length(glm::cross(corners[k] - corners[i], corners[j] - corners[i]))};
-                    const double cost = cost_[i * count_ + k] + cost_[k * count_ + j] + area;
+                const bool allowed = is_edge || is_allowed(i, j);
+                for (size_t k = i + 1; k < j && allowed; ++k) {
+                    const double cost =
+                        cost_[i * count_ + k] + cost_[k * count_ + j] + cost_of(corners[i], corners[k], corners[j]);
                     if (cost >= least) continue;
                     least = cost;
                     split_[i * count_ + j] = k;
@@ -145,6 +147,15 @@ class LeastArea {
                 cost_[i * count_ + j] = least;
             }
         }
+    }
+
+    /// Twice the area. One that is next to none costs what a wide one would, so that it is taken where nothing else is
+    /// left.
+    static double cost_of(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
+        const double area = double{glm::length(glm::cross(b - a, c - a))};
+        const double longest2 =
+            double{std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)})};
+        return area > kLeastWidth * longest2 ? area : longest2;
     }
 
     std::vector<Triangle> triangles() const {

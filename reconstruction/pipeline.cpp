@@ -145,8 +145,11 @@ TextureLayout Pipeline::sampled_between_vertices(const TextureLayout& layout) {
         const double longest_m = std::max(record_m, layout.texel_m * gpu::kTextureTile);
         TexturedSurface& split = fine.pieces.emplace_back(with_short_edges(piece, longest_m));
         const MeshReflectance sampled = sample_part_by_part(split.mesh);
-        split.reflectance.kd = sampled.kd;
-        split.reflectance.labels = sampled.labels;
+        for (size_t i = 0; i < sampled.kd.size(); ++i) {
+            if (sampled.kd[i].a == 0) continue;  // off the records: what is between the corners
+            split.reflectance.kd[i] = sampled.kd[i];
+            split.reflectance.labels[i] = sampled.labels[i];
+        }
     }
     return fine;
 }

@@ -3,77 +3,84 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace patina {
 namespace {
 
-/// The mean of three vertices' values, weighted.
+using Corners = std::array<uint32_t, 3>;
+
 template <class Value>
-Value mean_of(const std::vector<Value>& values, const std::array<uint32_t, 3>& corners, glm::vec3 shares) {
-    return shares[0] * values[corners[0]] + shares[1] * values[corners[1]] + shares[2] * values[corners[2]];
+void add_mean(std::vector<Value>& values, const Corners& corners, glm::vec3 shares) {
+    if (values.empty()) return;
+    values.push_back(shares[0] * values[corners[0]] + shares[1] * values[corners[1]] + shares[2] * values[corners[2]]);
 }
 
-class Splitter {
-  public:
-    explicit Splitter(const TexturedSurface& whole) : whole_(whole), split(whole) { split.mesh.triangles.clear(); }
+/// Adds a vertex between three, and returns its number.
+uint32_t add_vertex(TexturedSurface& surface, const Corners& corners, glm::vec3 shares) {
+    Mesh& mesh = surface.mesh;
+    const auto added = static_cast<uint32_t>(mesh.positions_m.size());
+    add_mean(mesh.positions_m, corners, shares);
+    add_mean(mesh.normals, corners, shares);
+    add_mean(mesh.colors, corners, shares);
+    add_mean(surface.place_px, corners, shares);
+    const float length = glm::length(mesh.normals.back());
+    if (length > 0) mesh.normals.back() /= length;
+    surface.pages.push_back(surface.pages[corners[0]]);
+    MeshReflectance& reflectance = surface.reflectance;
+    if (reflectance.kd.empty()) return added;
+    const bool known = std::ranges::all_of(corners, [&](uint32_t i) { return reflectance.kd[i].a > 0; });
+    add_mean(reflectance.kd, corners, shares);
+    if (!known) reflectance.kd.back() = glm::vec4(0);
+    reflectance.labels.push_back(reflectance.labels[corners[0]]);
+    return added;
+}
 
-    void add(const std::array<uint32_t, 3>& corners, uint32_t parts) {
-        if (parts == 1) {
-            split.mesh.triangles.push_back(corners);
-            return;
-        }
-        // Vertices in rows, from the first corner on: row r has r + 1 of them.
-        const auto first = static_cast<uint32_t>(split.mesh.positions_m.size());
-        for (uint32_t row = 0; row <= parts; ++row) {
-            for (uint32_t column = 0; column <= row; ++column) {
-                add_vertex(corners, glm::vec3(parts - row, row - column, column) / static_cast<float>(parts));
-            }
-        }
-        const auto at = [&](uint32_t row, uint32_t column) { return first + row * (row + 1) / 2 + column; };
-        for (uint32_t row = 0; row < parts; ++row) {
-            for (uint32_t column = 0; column <= row; ++column) {
-                split.mesh.triangles.push_back({at(row, column), at(row + 1, column), at(row + 1, column + 1)});
-                if (column == row) continue;
-                split.mesh.triangles.push_back({at(row, column), at(row + 1, column + 1), at(row, column + 1)});
-            }
+/// Cuts a triangle into bands along its shortest edge, which is opposite the first corner, and bands into quads.
+void add_parts(TexturedSurface& surface, const Corners& corners, uint32_t bands, double base_parts) {
+    const auto at = [&](uint32_t line, uint32_t part, uint32_t parts) {
+        const float along = static_cast<float>(line) / static_cast<float>(bands);
+        const float across = static_cast<float>(part) / static_cast<float>(parts);
+        return add_vertex(surface, corners, {1 - along, along * (1 - across), along * across});
+    };
+    for (uint32_t band = 0; band < bands; ++band) {
+        const double width = base_parts * (band + 1) / bands;
+        const auto parts = static_cast<uint32_t>(std::max(std::ceil(width - 1e-6), 1.0));
+        uint32_t upper = at(band, 0, parts), lower = at(band + 1, 0, parts);
+        for (uint32_t part = 1; part <= parts; ++part) {
+            const uint32_t next_lower = at(band + 1, part, parts),
+                           next_upper = band > 0 ? at(band, part, parts) : upper;
+            surface.mesh.triangles.push_back({upper, lower, next_lower});
+            if (band > 0) surface.mesh.triangles.push_back({upper, next_lower, next_upper});
+            upper = next_upper;
+            lower = next_lower;
         }
     }
-
-  private:
-    void add_vertex(const std::array<uint32_t, 3>& corners, glm::vec3 shares) {
-        const Mesh& mesh = whole_.mesh;
-        split.mesh.positions_m.push_back(mean_of(mesh.positions_m, corners, shares));
-        const glm::vec3 normal = mean_of(mesh.normals, corners, shares);
-        const float length = glm::length(normal);
-        split.mesh.normals.push_back(length > 0 ? normal / length : normal);
-        if (!mesh.colors.empty()) split.mesh.colors.push_back(mean_of(mesh.colors, corners, shares));
-        split.place_px.push_back(mean_of(whole_.place_px, corners, shares));
-        split.pages.push_back(whole_.pages[corners[0]]);
-        if (whole_.reflectance.kd.empty()) return;
-        split.reflectance.kd.push_back(whole_.reflectance.kd[corners[0]]);
-        split.reflectance.labels.push_back(whole_.reflectance.labels[corners[0]]);
-    }
-
-    const TexturedSurface& whole_;
-
-  public:
-    TexturedSurface split;
-};
+}
 
 }  // namespace
 
 TexturedSurface with_short_edges(const TexturedSurface& surface, double longest_m) {
-    Splitter splitter(surface);
+    TexturedSurface split = surface;
+    split.filled.clear();
+    split.mesh.triangles.clear();
     const std::vector<glm::vec3>& positions_m = surface.mesh.positions_m;
-    for (const auto& corners : surface.mesh.triangles) {
-        double longest = 0;
+    for (const Corners& corners : surface.mesh.triangles) {
+        std::array<double, 3> opposite_m{};  // the edge opposite each corner
         for (size_t i = 0; i < 3; ++i) {
-            longest =
-                std::max(longest, double{glm::distance(positions_m[corners[i]], positions_m[corners[(i + 1) % 3]])});
+            opposite_m[i] = double{glm::distance(positions_m[corners[(i + 1) % 3]], positions_m[corners[(i + 2) % 3]])};
         }
-        splitter.add(corners, static_cast<uint32_t>(std::max(std::ceil(longest / longest_m - 1e-6), 1.0)));
+        const auto [shortest, longest] = std::ranges::minmax_element(opposite_m);
+        const double bands = std::ceil(*longest / longest_m - 1e-6);
+        if (bands <= 1) {
+            split.mesh.triangles.push_back(corners);
+            continue;
+        }
+        Corners turned = corners;
+        std::ranges::rotate(turned, turned.begin() + (shortest - opposite_m.begin()));
+        add_parts(split, turned, static_cast<uint32_t>(bands), *shortest / longest_m);
     }
-    return std::move(splitter.split);
+    return split;
 }
 
 }  // namespace patina
