@@ -9,6 +9,7 @@
 
 #include <tiny_gltf.h>
 
+#include "engine/core/error.h"
 #include "export/drawable_mesh.h"
 #include "export/glb_file.h"
 #include "export/gltf_arrays.h"
@@ -241,6 +242,8 @@ struct GlbWriter::State {
 
     void add_filled(const Piece& piece, const MeshPart& part, tinygltf::Primitive& primitive) {
         if (piece.filled.empty()) return;
+        PATINA_ASSERT(piece.filled.size() == piece.mesh.positions_m.size(), piece.filled.size(), " flags of ",
+                      piece.mesh.positions_m.size(), " vertices");
         std::vector<float> filled;
         for (const uint32_t vertex : part.vertices) filled.push_back(piece.filled[vertex]);
         primitive.attributes["_FILLED"] = arrays.add_vertices("_FILLED", filled);

@@ -5,9 +5,8 @@
 Replaces all objects of the open file. Sets what the importer gets wrong: materials, brightness and radius of lamps,
 bulbs, ambient light, colour management. --pose places the camera at pose N of RUN/trajectory.txt, from 0. --render
 writes a picture of the recording's size; add -b before --python to do without a window. --plain leaves materials and
-lamps as Blender's importer makes them, and sets exposure, colours and ambient light alone. --bounces is how often light is reflected on its way, 0 as in Patina's
-re-rendering. docs/guide/blender.md has
-the same by hand.
+lamps as Blender's importer makes them, and sets exposure, colours and ambient light alone. --bounces is how often light
+is reflected on its way, 0 as in Patina's re-rendering. docs/guide/blender.md has the same by hand.
 """
 import argparse
 import json

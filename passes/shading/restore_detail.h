@@ -20,8 +20,9 @@ struct RestoreDetailInputs {
 /// known yet it becomes the fused colour over the light, which then is known. Where no light was marched yet, rgb is
 /// the fused colour, as full light would shine in shadows. Where shadows end within that neighbourhood, where there is
 /// too little light, or where no colour was fused, kd stays; so do label, ks_alpha and light. Contrast no stronger than
-/// what shading and highlights may leave in the fused colours counts little. Returns the predicted images with kd and
-/// rgb replaced. Throws Error when extents differ.
+/// what shading and highlights may leave in the fused colours counts little. rgb gets the same detail of picture_kd.
+/// Returns the predicted images with kd and rgb replaced; picture_kd stays without detail. Throws Error when extents
+/// differ.
 PredictedImages add_restore_detail(graph::FrameGraph& frame, const PredictedImages& predicted,
                                    const RestoreDetailInputs& inputs);
 

@@ -54,6 +54,20 @@ TEST(Previews, ShowsInputColourAndNormalsSideBySide) {
     EXPECT_EQ(pixel(sheet, 120, 2, 119, 79), kGrey);
 }
 
+TEST(Previews, APairIsTheRecordedPictureAndTheRerendering) {
+    const auto color_at = [](const std::string& jpeg, int x, int y) {
+        const cv::Vec3b bgr = decode(jpeg).at<cv::Vec3b>(y, x);
+        return glm::ivec3(bgr[2], bgr[1], bgr[0]);
+    };
+    const PicturePair pair = picture_pair(ColorImage(input_of({1920, 1080})), half_seen({1920, 1080}), "frame 3");
+    EXPECT_EQ(pair.caption, "frame 3");
+    EXPECT_EQ(pair.extent, (Extent2D{960, 540}));
+    EXPECT_EQ(decode(pair.recorded).size(), cv::Size(960, 540));
+    EXPECT_EQ(decode(pair.rendered).size(), cv::Size(960, 540));
+    EXPECT_LT(glm::length(glm::vec3(color_at(pair.recorded, 100, 100) - glm::ivec3(200, 100, 50))), 12.0f);
+    EXPECT_LT(glm::length(glm::vec3(color_at(pair.rendered, 100, 100) - glm::ivec3(128, 255, 0))), 12.0f);
+}
+
 TEST(Previews, DepthRunsFromBlueToRed) {
     const cv::Mat sheet = decode(preview_png(input_of(kExtent), half_seen(kExtent), {.depth = true}));
     ASSERT_EQ(sheet.cols, 4 * 120 + 3 * kGap);

@@ -43,8 +43,9 @@ std::string pair_html(const PicturePair& pair) {
     return fmt::format(
         "<figure><div class='pair' style='aspect-ratio: {:.4f}; max-width: calc(80vh * {:.4f})'>"
         "<img alt=\"{}: re-rendering\" src=\"{}\"><img class='recorded' alt=\"{}: recorded\" src=\"{}\">"
-        "<i></i><b>recorded</b><b>re-rendering</b>"
-        "<input type='range' min='0' max='100' value='50' aria-label=\"{}: share of the recorded picture\" "
+        "<i aria-hidden='true'></i><b aria-hidden='true'>recorded</b><b aria-hidden='true'>re-rendering</b>"
+        "<input type='range' min='0' max='100' value='50' autocomplete='off' aria-label=\"{}: share of the recorded "
+        "picture\" "
         "oninput=\"this.parentNode.style.setProperty('--at', this.value + '%')\"></div></figure>\n",
         proportion, proportion, caption, jpeg_url(pair.rendered), caption, jpeg_url(pair.recorded), caption);
 }
@@ -53,7 +54,7 @@ std::string pair_html(const PicturePair& pair) {
 
 std::string comparison_html(std::span<const PicturePair> pairs) {
     if (pairs.empty()) return {};
-    std::string html = "<div class='pairs'>\n";
+    std::string html = "<div class='pairs' role='radiogroup' aria-label='Frame'>\n";
     for (size_t i = 0; i < pairs.size(); ++i) html += choice_html(i, pairs[i]);
     for (const PicturePair& pair : pairs) html += pair_html(pair);
     html += "<style>";

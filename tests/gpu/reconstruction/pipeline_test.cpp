@@ -152,7 +152,7 @@ TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
 }
 
-// A simplified surface: two triangles of a floor, whose corners lie where nothing is known of it.
+// A simplified surface: two triangles of a floor, with a wrong albedo at their corners.
 TEST_F(PipelineTest, TexturesHoldWhatRecordsKnowBetweenVertices) {
     constexpr uint32_t kFrames = 4;
     const LabelledCubes cubes(device(), kFrames);
