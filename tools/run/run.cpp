@@ -188,7 +188,7 @@ class Run {
         if (!companion_) return;
         companion_->after_step(session_);
         pictures_.keep_first(pipeline_.frames());
-        held_out_.keep_first(pipeline_.frames());
+        held_out_.keep_first(session_.held_out_frames());
     }
 
     void after(const Frame& frame) {
