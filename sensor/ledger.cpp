@@ -50,7 +50,7 @@ std::optional<std::string> Ledger::discrepancy(const SequenceInfo& info) const {
     const size_t left_out = repeated_ + dropped_ + skipped_.size(), settled = used_ + undone_ + left_out;
     if (settled != read_) {
         return text(info.name, ": ", read_, " frames were read, but ", used_ + undone_, " used and ", left_out,
-                    " skipped: ", settled < read_ ? read_ - settled : settled - read_,
+                    " left out: ", settled < read_ ? read_ - settled : settled - read_,
                     settled < read_ ? " unaccounted for" : " too many");
     }
     const auto repeated = std::find_if(settled_.begin(), settled_.end(), [](uint32_t count) { return count > 1; });

@@ -16,7 +16,7 @@ namespace {
 // the readings are nearer than 1 m; its median is 1.5 m and more.
 constexpr double kFineMedian_m = 0.8, kFineFar_m = 2, kFinePixel_m = 0.00125;
 // Coarse: a hall, of which normal voxels would each be hit by less than one pixel, and whose walls lie beyond 6 m.
-// What no depth camera reaches is another unit, which others tell.
+// A median beyond 30 m means a wrong depth unit; the inspector warns of it.
 constexpr double kCoarseMedian_m = 4.5, kCoarsePixel_m = 0.005, kFarthest_m = 30;
 
 constexpr float kBandVoxels = 4;  // half width of the band at depth 0, of voxels that were given

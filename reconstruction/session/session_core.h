@@ -85,6 +85,9 @@ class SessionCore {
     /// The frame of the last step() where it was held out (SessionOptions::hold_out), with its pose; else null.
     const Frame* held_out() const { return held_out_ ? &*held_out_ : nullptr; }
 
+    /// How many frames were held out and count: without those that were undone.
+    size_t held_out_frames() const { return held_out_indices_.size(); }
+
     /// Throws Interrupted when the caller stops it; the device has finished then.
     void stop_if_interrupted();
 

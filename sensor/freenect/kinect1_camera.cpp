@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -10,6 +9,7 @@
 #include <sys/time.h>
 
 #include "engine/core/error.h"
+#include "sensor/live/depth_watch.h"
 #include "sensor/live/other_cameras.h"
 #include "sensor/live/wrapping_clock.h"
 
@@ -90,21 +90,17 @@ class Kinect1Camera : public PictureCamera {
     const SequenceInfo& info() const override { return info_; }
 
     void run(const PictureSink& sink, const std::stop_token& stop) override {
-        sink_ = &sink;
+        const Streaming streaming(*this, sink);
         if (freenect_start_depth(device_.get()) < 0 || freenect_start_video(device_.get()) < 0)
             throw Error("the Kinect v1 does not start: it needs its own power supply, and a USB 2 bus of its own");
-        heard_ = std::chrono::steady_clock::now();
+        watch_.heard();
         while (!stop.stop_requested()) {
             timeval patience{0, kPatience_us};
             const int result = freenect_process_events_timeout(context_.get(), &patience);
             if (failure_) std::rethrow_exception(failure_);
             if (result < 0) throw Error("the Kinect v1 was unplugged, or USB failed");
-            const std::chrono::duration<double> silence = std::chrono::steady_clock::now() - heard_;
-            if (silence.count() > kMostSilence_s)
-                throw Error("the Kinect v1 has sent nothing for ", kMostSilence_s, " s: it was unplugged, perhaps");
+            watch_.expect("the Kinect v1");
         }
-        freenect_stop_depth(device_.get());
-        freenect_stop_video(device_.get());
     }
 
   private:
@@ -112,7 +108,24 @@ class Kinect1Camera : public PictureCamera {
         void operator()(freenect_device* device) const { freenect_close_device(device); }
     };
 
+    /// While this lives, the sink is given what comes. However run() ends, both streams have stopped afterwards.
+    class Streaming {
+      public:
+        Streaming(Kinect1Camera& camera, const PictureSink& sink) : camera_(camera) { camera_.sink_ = &sink; }
+        ~Streaming() {
+            camera_.sink_ = nullptr;  // to stop a stream takes what is still under way
+            freenect_stop_depth(camera_.device_.get());
+            freenect_stop_video(camera_.device_.get());
+        }
+        Streaming(const Streaming&) = delete;
+        Streaming& operator=(const Streaming&) = delete;
+
+      private:
+        Kinect1Camera& camera_;
+    };
+
     void take_depth(const void* pixels, uint32_t ticks) {
+        watch_.heard();
         take([&] {
             Image<uint16_t> picture(kExtent);
             std::memcpy(picture.pixels().data(), pixels, 2 * picture.pixels().size());
@@ -136,7 +149,7 @@ class Kinect1Camera : public PictureCamera {
     /// No exception may pass through the library, which is C.
     template <class Take>
     void take(const Take& picture) {
-        heard_ = std::chrono::steady_clock::now();
+        if (!sink_) return;
         try {
             picture();
         } catch (...) {
@@ -150,8 +163,8 @@ class Kinect1Camera : public PictureCamera {
     bool is_raw_ = false;
     WrappingClock clock_{kTicksPerSecond};
     // Of the thread of run().
-    const PictureSink* sink_ = nullptr;
-    std::chrono::steady_clock::time_point heard_;
+    const PictureSink* sink_ = nullptr;  ///< null while nothing is asked for
+    DepthWatch watch_;
     std::exception_ptr failure_;
 };
 

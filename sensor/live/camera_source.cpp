@@ -12,7 +12,7 @@ CameraSource::CameraSource(std::unique_ptr<PictureCamera> camera) : camera_(std:
 CameraSource::~CameraSource() { stop(); }
 
 std::optional<Reading> CameraSource::next() {
-    if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    if (!thread_.joinable() && !stop_.stop_requested()) thread_ = std::jthread([this] { run(stop_.get_token()); });
     return newest_.take();
 }
 
@@ -21,7 +21,7 @@ void CameraSource::stop() {
         const std::lock_guard lock(tap_mutex_);
         stopped_ = true;
     }
-    thread_.request_stop();
+    stop_.request_stop();
     newest_.end();
 }
 

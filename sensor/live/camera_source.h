@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <thread>
 
 #include "sensor/live/live_source.h"
@@ -28,7 +29,7 @@ class CameraSource : public LiveSource {
     const SequenceInfo& info() const override { return camera_->info(); }
     /// Throws Error where the camera fails or is unplugged, after the frames that came before.
     std::optional<Reading> next() override;
-    /// Once this returns, the tap is not called any more.
+    /// Once this returns, the tap is not called any more. A camera that has not started does not start any more.
     void stop() override;
     /// The camera's clock is known by its pictures alone: the frame that came soonest after its time counts as without
     /// delay. 0 before the first frame.
@@ -49,7 +50,8 @@ class CameraSource : public LiveSource {
     bool stopped_ = false;  ///< of tap_mutex_
     mutable std::mutex clock_mutex_;
     std::optional<Clock::time_point> origin_;  ///< of clock_mutex_: when the camera's clock was at 0, at the latest
-    std::jthread thread_;                      // last: joins before what it uses is destroyed
+    std::stop_source stop_;
+    std::jthread thread_;  // of next(); last: joins before what it uses is destroyed
 };
 
 }  // namespace patina::sensor

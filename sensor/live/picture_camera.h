@@ -22,8 +22,8 @@ class PictureCamera {
     /// What holds for all frames; it has no length.
     virtual const SequenceInfo& info() const = 0;
 
-    /// Delivers pictures until it is asked to stop. Throws Error where the camera fails, is unplugged, or sends nothing
-    /// for kMostSilence_s.
+    /// Delivers pictures until it is asked to stop. Throws Error where the camera fails, is unplugged, or sends no
+    /// depth for kMostSilence_s.
     virtual void run(const PictureSink& sink, const std::stop_token& stop) = 0;
 
     static constexpr double kMostSilence_s = 5;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <initializer_list>  // which OpenNI.h lacks
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "sensor/camera_view.h"
+#include "sensor/live/depth_watch.h"
 #include "sensor/live/other_cameras.h"
 
 namespace patina::sensor {
@@ -109,21 +109,17 @@ class OpenNi2Camera : public PictureCamera {
         if (depth_.start() != openni::STATUS_OK || color_.start() != openni::STATUS_OK)
             fail("the camera of OpenNI2 does not start");
         openni::VideoStream* streams[] = {&depth_, &color_};
-        auto heard = std::chrono::steady_clock::now();
+        DepthWatch watch;
         while (!stop.stop_requested()) {
             int which = 0;
             const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &which, kPatience_ms);
-            if (status == openni::STATUS_TIME_OUT) {
-                const std::chrono::duration<double> silence = std::chrono::steady_clock::now() - heard;
-                if (silence.count() > kMostSilence_s)
-                    throw Error("the camera of OpenNI2 has sent nothing for ", kMostSilence_s,
-                                " s: it was unplugged, perhaps");
-                continue;
-            }
+            const bool silent = status == openni::STATUS_TIME_OUT;
+            if (silent || which != 0) watch.expect("the camera of OpenNI2");
+            if (silent) continue;
             openni::VideoFrameRef frame;
             if (status != openni::STATUS_OK || streams[which]->readFrame(&frame) != openni::STATUS_OK)
                 fail("the camera of OpenNI2 failed, or was unplugged");
-            heard = std::chrono::steady_clock::now();
+            if (which == 0) watch.heard();
             give(frame, which == 0, sink);
         }
         depth_.stop();

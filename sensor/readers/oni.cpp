@@ -1,8 +1,6 @@
 #include "sensor/readers/oni.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -79,17 +77,21 @@ class OniSource : public FolderSource {
         return frame;
     }
 
+    static void expect_bytes(const std::vector<uint8_t>& bytes, size_t expected, const std::string& where) {
+        if (bytes.size() != expected) throw Error(where, " has ", bytes.size(), " bytes, not ", expected);
+    }
+
     Image<uint16_t> decode_depth_picture(const OniStream& stream, const OniStream::Place& place,
                                          const std::string& where) const {
         const std::vector<uint8_t> bytes = file_.read(place);
-        std::vector<uint16_t> pixels(stream.extent.area());
+        std::vector<uint16_t> pixels;
         if (stream.has_codec("NONE")) {
-            if (bytes.size() != 2 * pixels.size())
-                throw Error(where, " has ", bytes.size(), " bytes, not ", 2 * pixels.size());
+            expect_bytes(bytes, 2 * stream.extent.area(), where);
+            pixels.resize(stream.extent.area());
             std::copy(bytes.begin(), bytes.end(), reinterpret_cast<uint8_t*>(pixels.data()));
         } else {
             try {
-                pixels = decode_oni_depth(bytes, pixels.size(), stream.has_codec("16zT"));
+                pixels = decode_oni_depth(bytes, stream.extent.area(), stream.has_codec("16zT"));
             } catch (const Error& error) {
                 throw Error(where, " ", error.what());
             }
@@ -107,9 +109,8 @@ class OniSource : public FolderSource {
             if (stream.mirrored) std::visit([](auto& pixels) { mirror(pixels); }, image);
             return image;
         }
+        expect_bytes(bytes, 3 * stream.extent.area(), where);
         Image<SrgbPixel> image(stream.extent);
-        if (bytes.size() != 3 * image.pixels().size())
-            throw Error(where, " has ", bytes.size(), " bytes, not ", 3 * image.pixels().size());
         for (size_t i = 0; i < image.pixels().size(); ++i)
             image.pixels()[i] = {bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]};
         if (stream.mirrored) mirror(image);

@@ -6,13 +6,16 @@ namespace patina::sensor {
 
 namespace {
 
-constexpr uint32_t kFill = 13, kStep = 15;              // half bytes
-constexpr uint32_t kRepeats = 0xe0, kWholeStep = 0xff;  // bytes, from the first on
-constexpr int kSmallMiddle = 6, kLargeMiddle = 192;     // what stands for no difference
+constexpr uint32_t kFill = 13, kStep = 15;                // half bytes
+constexpr uint32_t kRepeats = 0xe0, kWholeStep = 0xff;    // bytes, from the first on
+constexpr uint32_t kSmallMiddle = 6, kLargeMiddle = 192;  // what stands for no difference
+constexpr size_t kMostOfAByte = 2 * (kWholeStep - 1 - kRepeats);
 
 class Decoder {
   public:
     Decoder(std::span<const uint8_t> bytes, size_t count, bool has_table) : bytes_(bytes), count_(count) {
+        if (count > 1 + kMostOfAByte * bytes.size())
+            throw Error("has ", bytes.size(), " bytes, which cannot hold ", count, " values");
         values_.reserve(count);
         if (has_table) read_table();
     }
@@ -38,33 +41,31 @@ class Decoder {
   private:
     void read_table() {
         table_.resize(word());
-        for (uint16_t& value : table_) value = static_cast<uint16_t>(word());
+        for (uint16_t& value : table_) value = word();
     }
 
     void half(uint32_t code) {
         if (code == kFill) return;
         if (code == kStep) return step();
-        last_ -= static_cast<int>(code) - kSmallMiddle;
+        last_ = static_cast<uint16_t>(last_ + kSmallMiddle - code);
         put();
     }
 
     void step() {
         const uint32_t high = byte();
         if (high & 0x80) {
-            last_ -= static_cast<int>(high) - kLargeMiddle;
+            last_ = static_cast<uint16_t>(last_ + kLargeMiddle - high);
         } else {
-            last_ = static_cast<int>(high << 8 | byte());
+            last_ = static_cast<uint16_t>(high << 8 | byte());
         }
         put();
     }
 
-    /// The codec counts in 16 bits.
     void put() {
         if (values_.size() == count_) throw Error("holds more than ", count_, " values");
-        const auto value = static_cast<uint16_t>(last_);
-        if (!table_.empty() && value >= table_.size())
-            throw Error("names value ", value, " of a table of ", table_.size());
-        values_.push_back(table_.empty() ? value : table_[value]);
+        if (!table_.empty() && last_ >= table_.size())
+            throw Error("names value ", last_, " of a table of ", table_.size());
+        values_.push_back(table_.empty() ? last_ : table_[last_]);
     }
 
     uint32_t byte() {
@@ -72,15 +73,15 @@ class Decoder {
         return bytes_[at_++];
     }
 
-    int word() {
+    uint16_t word() {
         const uint32_t low = byte();
-        return static_cast<int>(low | byte() << 8);
+        return static_cast<uint16_t>(low | byte() << 8);
     }
 
     std::span<const uint8_t> bytes_;
     size_t at_ = 0, count_;
     std::vector<uint16_t> table_, values_;
-    int last_ = 0;
+    uint16_t last_ = 0;  // the codec counts in 16 bits
 };
 
 }  // namespace

@@ -42,16 +42,17 @@ void write_picture(const fs::path& file, const char* magic, const At& at) {
         }
 }
 
-/// Three seconds at ten a second; every name in the index stands for the one picture of its kind.
-void write_session(const fs::path& folder) {
+/// Pictures at ten a second; every name in the index stands for the one picture of its kind. `kinds`: 'd' for
+/// depth, 'r' for colour.
+void write_session(const fs::path& folder, const std::string& kinds = "dr", uint32_t frames = 30) {
     fs::create_directories(folder);
     write_picture<uint16_t>(folder / "depth", "P5", [](uint32_t x, uint32_t y) { return raw_of(depth_at(x, y)); });
     write_picture<SrgbPixel>(folder / "color", "P6", [](uint32_t x, uint32_t y) {
         return SrgbPixel(60 + x / 8, 60 + y / 6, 90 + (x + y) / 16);
     });
     std::ofstream index(folder / "INDEX.txt");
-    for (uint32_t i = 0; i < 30; ++i) {
-        for (const char kind : {'d', 'r'}) {
+    for (uint32_t i = 0; i < frames; ++i) {
+        for (const char kind : kinds) {
             char name[64];
             std::snprintf(name, sizeof(name), "%c-%.6f-%u.ppm", kind, i / 10.0, 1000 + i * 6'000'000);
             fs::create_symlink(kind == 'd' ? "depth" : "color", folder / name);
@@ -109,6 +110,15 @@ TEST_F(OtherCameras, AKinectV1IsReadLiveAndRecorded) {
     const Outcome twice = patina({"record", "kinect1", "--lighting", "kinect1", "--out", beside("x.patina")});
     EXPECT_THAT(expect_failure(twice), HasSubstr("exposure of kinect1 cannot be set"));
     EXPECT_FALSE(fs::exists(beside("x.patina")));
+}
+
+TEST_F(OtherCameras, AKinectV1WithoutDepthEndsTheRunThoughColorGoesOn) {
+    if (absent("kinect1", "libfreenect-dev")) return;
+    if (std::string(PATINA_FAKENECT_FOLDER).empty()) GTEST_SKIP() << "fakenect is not installed";
+    write_session(beside("session"), "r", 100);
+    const Outcome outcome = patina(
+        {"live", "kinect1", "--seconds", "20", "--out", out(), "--lighting", "none", "--quiet"}, with_fakenect());
+    EXPECT_THAT(expect_failure(outcome), HasSubstr("no depth pictures for 5 s"));
 }
 
 TEST_F(OtherCameras, WithoutAKinectV1ItIsOneSentence) {

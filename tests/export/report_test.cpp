@@ -72,6 +72,9 @@ TEST(Report, NamesTheDetailAndCountsFramesThatRepeat) {
     const auto json = nlohmann::json::parse(run_json(summary));
     EXPECT_EQ(json["detail"]["level"], "fine");
     EXPECT_EQ(json["frames"]["repeated"], 17);
+    EXPECT_THAT(html, Not(HasSubstr("undone")));
+    summary.frames.undone = 23;
+    EXPECT_THAT(report_html(summary, {}), HasSubstr("Frames undone</dt><dd>23"));
 }
 
 TEST(Report, WhatIsIncompleteComesFirst) {

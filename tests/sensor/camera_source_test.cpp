@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "sensor/camera_view.h"
+#include "sensor/live/depth_watch.h"
 #include "sensor/live/picture_pairs.h"
 #include "sensor/live/wrapping_clock.h"
 #include "tests/sensor/sequences.h"
@@ -59,6 +60,17 @@ TEST(WrappingClock, GoesOnWhereTheCounterBeginsAnew) {
     EXPECT_NEAR(other.seconds(1, 0xffffffff - 99) - late, -0.2, 1e-9) << "the other stream began before the turn";
 }
 
+TEST(DepthWatch, ColorAloneDoesNotKeepACameraAlive) {
+    using Seconds = std::chrono::seconds;
+    const DepthWatch::Clock::time_point start{};
+    DepthWatch watch(start);
+    EXPECT_NO_THROW(watch.expect("the camera", start + Seconds(5)));
+    watch.heard(start + Seconds(3));
+    EXPECT_NO_THROW(watch.expect("the camera", start + Seconds(8)));
+    EXPECT_EQ(error_of([&] { watch.expect("the camera", start + Seconds(9)); }),
+              "the camera has sent no depth pictures for 5 s: it was unplugged, perhaps");
+}
+
 TEST(CameraView, FocalLengthsFollowFromTheFieldOfView) {
     const Intrinsics camera = intrinsics_of({640, 480}, glm::dvec2(1.0, 0.8));
     EXPECT_NEAR(camera.fx, 320 / std::tan(0.5), 1e-9);
@@ -71,12 +83,14 @@ TEST(CameraView, FocalLengthsFollowFromTheFieldOfView) {
 /// Sends frames as fast as they are taken, then ends as told.
 class FakeCamera : public PictureCamera {
   public:
-    explicit FakeCamera(uint32_t frames, bool fails) : frames_(frames), fails_(fails) {
+    explicit FakeCamera(uint32_t frames, bool fails, bool* started = nullptr)
+        : frames_(frames), fails_(fails), started_(started) {
         info_ = test_info();
         info_.frames.reset();
     }
     const SequenceInfo& info() const override { return info_; }
     void run(const PictureSink& sink, const std::stop_token& stop) override {
+        if (started_) *started_ = true;
         for (uint32_t i = 0; i < frames_ && !stop.stop_requested(); ++i) {
             sink.depth(50 + i / 100.0, depth(static_cast<uint16_t>(i)));
             if (i != 1) sink.color(50 + i / 100.0 + 0.001, color(static_cast<uint8_t>(i)));
@@ -90,6 +104,7 @@ class FakeCamera : public PictureCamera {
     SequenceInfo info_;
     uint32_t frames_;
     bool fails_;
+    bool* started_;
 };
 
 TEST(CameraSource, YieldsFramesAndTheReasonForThoseThatAreMissing) {
@@ -125,6 +140,16 @@ TEST(CameraSource, EndsWhenItIsStopped) {
     });
     while (source.next()) continue;
     stopper.join();
+}
+
+TEST(CameraSource, ThatWasStoppedBeforeItsFirstFrameDoesNotStart) {
+    bool started = false;
+    {
+        CameraSource source(std::make_unique<FakeCamera>(2, false, &started));
+        source.stop();
+        EXPECT_FALSE(source.next());
+    }
+    EXPECT_FALSE(started);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "sensor/truth.h"
 #include "sensor/write_sequence.h"
 #include "tests/scenes/scene_json.h"
+#include "tests/sensor/oni_recording.h"
 #include "tests/sensor/recording_rig.h"
 #include "tests/sensor/sequences.h"
 
@@ -169,6 +170,23 @@ TEST_F(HostileFiles, Open3d) {
 TEST_F(HostileFiles, Recordings) {
     write_recording(folder_ / "room.patina", 3);
     attack("room.patina", 200, [&] { inspect(*open_sequence(folder_ / "room.patina")); });
+}
+
+TEST_F(HostileFiles, RecordingsOfOpenNi) {
+    constexpr Extent2D kExtent{8, 6};
+    std::vector<OniPictureText> pictures;
+    for (uint32_t i = 0; i < 2; ++i) {
+        const std::vector<uint16_t> depth(kExtent.area(), static_cast<uint16_t>(1000 + i));
+        pictures.push_back({0, 1'000'000 + i * 33'333, encode_oni_depth(depth, true)});
+        pictures.push_back({1, 1'000'000 + i * 33'333, std::vector<uint8_t>(3 * kExtent.area(), 90)});
+    }
+    const std::string whole = oni_recording(
+        {{2, "16zT", kExtent, 100, std::nullopt, false}, {3, "NONE", kExtent, 200, std::nullopt, false}}, pictures);
+    write_text(folder_ / "room.oni", whole);
+    attack("room.oni", 400, [&] {
+        const auto skipped = inspect(*open_sequence(folder_ / "room.oni")).skipped;
+        if (!skipped.empty()) throw Error(skipped.front().reason);
+    });
 }
 
 TEST_F(HostileFiles, LightsMaterialsAndScenes) {

@@ -67,9 +67,9 @@ TEST(Ledger, SaysByHowMuchItDoesNot) {
     ledger.use(0);
     ledger.skip(1, "x");
     EXPECT_EQ(ledger.discrepancy(four_frames()),
-              "test: 4 frames were read, but 1 used and 1 skipped: 2 unaccounted for");
+              "test: 4 frames were read, but 1 used and 1 left out: 2 unaccounted for");
     for (const uint32_t index : {0, 2, 3}) ledger.use(index);
-    EXPECT_EQ(ledger.discrepancy(four_frames()), "test: 4 frames were read, but 4 used and 1 skipped: 1 too many");
+    EXPECT_EQ(ledger.discrepancy(four_frames()), "test: 4 frames were read, but 4 used and 1 left out: 1 too many");
 }
 
 TEST(Ledger, NoticesThatOneFrameStandsInForAnother) {

@@ -82,6 +82,17 @@ TEST(OniDepth, WhatIsEncodedIsDecodedAgain) {
     }
 }
 
+TEST(OniDepth, AByteHoldsSixtyValuesAtMost) {
+    const std::vector<uint8_t> bytes{7, 0, 0xfe, 0xfe};
+    EXPECT_EQ(decode_oni_depth(bytes, 121, false), std::vector<uint16_t>(121, 7));
+}
+
+TEST(OniDepth, CountsInSixteenBits) {
+    EXPECT_EQ(decode_oni_depth(std::vector<uint8_t>{1, 0, 0x9d}, 2, false), (std::vector<uint16_t>{1, 0xfffe}));
+    EXPECT_EQ(decode_oni_depth(std::vector<uint8_t>{0xff, 0xff, 0xff, 0x80}, 2, false),
+              (std::vector<uint16_t>{0xffff, 63}));
+}
+
 TEST(OniDepth, BytesThatDoNotFitAreErrors) {
     const std::vector<uint16_t> values = depth_of(0);
     std::vector<uint8_t> bytes = encode_oni_depth(values, true);
@@ -89,6 +100,8 @@ TEST(OniDepth, BytesThatDoNotFitAreErrors) {
     EXPECT_THROW(decode_oni_depth(bytes, values.size() + 1, true), Error);
     for (size_t length = 0; length < bytes.size(); ++length)
         EXPECT_THROW(decode_oni_depth(std::span(bytes).first(length), values.size(), true), Error) << length;
+    // Nothing is allocated for values that the bytes cannot hold.
+    EXPECT_THROW(decode_oni_depth(bytes, size_t{1} << 60, true), Error);
     // Whatever a byte becomes, the result is an error or as many values.
     std::mt19937 random(5);
     for (int i = 0; i < 2000; ++i) {

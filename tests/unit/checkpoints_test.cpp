@@ -22,13 +22,13 @@ class Scan {
         }
     }
 
-    /// Goes back; returns the second that the state is of, -1 where there is none.
+    /// Goes back; returns the second that the state is of, -1 where there is none. lost_s_ is what was lost.
     int undo() {
         EXPECT_EQ(checkpoints_.can_go_back(now_), checkpoints_.choose(now_) != nullptr);
         MapFile* map = checkpoints_.choose(now_);
         if (!map) return -1;
         const int second = std::stoi(map->expect_text("second"));
-        EXPECT_EQ(checkpoints_.went_back(now_), now_.frame_s - second);
+        lost_s_ = checkpoints_.went_back(now_);
         now_.frames = static_cast<uint32_t>(second) + 1;  // as many were fused by then
         return second;
     }
@@ -36,6 +36,7 @@ class Scan {
     Checkpoints checkpoints_;
     RunMoment now_{0, 1};
     std::vector<double> kept_;
+    double lost_s_ = 0;
 };
 
 TEST(Checkpoints, AreKeptFromTheFirstFrameOnAtTheFramesOwnPace) {
@@ -65,7 +66,9 @@ TEST(Checkpoints, UndoGoesBackStepByStep) {
     Scan scan;
     scan.go_on_to(25);
     EXPECT_EQ(scan.undo(), 20);
+    EXPECT_EQ(scan.lost_s_, 5);
     EXPECT_EQ(scan.undo(), 10) << "at once: nothing was fused since the first";
+    EXPECT_EQ(scan.lost_s_, 10);
     scan.now_.frame_s += 5;  // five more seconds in which the camera is lost
     EXPECT_EQ(scan.undo(), 0);
     EXPECT_EQ(scan.undo(), -1);
@@ -78,9 +81,19 @@ TEST(Checkpoints, WhatWasScannedSinceAnUndoCanBeUndoneToo) {
     scan.now_.frame_s += 5;
     scan.now_.frames += 5;
     EXPECT_EQ(scan.undo(), 10);
+    EXPECT_EQ(scan.lost_s_, 5) << "without the seconds that the first undo lost";
     scan.now_.frame_s += 1;
     scan.now_.frames += 1;
     EXPECT_EQ(scan.undo(), 0) << "that state is only a second old";
+    EXPECT_EQ(scan.lost_s_, 11);
+}
+
+TEST(Checkpoints, InPlaceOfADamagedOneTheOneBeforeIsChosen) {
+    Scan scan;
+    scan.go_on_to(25);
+    scan.checkpoints_.give_up(scan.now_);
+    EXPECT_EQ(scan.undo(), 10);
+    EXPECT_EQ(scan.lost_s_, 15);
 }
 
 TEST(Checkpoints, AYoungOneIsPassedOverUnlessItIsTheOnlyOne) {

@@ -7,7 +7,6 @@
 namespace patina::tools {
 
 /// Adds the options that say how scene.glb is written: --up, --gltf-fresnel, --raw-attributes, --texture, --triangles,
-/// --close-holes,
 /// --close-holes, --surface-error. `run` must live until the command line is parsed.
 void declare_scene_choices(CLI::App& command, RunOptions& run);
 

@@ -99,8 +99,8 @@ std::string LiveRun::toggle_recording() {
     }
     try {
         recording_->start(free_place_beside(out_, "recording", ".patina"));
-    } catch (const Error& error) {
-        return fmt::format("not recorded: {}", error.what());
+    } catch (const std::exception& error) {
+        return fmt::format("not recorded: {}", reason_of(error));
     }
     return fmt::format("recording to {}", recording_->file()->string());
 }

@@ -64,6 +64,7 @@ std::string facts_list(const RunSummary& summary) {
                                                                summary.detail.value("because", ""))));
     html += report_fact("Frames skipped", grouped(frames.skipped.size()));
     if (frames.repeated > 0) html += report_fact("Frames that repeat the one before", grouped(frames.repeated));
+    if (frames.undone > 0) html += report_fact("Frames undone", grouped(frames.undone));
     html +=
         report_fact("Voxel blocks", fmt::format("{} of {}", grouped(pool.blocks_used), grouped(pool.blocks_capacity)));
     if (pool.blocks_refused > 0) html += report_fact("Voxel blocks refused", grouped(pool.blocks_refused));

@@ -64,8 +64,8 @@ void HeldOut::keep(const Frame& frame, uint32_t order) {
     kept_.push_back({frame.index, order, frame.color, *frame.world_from_camera});
 }
 
-void HeldOut::keep_first(uint32_t frames) {
-    std::erase_if(kept_, [&](const Kept& kept) { return kept.order >= frames; });
+void HeldOut::keep_first(size_t pictures) {
+    if (pictures < kept_.size()) kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(pictures), kept_.end());
 }
 
 void HeldOut::visit(graph::StateVisitor& visitor) {

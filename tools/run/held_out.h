@@ -16,11 +16,12 @@ namespace patina::tools {
 /// what the model looks like from there.
 class HeldOut {
   public:
-    /// Keeps such a frame; `order`: of the last frame that was added to the reconstruction before it.
+    /// Keeps such a frame; `order`: of the last frame that was added to the reconstruction before it; UINT32_MAX where
+    /// there was none.
     void keep(const Frame& frame, uint32_t order);
 
-    /// Forgets those that came after the first `frames` that were added.
-    void keep_first(uint32_t frames);
+    /// Forgets all but the first `pictures`.
+    void keep_first(size_t pictures);
 
     void visit(graph::StateVisitor& visitor);
 

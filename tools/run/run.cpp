@@ -188,7 +188,7 @@ class Run {
         if (!companion_) return;
         companion_->after_step(session_);
         pictures_.keep_first(pipeline_.frames());
-        held_out_.keep_first(pipeline_.frames());
+        held_out_.keep_first(session_.held_out_frames());
     }
 
     void after(const Frame& frame) {
@@ -387,10 +387,10 @@ class Run {
     void print_outcome(const Outcome& outcome) const {
         if (failure_.empty()) outcome.print(options_.quiet);
         if (options_.quiet || !failure_.empty()) return;
-        const uint32_t repeated = session_.ledger().repeated();
+        const std::vector<std::string> other = other_frames();
         print_out("{} of {} frames{}, {} triangles in {}\n", session_.ledger().used(),
                   session_.info().frames.value_or(session_.ledger().read()),
-                  repeated > 0 ? fmt::format(" ({} repeat the one before)", repeated) : "",
+                  other.empty() ? "" : fmt::format(" ({})", fmt::join(other, ", ")),
                   glb_.value_or(GlbSummary{}).triangles, printable(place_.string()));
         const std::string& found_by = session_.illumination().found_by;
         if (found_by != "file" && found_by != "none") print_lights(session_.illumination());
@@ -398,6 +398,15 @@ class Run {
         for (const std::string& sentence : verdict_.unknown) print_out("not known: {}\n", printable(sentence));
         for (const std::string& warning : warnings_) print_out("warning: {}\n", printable(warning));
         print_places();
+    }
+
+    /// Those that were not used, and not for a lack of theirs.
+    std::vector<std::string> other_frames() const {
+        const sensor::Ledger& ledger = session_.ledger();
+        std::vector<std::string> list;
+        if (ledger.repeated() > 0) list.push_back(fmt::format("{} repeat the one before", ledger.repeated()));
+        if (ledger.undone() > 0) list.push_back(fmt::format("{} undone", ledger.undone()));
+        return list;
     }
 
     void print_places() const {

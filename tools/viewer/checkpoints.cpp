@@ -31,7 +31,7 @@ MapFile& Checkpoints::begin() {
 
 void Checkpoints::kept(const RunMoment& moment, double now_s, double took_s) {
     const uint64_t bytes = next_->size().compressed_bytes;
-    states_.push_back({std::move(next_), moment, moment.frame_s, bytes});
+    states_.push_back({std::move(next_), moment, moment.frame_s, scanned_s(moment), bytes});
     while (states_.size() > 1 && this->bytes() > kMostBytes) states_.pop_front();
     not_before_s_ = now_s + took_s / kShare;
 }
@@ -56,7 +56,13 @@ double Checkpoints::went_back(const RunMoment& moment) {
     states_.erase(states_.begin() + static_cast<std::ptrdiff_t>(i) + 1, states_.end());
     State& state = states_.back();
     state.since_s = moment.frame_s;
-    return moment.frame_s - state.moment.frame_s;
+    const double lost_s = scanned_s(moment) - state.scanned_s;
+    lost_s_ += lost_s;
+    return lost_s;
+}
+
+void Checkpoints::give_up(const RunMoment& moment) {
+    states_.erase(states_.begin() + static_cast<std::ptrdiff_t>(chosen(moment).value()));
 }
 
 uint64_t Checkpoints::bytes() const {

@@ -44,8 +44,10 @@ class Checkpoints {
     /// was gone back to and nothing was fused since, does not count. Null where there is none.
     MapFile* choose(const RunMoment& moment);
     /// The model is that of choose() now. Younger states are given up. `moment`: when it was asked for. Returns how
-    /// many seconds were lost.
+    /// many seconds were lost with that, without those that were lost before.
     double went_back(const RunMoment& moment);
+    /// The file of choose() is damaged; there are only the others.
+    void give_up(const RunMoment& moment);
 
     size_t size() const { return states_.size(); }
     uint64_t bytes() const;
@@ -54,14 +56,18 @@ class Checkpoints {
     struct State {
         std::unique_ptr<MapFile> map;
         RunMoment moment;
-        double since_s = 0;  ///< the frames' time when the model was last this
+        double since_s = 0;    ///< the frames' time when the model was last this
+        double scanned_s = 0;  ///< when it was kept
         uint64_t bytes = 0;
     };
     std::optional<size_t> chosen(const RunMoment& moment) const;
+    /// The frames' time without what was lost.
+    double scanned_s(const RunMoment& moment) const { return moment.frame_s - lost_s_; }
 
     std::deque<State> states_;  ///< the oldest first
     std::unique_ptr<MapFile> next_;
     double not_before_s_ = 0;
+    double lost_s_ = 0;  ///< by going back, in all
 };
 
 }  // namespace patina::tools

@@ -139,8 +139,8 @@ void WindowRun::keep_checkpoint(SessionCore& session) {
     try {
         session.keep_model(checkpoints_.begin());
         checkpoints_.kept(now, since({}), since(start));
-    } catch (const Error& error) {
-        checkpoint_problem_ = fmt::format("no checkpoint could be kept: {}", error.what());
+    } catch (const std::exception& error) {
+        checkpoint_problem_ = fmt::format("no checkpoint could be kept: {}", reason_of(error));
         message_ = checkpoint_problem_;
     }
 }
@@ -149,6 +149,13 @@ void WindowRun::undo(SessionCore& session) {
     const RunMoment before = moment(session);
     MapFile* map = checkpoints_.choose(before);
     if (!map) return;
+    try {
+        map->check();
+    } catch (const std::exception& error) {
+        message_ = fmt::format("not undone: {}", reason_of(error));
+        checkpoints_.give_up(before);
+        return;
+    }
     session.go_back(*map);
     const double lost_s = checkpoints_.went_back(before);
     const uint32_t lost = before.frames - session.pipeline().frames();
@@ -156,13 +163,11 @@ void WindowRun::undo(SessionCore& session) {
                            session.pipeline().tracking() ? "; show the camera a place from before" : "");
 }
 
-Button WindowRun::record_button() const {
-    return {true, live_ ? "" : "only a live source is recorded, and this one is a recording already"};
-}
+Button WindowRun::record_button() const { return {true, live_ ? "" : "only a live source can be recorded"}; }
 
 Button WindowRun::undo_button(SessionCore& session) const {
-    if (!checkpoint_problem_.empty()) return {true, checkpoint_problem_};
     if (checkpoints_.can_go_back(moment(session))) return {true, ""};
+    if (!checkpoint_problem_.empty()) return {true, checkpoint_problem_};
     return {true, display_->wants_all() ? "off screen no checkpoints are kept"
                                         : "there is no checkpoint before what is shown"};
 }
@@ -172,8 +177,8 @@ void WindowRun::export_now(SessionCore& session) {
         const std::filesystem::path folder = free_place_beside(out_, "export");
         session.scene().save(folder);
         message_ = fmt::format("exported to {}", folder.string());
-    } catch (const Error& error) {
-        message_ = fmt::format("not exported: {}", error.what());
+    } catch (const std::exception& error) {
+        message_ = fmt::format("not exported: {}", reason_of(error));
     }
 }
 
