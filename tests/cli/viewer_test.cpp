@@ -188,6 +188,7 @@ TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
     EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
     const auto summary = summary_of(out());
     EXPECT_GE(summary["frames"].value("undone", 0), 1);
+    EXPECT_THAT(files_in(beside("."))["said"], HasSubstr(" undone)"));
     EXPECT_EQ(summary["live"]["recordings"][0]["file"], recording.string());
     const uint32_t frames = *sensor::RecordingFile(recording).sequence(sensor::SequenceRole::kMain).info.frames;
     EXPECT_GE(frames, 5u);
