@@ -78,6 +78,10 @@ std::vector<glm::vec2> GlbArrays::pairs(int accessor) const {
     return elements<glm::vec2>(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
 }
 
+std::vector<glm::vec4> GlbArrays::quads(int accessor) const {
+    return elements<glm::vec4>(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
+}
+
 std::vector<float> GlbArrays::scalars(int accessor) const {
     return elements<float>(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR);
 }
@@ -107,6 +111,16 @@ std::vector<std::array<uint32_t, 3>> GlbArrays::triangles(const tinygltf::Primit
         triangles[i / 3][i % 3] = indices[i];
     }
     return triangles;
+}
+
+size_t base_color_pages(const tinygltf::Model& model) {
+    size_t pages = model.images.size();
+    for (const tinygltf::Material& material : model.materials) {
+        const auto texture = static_cast<size_t>(material.normalTexture.index);
+        if (material.normalTexture.index < 0 || texture >= model.textures.size()) continue;
+        pages = std::min(pages, static_cast<size_t>(std::max(model.textures[texture].source, 0)));
+    }
+    return pages;
 }
 
 int attribute_of(const tinygltf::Primitive& primitive, const char* name) {

@@ -25,6 +25,7 @@ class GlbArrays {
     /// Float32 vectors.
     std::vector<glm::vec3> vectors(int accessor) const;
     std::vector<glm::vec2> pairs(int accessor) const;
+    std::vector<glm::vec4> quads(int accessor) const;
     std::vector<float> scalars(int accessor) const;
     /// COLOR_0, normalised u16: linear. Alpha is left out.
     std::vector<glm::vec3> colors(int accessor) const;
@@ -46,6 +47,9 @@ class GlbArrays {
     const std::filesystem::path& file_;
     const tinygltf::Model& model_;
 };
+
+/// How many of a Patina file's pictures are pages with base colours: these come first.
+size_t base_color_pages(const tinygltf::Model& model);
 
 /// The accessor of a primitive's attribute; -1 where there is none.
 int attribute_of(const tinygltf::Primitive& primitive, const char* name);

@@ -61,6 +61,11 @@ int GltfArrays::add_vertices(const char* name, const std::vector<glm::vec2>& vec
                Format::vertices(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2));
 }
 
+int GltfArrays::add_vertices(const char* name, const std::vector<glm::vec4>& vectors) {
+    return add(name, bytes_of(vectors), vectors.size(),
+               Format::vertices(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4));
+}
+
 int GltfArrays::add_vertices(const char* name, const std::vector<float>& values) {
     return add(name, bytes_of(values), values.size(),
                Format::vertices(TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR));

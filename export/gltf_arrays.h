@@ -28,6 +28,7 @@ class GltfArrays {
 
     int add_vertices(const char* name, const std::vector<glm::vec3>& vectors);
     int add_vertices(const char* name, const std::vector<glm::vec2>& vectors);
+    int add_vertices(const char* name, const std::vector<glm::vec4>& vectors);
     int add_vertices(const char* name, const std::vector<float>& values);
     int add_vertices(const char* name, const std::vector<GltfColor>& colors);
 

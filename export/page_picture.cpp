@@ -93,6 +93,15 @@ Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<Texture
     return picture;
 }
 
+Image<SrgbPixel> detail_picture(const Image<glm::vec3>& detail) {
+    Image<SrgbPixel> picture(detail.extent());
+    std::ranges::transform(detail.pixels(), picture.pixels().begin(), [](glm::vec3 normal) {
+        const glm::vec3 shown = normal == glm::vec3(0) ? glm::vec3(0, 0, 1) : normal;
+        return SrgbPixel(glm::round(glm::clamp(127.5f * shown + 127.5f, 0.0f, 255.0f)));
+    });
+    return picture;
+}
+
 namespace {
 
 EncodedPicture encoded(const Image<SrgbPixel>& picture, const char* mime_type, const std::vector<int>& how) {
@@ -116,6 +125,10 @@ const char* extension_of(const EncodedPicture& picture) { return picture.mime_ty
 
 EncodedPicture encoded(const Image<SrgbPixel>& picture) {
     if (picture.extent().area() > kMostOfPng) return encoded_as_jpeg(picture, kJpegQuality);
+    return encoded_as_png(picture);
+}
+
+EncodedPicture encoded_as_png(const Image<SrgbPixel>& picture) {
     return encoded(picture, "image/png", {cv::IMWRITE_PNG_COMPRESSION, 6});
 }
 

@@ -15,6 +15,9 @@ namespace patina {
 Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<TextureBox>& boxes, uint32_t number,
                               const std::function<float(uint32_t label)>& factor_of);
 
+/// Unit normals as glTF's normalTexture has them: n / 2 + 1/2 of 255. Where there is none, the mesh's own.
+Image<SrgbPixel> detail_picture(const Image<glm::vec3>& detail);
+
 /// A picture as a file's bytes: PNG up to a million texels, JPEG above, which is a third of its size.
 struct EncodedPicture {
     std::string mime_type;
@@ -23,6 +26,8 @@ struct EncodedPicture {
 /// ".png" or ".jpg".
 const char* extension_of(const EncodedPicture& picture);
 EncodedPicture encoded(const Image<SrgbPixel>& picture);
+/// As PNG, whatever the size.
+EncodedPicture encoded_as_png(const Image<SrgbPixel>& picture);
 /// As JPEG of a quality from 1 to 100.
 EncodedPicture encoded_as_jpeg(const Image<SrgbPixel>& picture, int quality);
 

@@ -37,8 +37,8 @@ class Rewriter {
     Rewriter(const std::filesystem::path& from, const std::filesystem::path& to, const GlbChanges& changes)
         : from_(from), changes_(changes), old_(read_glb(from)), model_(old_), file_(to) {
         if (changes.without_texture) {
-            for (const tinygltf::Image& image : old_.images)
-                pages_.push_back(linear_page({image.mimeType, image.image}));
+            for (size_t i = 0; i < base_color_pages(old_); ++i)
+                pages_.push_back(linear_page({old_.images[i].mimeType, old_.images[i].image}));
         }
         if (changes.triangles) share_ = share_of(*changes.triangles);
     }
@@ -93,13 +93,16 @@ class Rewriter {
     }
 
     void write(const std::string& name, int accessor, const MeshPart& kept, tinygltf::Primitive& primitive) {
-        if (name == "POSITION" || (name == "TEXCOORD_0" && changes_.without_texture)) return;
+        const bool of_texture = name == "TEXCOORD_0" || name == "TANGENT";
+        if (name == "POSITION" || (of_texture && changes_.without_texture)) return;
         const int type = in_.at(old_.accessors, accessor, "accessor").type;
         int& written = primitive.attributes[name];
         if (name == "COLOR_0") {
             written = add_colors(gathered(in_.colors(accessor), kept));
         } else if (type == TINYGLTF_TYPE_VEC2) {
             written = arrays_.add_vertices(name.c_str(), gathered(in_.pairs(accessor), kept));
+        } else if (type == TINYGLTF_TYPE_VEC4) {
+            written = arrays_.add_vertices(name.c_str(), gathered(in_.quads(accessor), kept));
         } else if (type == TINYGLTF_TYPE_SCALAR) {
             written = arrays_.add_vertices(name.c_str(), gathered(in_.scalars(accessor), kept));
         } else {
@@ -134,8 +137,10 @@ class Rewriter {
             model_.images.clear();
             model_.textures.clear();
             model_.samplers.clear();
-            for (tinygltf::Material& material : model_.materials)
+            for (tinygltf::Material& material : model_.materials) {
                 material.pbrMetallicRoughness.baseColorTexture = tinygltf::TextureInfo();
+                material.normalTexture = tinygltf::NormalTextureInfo();
+            }
             return;
         }
         for (tinygltf::Image& image : model_.images) {

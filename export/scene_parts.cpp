@@ -89,7 +89,8 @@ class Reader {
             scene_.candela_per_intensity = number(extras.Get("photometric"), "candela_per_intensity", 1);
         if (!(scene_.candela_per_intensity > 0))
             throw Error(file_, ": candela_per_intensity is ", scene_.candela_per_intensity, ", not above 0");
-        for (const tinygltf::Image& image : model_.images) scene_.pages.push_back({image.mimeType, image.image});
+        for (size_t i = 0; i < base_color_pages(model_); ++i)
+            scene_.pages.push_back({model_.images[i].mimeType, model_.images[i].image});
         const glm::dmat4 to_gltf = transform_of(root);
         for (const int child : root.children) {
             const tinygltf::Node& node = arrays_.at(model_.nodes, child, "node");

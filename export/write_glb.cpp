@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -72,7 +73,8 @@ struct Piece {
     // Where it lies in a texture; null: in none.
     const std::vector<glm::vec2>* places_px = nullptr;  ///< by vertex
     const std::vector<Extent2D>* pages = nullptr;
-    std::span<const uint8_t> filled{};  ///< by vertex; empty: nothing is
+    std::span<const uint8_t> filled{};                 ///< by vertex; empty: nothing is
+    const std::vector<glm::vec4>* tangents = nullptr;  ///< by vertex; null where the texture has no detail
 
     const SegmentReflectance& segment(uint32_t label) const {
         static const SegmentReflectance kNone;
@@ -96,8 +98,9 @@ struct GlbWriter::State {
 
     /// `page`: of the texture; kNoPage: the piece lies in none.
     void add(const Piece& piece, const MeshPart& part, uint32_t page);
-    void add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents);
+    void add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents, bool has_detail);
     void add_page(const TextureLayout& layout, const TexturePage& page, uint32_t number);
+    void add_detail(const Image<glm::vec3>& detail, uint32_t number);
     GlbSummary finish(const GlbInfo& info);
 
     std::filesystem::path path;
@@ -106,6 +109,7 @@ struct GlbWriter::State {
     tinygltf::Model model;
     GltfArrays arrays{model, file};
     std::map<uint32_t, Segment> segments;  ///< by label
+    std::optional<int> first_detail;       ///< texture with the detail of the first page
     GlbSummary summary;
 
   private:
@@ -152,6 +156,7 @@ struct GlbWriter::State {
         tinygltf::Material& own = model.materials.emplace_back(material);
         own.name = page == kNoPage || page == 0 ? name : name + ", page " + std::to_string(page + 1);
         if (page != kNoPage) own.pbrMetallicRoughness.baseColorTexture.index = static_cast<int>(page);
+        if (page != kNoPage && first_detail) own.normalTexture.index = *first_detail + static_cast<int>(page);
         return static_cast<int>(model.materials.size()) - 1;
     }
 
@@ -217,6 +222,8 @@ struct GlbWriter::State {
         std::vector<glm::vec2> places = gathered(*piece.places_px, part);
         for (glm::vec2& place : places) place /= glm::vec2(extent.width, extent.height);
         primitive.attributes["TEXCOORD_0"] = arrays.add_vertices("TEXCOORD_0", places);
+        if (piece.tangents)
+            primitive.attributes["TANGENT"] = arrays.add_vertices("TANGENT", gathered(*piece.tangents, part));
     }
 
     void add_reflectance(const Piece& piece, const MeshPart& part, tinygltf::Primitive& primitive) {
@@ -331,16 +338,31 @@ void GlbWriter::State::add_page(const TextureLayout& layout, const TexturePage& 
     summary.filled_texels += filled;
 }
 
+void GlbWriter::State::add_detail(const Image<glm::vec3>& detail, uint32_t number) {
+    const EncodedPicture picture = encoded_as_png(detail_picture(detail));
+    tinygltf::Image image;
+    image.name = "detail, page " + std::to_string(number + 1);
+    image.mimeType = picture.mime_type;
+    image.bufferView = arrays.add_bytes(image.name.c_str(), std::as_bytes(std::span(picture.bytes)));
+    tinygltf::Texture texture;
+    texture.source = static_cast<int>(model.images.size());
+    texture.sampler = 0;
+    if (!first_detail) first_detail = static_cast<int>(model.textures.size());
+    model.images.push_back(std::move(image));
+    model.textures.push_back(std::move(texture));
+}
+
 /// A triangle's vertices are of one segment and in one page.
-void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents) {
+void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents,
+                                    bool has_detail) {
     const MeshReflectance* reflectance = surface.reflectance.kd.empty() ? nullptr : &surface.reflectance;
     check_mesh(path, surface.mesh);
     if (reflectance) check_reflectance(path, surface.mesh, *reflectance);
     const std::vector<Triangle> triangles = drawable_triangles(surface.mesh);
     summary.degenerate_triangles += surface.mesh.triangles.size() - triangles.size();
     if (triangles.empty()) return;
-    const Piece piece{surface.mesh,      reflectance, unit_normals(surface.mesh, triangles),
-                      &surface.place_px, &extents,    surface.filled};
+    const Piece piece{surface.mesh, reflectance,    unit_normals(surface.mesh, triangles),   &surface.place_px,
+                      &extents,     surface.filled, has_detail ? &surface.tangents : nullptr};
     const auto count = static_cast<uint32_t>(extents.size());
     std::vector<uint32_t> places;
     for (size_t i = 0; i < surface.pages.size(); ++i)
@@ -381,7 +403,9 @@ void GlbWriter::add(const Mesh& mesh, const MeshReflectance* reflectance, std::s
 }
 
 void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<TexturePage>& pages) {
-    for (const TexturedSurface& surface : layout.pieces) state_->add_textured(surface, layout.pages);
+    const auto has_detail = [](const TexturePage& page) { return page.detail.extent().area() > 0; };
+    const bool detailed = !pages.empty() && std::ranges::all_of(pages, has_detail);
+    for (const TexturedSurface& surface : layout.pieces) state_->add_textured(surface, layout.pages, detailed);
     if (pages.empty()) return;
     tinygltf::Sampler sampler;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
@@ -389,7 +413,10 @@ void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<Text
     sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     state_->model.samplers.push_back(std::move(sampler));
     for (uint32_t number = 0; number < pages.size(); ++number) state_->add_page(layout, pages[number], number);
+    for (uint32_t number = 0; detailed && number < pages.size(); ++number)
+        state_->add_detail(pages[number].detail, number);
     state_->summary.texture_pages = pages.size();
+    state_->summary.detail_pages = detailed ? pages.size() : 0;
     state_->summary.texel_m = layout.texel_m;
 }
 

@@ -50,6 +50,7 @@ struct GlbSummary {
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
     uint64_t texture_pages = 0;
+    uint64_t detail_pages = 0;   ///< normal maps: as many, or none
     double texel_m = 0;          ///< edge of a texel on the surface; 0 without a texture
     uint64_t seen_texels = 0;    ///< that a picture showed
     uint64_t filled_texels = 0;  ///< that none showed: what the vertices around know
@@ -73,6 +74,8 @@ struct GlbSummary {
 /// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a
 /// page's picture have the edge of a texel, "texel_m", and the share of its texels that a picture of the recording
 /// showed, "seen".
+///
+/// Pages with detail have a normalTexture each, and its primitives TANGENT.
 ///
 /// Lights are point lights (KHR_lights_punctual) in candela. Extras of the scene, "photometric", have the factor from
 /// linear pixel values times square metres. Extras of a light say that it is not calibrated, and the lamp's radius

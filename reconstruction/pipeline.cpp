@@ -129,7 +129,9 @@ std::vector<TexturePage> Pipeline::bake_texture(const TextureLayout& layout,
         fusion_.require(picture.color.camera, picture.world_from_camera);
         bake.add(picture);
     });
-    return bake.finish();
+    std::vector<TexturePage> pages = bake.finish();
+    bake.add_detail(layout, pages);
+    return pages;
 }
 
 /// A simplified surface has few vertices, between which its albedo may change.

@@ -54,9 +54,10 @@ class SurfaceBuilder {
 
     void add(const MeshPart& part, const Chart& chart, const PackedBoxes::Place& place) {
         used_.clear();
+        const float side = side_of(part, chart);
         for (const uint32_t t : chart.triangles) {
             std::array<uint32_t, 3> triangle = part.triangles[t];
-            for (uint32_t& vertex : triangle) vertex = number_of(part.vertices[vertex], part.label, chart, place);
+            for (uint32_t& vertex : triangle) vertex = number_of(part.vertices[vertex], part.label, chart, place, side);
             surface.mesh.triangles.push_back(triangle);
         }
         for (const uint32_t vertex : used_) numbers_[vertex] = kUnused;
@@ -65,7 +66,22 @@ class SurfaceBuilder {
     TexturedSurface surface;
 
   private:
-    uint32_t number_of(uint32_t vertex, uint32_t label, const Chart& chart, const PackedBoxes::Place& place) {
+    /// Which way round its axes are, seen from where most of it faces.
+    float side_of(const MeshPart& part, const Chart& chart) const {
+        glm::vec3 facing(0);
+        for (const uint32_t t : chart.triangles)
+            for (const uint32_t vertex : part.triangles[t]) facing += piece_.mesh.normals[part.vertices[vertex]];
+        return glm::dot(glm::cross(facing, chart.right), chart.down) > 0 ? -1.0f : 1.0f;
+    }
+
+    static glm::vec3 tangent_of(glm::vec3 right, glm::vec3 normal) {
+        const glm::vec3 across =
+            right - normal * (glm::dot(right, normal) / std::max(glm::dot(normal, normal), 1e-12f));
+        return glm::dot(across, across) > 1e-6f ? glm::normalize(across) : right;
+    }
+
+    uint32_t number_of(uint32_t vertex, uint32_t label, const Chart& chart, const PackedBoxes::Place& place,
+                       float side) {
         uint32_t& number = numbers_[vertex];
         if (number != kUnused) return number;
         number = static_cast<uint32_t>(surface.place_px.size());
@@ -73,6 +89,7 @@ class SurfaceBuilder {
         const glm::vec3 position_m = piece_.mesh.positions_m[vertex];
         surface.mesh.positions_m.push_back(position_m);
         append(surface.mesh.normals, piece_.mesh.normals, vertex);
+        surface.tangents.emplace_back(tangent_of(chart.right, piece_.mesh.normals[vertex]), side);
         append(surface.mesh.colors, piece_.mesh.colors, vertex);
         append(surface.filled, piece_.filled, vertex);
         append(surface.reflectance.kd, piece_.reflectance.kd, vertex);

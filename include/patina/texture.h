@@ -17,7 +17,10 @@ struct TexturedSurface {
     MeshReflectance reflectance;      ///< of the vertices; without kd: the mesh has colours alone
     std::vector<glm::vec2> place_px;  ///< by vertex: in its page; the top left texel's centre is (0.5, 0.5)
     std::vector<uint32_t> pages;      ///< by vertex
-    std::vector<uint8_t> filled{};    ///< by vertex: 1 where a hole was closed and nothing was measured; empty: nowhere
+    /// By vertex, as glTF has them: xyz is the direction in which a place moves to the right, across the normal; w is 1
+    /// or -1: cross(normal, tangent) * w is that in which it moves up. Empty: there are none.
+    std::vector<glm::vec4> tangents{};
+    std::vector<uint8_t> filled{};  ///< by vertex: 1 where a hole was closed and nothing was measured; empty: nowhere
 };
 
 /// Texels around a chart that show what is at its border, so that filters find nothing else there.
@@ -45,10 +48,13 @@ enum class TexelState : uint8_t {
     kSeen
 };
 
-/// A page of a texture. Both images have its extent.
+/// A page of a texture. `kd` and `states` have its extent.
 struct TexturePage {
     Image<glm::vec3> kd;  ///< diffuse albedo, or linear colour where a surface has colours alone; 0 to 1
     Image<TexelState> states;
+    /// What the volume's surface faces, by texel, in the frame of the mesh's tangent and normal there; unit length,
+    /// (0, 0, 0) where no surface lies. Of the same proportions with as many texels or fewer. Empty: the mesh shows it.
+    Image<glm::vec3> detail{};
 };
 
 }  // namespace patina

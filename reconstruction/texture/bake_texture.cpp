@@ -6,15 +6,20 @@
 #include "passes/input/convert_color.h"
 #include "passes/texture/balance_texels.h"
 #include "passes/texture/blend_picture.h"
+#include "passes/texture/detail_normals.h"
 #include "passes/texture/finish_texels.h"
 #include "passes/texture/place_texels.h"
-#include "reconstruction/texture/texture_triangles.h"
 
 namespace patina {
 namespace {
 
 // Light, shadows and highlights change slowly: the model is cast into views of no more pixels than this along a side.
 constexpr uint32_t kMostCast_px = 640;
+
+// The gutter around a chart is three texels wide: of so large texels no two charts share one.
+constexpr uint32_t kMostShrunk = 4;
+// Root mean square of the sine between mesh and volume, about 2 degrees: below, there is noise.
+constexpr double kLeastDetail = 0.035;
 
 Extent2D cast_extent(Extent2D picture) {
     const uint32_t longest = std::max(picture.width, picture.height);
@@ -29,6 +34,18 @@ void copy_rows(const TextureBand& band, std::span<const uint32_t> words, Texture
         page.kd.pixels()[first + i] = unpack_albedo(words[i]);
         page.states.pixels()[first + i] = static_cast<TexelState>(state_of(words[i]));
     }
+}
+
+bool carries_detail(const std::vector<TexturePage>& pages) {
+    double squares = 0, texels = 0;
+    for (const TexturePage& page : pages) {
+        for (const glm::vec3& normal : page.detail.pixels()) {
+            if (normal.z <= 0) continue;
+            squares += double{normal.x} * normal.x + double{normal.y} * normal.y;
+            ++texels;
+        }
+    }
+    return squares > kLeastDetail * kLeastDetail * texels;
 }
 
 }  // namespace
@@ -114,6 +131,39 @@ TexturePage TextureBake::finish_page(uint32_t number) {
     for (const auto& [band, read] : reads) copy_rows(*band, read.as<uint32_t>(), page);
     std::erase_if(bands_, [&](const TextureBand& band) { return band.page() == number; });  // they are large
     return page;
+}
+
+void TextureBake::add_detail(const TextureLayout& layout, std::vector<TexturePage>& pages) {
+    const TextureTriangles triangles = texture_triangles(layout);
+    if (triangles.pages.empty() || triangles.tangents.empty()) return;
+    const double half_voxel_m = stages_.settings.map.voxel_m / 2;
+    const uint32_t shrunk = std::clamp(static_cast<uint32_t>(half_voxel_m / texel_m_), 1u, kMostShrunk);
+    std::vector<Extent2D> extents;
+    for (const Extent2D page : pages_)
+        extents.push_back({(page.width + shrunk - 1) / shrunk, (page.height + shrunk - 1) / shrunk});
+    const TextureTriangles smaller = resized(triangles, pages_, extents);
+    for (uint32_t page = 0; page < pages.size(); ++page) pages[page].detail = detail_of(smaller, page, extents[page]);
+    if (carries_detail(pages)) return;
+    for (TexturePage& page : pages) page.detail = {};
+}
+
+Image<glm::vec3> TextureBake::detail_of(const TextureTriangles& triangles, uint32_t page, Extent2D extent) {
+    const TileLists lists = list_tiles(triangles, page, 0, extent);
+    graph::FrameGraph graph = runner_.begin();
+    const VoxelMap& map = stages_.geometry.map();
+    PlaceTexelsInputs inputs;
+    inputs.vertices = graph.upload("texture vertices", std::span(triangles.vertices));
+    inputs.triangles = graph.upload("texture triangles", std::span(triangles.indices));
+    inputs.tiles = graph.upload("texture tiles", std::span(lists.tiles));
+    inputs.lists = graph.upload("texture lists", std::span(lists.lists));
+    const graph::BufferId tangents = graph.upload("texture tangents", std::span(triangles.tangents));
+    const graph::Readback read =
+        graph.read_back(add_detail_normals(graph, map, map.import(graph), inputs, tangents, extent));
+    runner_.submit(std::move(graph));
+    runner_.wait();
+    Image<glm::vec3> detail(extent);
+    std::ranges::transform(read.as<uint32_t>(), detail.pixels().begin(), unpack_detail);
+    return detail;
 }
 
 }  // namespace patina

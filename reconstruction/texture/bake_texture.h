@@ -8,6 +8,7 @@
 #include "patina/frame.h"
 #include "patina/texture.h"
 #include "reconstruction/stages/stages.h"
+#include "reconstruction/texture/texture_triangles.h"
 
 namespace patina {
 
@@ -30,8 +31,13 @@ class TextureBake {
     /// Waits for the device. Nothing may be added after it.
     std::vector<TexturePage> finish();
 
+    /// Adds what the volume's surface faces to the pages of the layout (TexturePage::detail), in texels of about half a
+    /// voxel, where the mesh differs from it enough to see. Waits for the device.
+    void add_detail(const TextureLayout& layout, std::vector<TexturePage>& pages);
+
   private:
     void place(const TextureLayout& layout);
+    Image<glm::vec3> detail_of(const TextureTriangles& triangles, uint32_t page, Extent2D extent);
     TexturePage finish_page(uint32_t number);
 
     graph::Runner& runner_;

@@ -65,12 +65,25 @@ TextureTriangles texture_triangles(const TextureLayout& layout) {
             all.vertices.push_back({glm::vec4(piece.mesh.positions_m[i], place.x),
                                     glm::vec4(known_albedo(piece, i), place.y), glm::vec4(piece.mesh.normals[i], 0)});
         }
+        all.tangents.insert(all.tangents.end(), piece.tangents.begin(), piece.tangents.end());
         for (const auto& triangle : piece.mesh.triangles) {
             for (const uint32_t vertex : triangle) all.indices.push_back(first + vertex);
             all.pages.push_back(piece.pages[triangle[0]]);
         }
     }
     return all;
+}
+
+TextureTriangles resized(TextureTriangles triangles, std::span<const Extent2D> from, std::span<const Extent2D> to) {
+    std::vector<uint8_t> done(triangles.vertices.size(), 0);
+    for (size_t i = 0; i < triangles.indices.size(); ++i) {
+        const uint32_t vertex = triangles.indices[i], page = triangles.pages[i / 3];
+        if (done[vertex]++ > 0) continue;
+        gpu::TextureVertex& own = triangles.vertices[vertex];
+        own.position_m.w *= static_cast<float>(to[page].width) / static_cast<float>(from[page].width);
+        own.kd.w *= static_cast<float>(to[page].height) / static_cast<float>(from[page].height);
+    }
+    return triangles;
 }
 
 TileLists list_tiles(const TextureTriangles& triangles, uint32_t page, uint32_t first_row, Extent2D extent) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "patina/texture.h"
@@ -11,13 +12,17 @@ namespace patina {
 /// A layout as shaders read it.
 struct TextureTriangles {
     std::vector<gpu::TextureVertex> vertices;
-    std::vector<uint32_t> indices;  ///< three per triangle
-    std::vector<uint32_t> pages;    ///< by triangle
+    std::vector<glm::vec4> tangents;  ///< by vertex; empty where the layout has none
+    std::vector<uint32_t> indices;    ///< three per triangle
+    std::vector<uint32_t> pages;      ///< by triangle
 };
 
 /// All pieces of a layout, one after the other. A vertex whose albedo is not known has its segment's, without one its
 /// own colour.
 TextureTriangles texture_triangles(const TextureLayout& layout);
+
+/// The same in pages of other extents: places move with the page that they are in.
+TextureTriangles resized(TextureTriangles triangles, std::span<const Extent2D> from, std::span<const Extent2D> to);
 
 /// Which triangles may touch each tile of a band: those that come as near as the gutter to it.
 struct TileLists {

@@ -135,6 +135,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"holes closed", scene.closed_holes},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"pages of the texture", scene.texture_pages},
+                      {"normal maps", scene.detail_pages},
                       {"texels that a picture showed", scene.seen_texels},
                       {"texels that no picture showed", scene.filled_texels},
                       {"blocks removed without surface", counters.map.deleted_blocks}};

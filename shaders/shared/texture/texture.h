@@ -1,6 +1,7 @@
 // A surface in the page of a texture, and what pictures say of its texels.
 #ifndef PATINA_SHARED_TEXTURE_H
 #define PATINA_SHARED_TEXTURE_H
+#include "shared/fusion/voxel_map.h"
 #include "shared/input/camera.h"
 INTEROP_BEGIN
 
@@ -36,6 +37,13 @@ struct PlaceTexelsParams {
     uvec2 extent;    // of the band, texels
     uint first_row;  // of the page
     uint tiles_x;    // tiles along a row
+};
+
+struct DetailNormalsParams {
+    VoxelGrid grid;
+    uvec2 extent;  // of the page, texels
+    uint tiles_x;  // tiles along a row
+    uint pad0;
 };
 
 struct BlendPictureParams {
