@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <initializer_list>  // which OpenNI.h lacks
 #include <optional>
+#include <thread>
 #include <utility>
 // The library's own headers.
 #include <OpenNI.h>
@@ -16,6 +18,7 @@ namespace patina::sensor {
 namespace {
 
 constexpr int kPatience_ms = 100;
+constexpr std::chrono::milliseconds kLastPicture(150);  // several at 30 a second
 constexpr int kWidth = 640, kHeight = 480, kFps = 30;
 
 /// Initialised once. It is never shut down: threads of its drivers outlive that, and then run code that is gone.
@@ -106,6 +109,7 @@ class OpenNi2Camera : public PictureCamera {
     const SequenceInfo& info() const override { return info_; }
 
     void run(const PictureSink& sink, const std::stop_token& stop) override {
+        const Streaming streaming(depth_, color_);
         if (depth_.start() != openni::STATUS_OK || color_.start() != openni::STATUS_OK)
             fail("the camera of OpenNI2 does not start");
         openni::VideoStream* streams[] = {&depth_, &color_};
@@ -122,11 +126,27 @@ class OpenNi2Camera : public PictureCamera {
             if (which == 0) watch.heard();
             give(frame, which == 0, sink);
         }
-        depth_.stop();
-        color_.stop();
     }
 
   private:
+    /// However run() ends, both streams have stopped afterwards. A driver's thread may be on its way with one more
+    /// picture then (that of the dummy device is never waited for), and the library must still be there for it.
+    class Streaming {
+      public:
+        Streaming(openni::VideoStream& depth, openni::VideoStream& color) : depth_(depth), color_(color) {}
+        ~Streaming() {
+            depth_.stop();
+            color_.stop();
+            std::this_thread::sleep_for(kLastPicture);
+        }
+        Streaming(const Streaming&) = delete;
+        Streaming& operator=(const Streaming&) = delete;
+
+      private:
+        openni::VideoStream& depth_;
+        openni::VideoStream& color_;
+    };
+
     bool register_depth() {
         constexpr auto kMode = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
         return device_.isImageRegistrationModeSupported(kMode) &&

@@ -37,6 +37,8 @@ const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter
 const float kLeastAlpha = 0.01;
 const float kReflectedSpreads = 1.5;
 const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
+const float kNearViews = 0.9994;     // 2 degrees
+const float kFarViews = 0.9962;      // 5 degrees
 const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views
 const float kUsualKd = 0.3;          // a usual albedo
 const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
@@ -165,6 +167,14 @@ Center find_center(Center center, float noise) {
     return center;
 }
 
+// How far apart views are: 0: so near each other that a mirror shows the same in all of them; 1: far enough.
+float views_apart(uint count) {
+    float least = 1.0;
+    [[unroll]] for (uint k = 0u; k < kMaxObservations; ++k) least =
+        min(least, k < count ? dot(direction_of[k], direction_of[0]) : 1.0);
+    return 1.0 - smoothstep(kFarViews, kNearViews, least);
+}
+
 // What is not reflected surroundings, of which the material does not tell: they change with the view, and only add. So
 // where colours scatter by more than their noise, the diffuse part lies below their mean.
 float unreflected_share(Center center, float noise, float mirror) {
@@ -256,9 +266,9 @@ void main() {
     const Center center = find_center(guess, noise);
     Estimate estimate = robust_mean(center, noise);
     estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
-    const float mirror = has_entry ? material.mirror : 0.0;
+    const float mirror = has_entry ? material.mirror : 0.0, apart = views_apart(count);
     if (gathered.met > 0.0) {
-        const float share = unreflected_share(center, noise, mirror);
+        const float share = unreflected_share(center, noise, mirror) * (1.0 - mirror * (1.0 - apart));
         estimate.diffuse *= share;
         estimate.variance *= mix(1.0, share * share, mirror);
     }

@@ -324,6 +324,27 @@ TEST_F(RefineAlbedoTest, AMirrorHasNoDiffusePartAndTellsNothingWhereItIsClipped)
     EXPECT_EQ(refine(record).certainty, glm::dvec3(0));
 }
 
+// What a mirror shows does not change while nobody moves. That a part of its segment is none shows once somebody does.
+TEST_F(RefineAlbedoTest, AMirrorThatWasSeenFromOneSideHasNoDiffusePart) {
+    ambient_ = glm::dvec3(0.5);
+    rig_.lights.set({}, ambient_);
+    rig_.materials.set(5, glm::vec3(0.5f), 0.05f);
+    rig_.set_mirror(5, 1);
+    const auto kd_of_views_within = [&](double angle) {
+        FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 5, {}};
+        for (int k = 0; k < 20; ++k) {
+            const double turn = 0.5 + angle * k / 19;
+            record.observations.push_back({glm::vec3(std::sin(turn), -std::cos(turn), 0), glm::vec3(0.75f), {}});
+        }
+        rig_.set_incident(1, {ambient_, 64, 0});
+        return refine(record).kd.r;
+    };
+    EXPECT_EQ(kd_of_views_within(0.01), 0);
+    EXPECT_GT(kd_of_views_within(0.3), 0.9) << "0.75 less 0.25 of gloss under 0.5";
+    rig_.set_mirror(5, 0);
+    EXPECT_GT(kd_of_views_within(0.01), 0.9);
+}
+
 TEST_F(RefineAlbedoTest, MirrorsAgreeWithTheReference) {
     std::uniform_real_distribution<float> share(0, 1);
     const Ward material{{0.3, 0.4, 0.2}, {0.2, 0.1, 0.15}, 0.3};
@@ -333,7 +354,9 @@ TEST_F(RefineAlbedoTest, MirrorsAgreeWithTheReference) {
     for (int i = 0; i < 100; ++i) {
         records.push_back(random_record(5));
         observe(records.back(), material);
+        const glm::vec3 first = records.back().observations.front().to_viewer;
         for (FilledObservation& seen : records.back().observations) {
+            if (i % 3 == 0) seen.to_viewer = glm::normalize(glm::mix(first, seen.to_viewer, 0.02f * share(random_)));
             seen.rgb *= 0.93f + 0.14f * share(random_);
             if (share(random_) < 0.2f) seen.clipped = {true, false, false};
         }

@@ -67,6 +67,15 @@ double bound_of(const std::vector<Rest>& rests, int channel) {
     return sum / weights;
 }
 
+/// Of a mirror, whose views are so near each other that it shows the same in all: 1; from 5 degrees on 0.
+double seen_from_one_side(const std::vector<SeenColor>& observations) {
+    double least = 1;
+    for (const SeenColor& seen : observations)
+        least = std::min(least, glm::dot(seen.to_viewer, observations.front().to_viewer));
+    const double t = std::clamp((least - 0.9962) / (0.9994 - 0.9962), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
 }  // namespace
 
 glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vector<ReceivedLight>& lights,
@@ -109,7 +118,8 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         around_error = around * std::min(0.5 / std::sqrt(rays) + 0.3 * gathered.missed / rays, 1.0);
         const double spreads = 1.5 * (1 - mirror) + 8 * mirror;
         if (gathered.met > 0)
-            unreflected = std::clamp(1 - spreads * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0);
+            unreflected = std::clamp(1 - spreads * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0) *
+                          (1 - mirror * seen_from_one_side(observations));
     }
     const glm::dvec3 gloss_of_all = rays > 0 ? material.ks * around : glm::dvec3(0);
     const glm::dvec3 irradiance = shade(white, point, lights, around, point.normal);
