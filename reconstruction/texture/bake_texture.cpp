@@ -136,8 +136,8 @@ TexturePage TextureBake::finish_page(uint32_t number) {
 void TextureBake::add_detail(const TextureLayout& layout, std::vector<TexturePage>& pages) {
     const TextureTriangles triangles = texture_triangles(layout);
     if (triangles.pages.empty() || triangles.tangents.empty()) return;
-    const double half_voxel_m = stages_.settings.map.voxel_m / 2;
-    const uint32_t shrunk = std::clamp(static_cast<uint32_t>(half_voxel_m / texel_m_), 1u, kMostShrunk);
+    // Differences over two voxels show nothing finer than one.
+    const uint32_t shrunk = std::clamp(static_cast<uint32_t>(stages_.settings.map.voxel_m / texel_m_), 1u, kMostShrunk);
     std::vector<Extent2D> extents;
     for (const Extent2D page : pages_)
         extents.push_back({(page.width + shrunk - 1) / shrunk, (page.height + shrunk - 1) / shrunk});

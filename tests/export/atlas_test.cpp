@@ -219,6 +219,21 @@ TEST(LayOutTexture, TexelsAreSquareAndSegmentsApart) {
     }
 }
 
+// As glTF has it: a tangent goes right in the page, and the third axis up.
+TEST(LayOutTexture, TangentsFollowThePage) {
+    const TextureLayout layout = lay_out_texture({piece_of(flat_sheet(41, 31), 41)}, {.texel_m = 0.005});
+    const TexturedSurface& surface = layout.pieces.at(0);
+    ASSERT_EQ(surface.tangents.size(), surface.place_px.size());
+    for (const auto& t : surface.mesh.triangles) {
+        const glm::vec3 tangent(surface.tangents[t[0]]);
+        const glm::vec3 up = glm::cross(surface.mesh.normals[t[0]], tangent) * surface.tangents[t[0]].w;
+        const glm::vec3 edge = surface.mesh.positions_m[t[1]] - surface.mesh.positions_m[t[0]];
+        const glm::vec2 in_page = surface.place_px[t[1]] - surface.place_px[t[0]];
+        EXPECT_NEAR(glm::dot(edge, tangent), in_page.x * 0.005f, 1e-5f);
+        EXPECT_NEAR(glm::dot(edge, up), -in_page.y * 0.005f, 1e-5f);
+    }
+}
+
 TEST(LayOutTexture, TexelsGrowWherePagesDoNotSuffice) {
     const Mesh sheet = flat_sheet(101, 101);  // 1 m2, four million texels of 0.5 mm
     const TextureLayout layout =

@@ -156,6 +156,41 @@ TEST(GlbTexture, AMetalHasOneColourAndNoPage) {
     EXPECT_EQ(material_of(written.model, metal).pbrMetallicRoughness.metallicFactor, 1);
 }
 
+TEST(GlbTexture, DetailOfPagesIsANormalMap) {
+    TextureLayout layout = three_quads();
+    layout.pieces[0].tangents.resize(layout.pieces[0].place_px.size(), glm::vec4(0, 1, 0, -1));
+    std::vector<TexturePage> pages = painted(layout, glm::vec3(0.2f));
+    pages[0].detail = Image<glm::vec3>({32, 16}, glm::vec3(0.28f, -0.6f, 0.75f));
+    pages[1].detail = Image<glm::vec3>({8, 8});
+    const Written written = written_and_read(layout, pages);
+    EXPECT_EQ(written.summary.texture_pages, 2u);
+    EXPECT_EQ(written.summary.detail_pages, 2u);
+    const auto shown = [&](const char* name) {
+        const tinygltf::Primitive& primitive = mesh_of(written.model, name).primitives.at(0);
+        const int texture = material_of(written.model, primitive).normalTexture.index;
+        return written.model.images.at(
+            static_cast<size_t>(written.model.textures.at(static_cast<size_t>(texture)).source));
+    };
+    const tinygltf::Image first = shown("object 1"), second = shown("object 2");
+    EXPECT_EQ(first.width, 32);
+    EXPECT_THAT(std::vector(first.image.begin(), first.image.begin() + 3), testing::ElementsAre(163, 51, 223));
+    EXPECT_THAT(std::vector(second.image.begin(), second.image.begin() + 3), testing::ElementsAre(128, 128, 255))
+        << "what is not known is flat";
+    EXPECT_TRUE(mesh_of(written.model, "object 1").primitives.at(0).attributes.contains("TANGENT"));
+    const tinygltf::Primitive& metal = mesh_of(written.model, "object 3").primitives.at(0);
+    EXPECT_EQ(material_of(written.model, metal).normalTexture.index, -1);
+    EXPECT_FALSE(metal.attributes.contains("TANGENT"));
+}
+
+TEST(GlbTexture, WithoutDetailThereIsNoNormalMap) {
+    const TextureLayout layout = three_quads();
+    const Written written = written_and_read(layout, painted(layout, glm::vec3(0.2f)));
+    EXPECT_EQ(written.summary.detail_pages, 0u);
+    const tinygltf::Primitive& primitive = mesh_of(written.model, "object 1").primitives.at(0);
+    EXPECT_FALSE(primitive.attributes.contains("TANGENT"));
+    EXPECT_EQ(material_of(written.model, primitive).normalTexture.index, -1);
+}
+
 TEST(GlbTexture, ASurfaceWithColoursAloneShowsThem) {
     TextureLayout layout = three_quads();
     layout.pieces[0].reflectance = {};

@@ -146,6 +146,25 @@ TEST_F(RewriteGlb, WithoutChangesAllStays) {
     EXPECT_EQ(after.materials[0].gloss->ks, before.materials[0].gloss->ks);
 }
 
+TEST_F(RewriteGlb, TheNormalMapStaysWithTheTexture) {
+    changed("small.glb", {});
+    const tinygltf::Model before = read_glb(folder_ / "small.glb"), after = read_glb(folder_ / "new.glb");
+    ASSERT_EQ(after.images.size(), 2u);
+    EXPECT_EQ(after.images[1].image, before.images[1].image);
+    EXPECT_EQ(after.materials[0].normalTexture.index, before.materials[0].normalTexture.index);
+    const auto tangents_in = [](const tinygltf::Model& model) {
+        const std::filesystem::path file = "a.glb";
+        return GlbArrays(file, model).quads(attribute_of(model.meshes.at(0).primitives.at(0), "TANGENT"));
+    };
+    EXPECT_EQ(tangents_in(after), tangents_in(before));
+    EXPECT_THAT(tangents_in(after), testing::Each(glm::vec4(1, 0, 0, 1)));
+    changed("small.glb", {.without_texture = true});
+    const tinygltf::Model plain = read_glb(folder_ / "new.glb");
+    EXPECT_TRUE(plain.images.empty());
+    EXPECT_EQ(plain.materials.at(0).normalTexture.index, -1);
+    EXPECT_EQ(attribute_of(plain.meshes.at(0).primitives.at(0), "TANGENT"), -1);
+}
+
 TEST_F(RewriteGlb, WithoutTextureVerticesHaveItsColours) {
     const SceneParts after = changed("small.glb", {.without_texture = true});
     EXPECT_TRUE(after.pages.empty());

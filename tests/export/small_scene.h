@@ -17,8 +17,8 @@ inline Upright lifted() {
 inline constexpr double kCandela = 100;
 
 /// Writes a scene.glb of two segments: 1 is a unit square at z = 1 in the corner of a page whose texels are `texel`, of
-/// gloss that was observed; 2 is a triangle at z = 2, of gloss that was not. The world has y down, its floor at y = 1.
-/// One lamp at (0.5, -2, 1).
+/// gloss that was observed; 2 is a triangle at z = 2, of gloss that was not. A normal map of half the page's size. The
+/// world has y down, its floor at y = 1. One lamp at (0.5, -2, 1).
 inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel = glm::vec3(0.25f, 0.5f, 0.125f)) {
     TextureLayout layout{0.002, {{64, 64}}, {}, {{0, {0, 0}, {64, 64}, 1}}};
     TexturedSurface& piece = layout.pieces.emplace_back();
@@ -34,13 +34,15 @@ inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel =
         piece.reflectance.labels.push_back(label);
         piece.place_px.push_back(place);
         piece.pages.push_back(0);
+        piece.tangents.emplace_back(1, 0, 0, 1);
     };
     for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1), glm::vec2(1, 1)})
         add(glm::vec3(at, 1), 8.0f + 40.0f * at, 1);
     for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
         add(glm::vec3(at, 2), 50.0f + 6.0f * at, 2);
     piece.mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 6, 5}};
-    TexturePage page{Image<glm::vec3>({64, 64}, texel), Image<TexelState>({64, 64}, TexelState::kSeen)};
+    TexturePage page{Image<glm::vec3>({64, 64}, texel), Image<TexelState>({64, 64}, TexelState::kSeen),
+                     Image<glm::vec3>({32, 32}, glm::vec3(0.28f, 0, 0.96f))};
     GlbWriter writer(file);
     writer.add_textured(layout, {page});
     writer.finish({.version = "1.2.3",
