@@ -1,8 +1,8 @@
-// Renders the scene.glb of a run with three.js in headless Chromium, from the pose of a recorded frame:
-//   node tools/render_gltf.mjs RUN SEQUENCE FRAME OUT.png [EXPOSURE]
+// Renders the scene.glb of a run with three.js or Babylon.js in headless Chromium, from the pose of a recorded frame:
+//   node tools/render_gltf/render_gltf.mjs [--with three|babylon] RUN SEQUENCE FRAME OUT.png [EXPOSURE]
 // RUN holds scene.glb and trajectory.txt, SEQUENCE sequence.json. The lights are those of the file, brought from candela
-// back to the recording's pixel value, so that the picture is comparable with that of `patina render`. Needs npm's three
-// and Chromium (Debian: chromium).
+// back to the recording's pixel value, so that the picture is comparable with that of `patina render`. Needs npm's three,
+// Chromium (Debian: chromium), and for Babylon.js: npm install --no-save babylonjs@7 babylonjs-loaders@7
 import {spawn} from 'node:child_process';
 import {mkdtemp, readFile, rename, rm, writeFile} from 'node:fs/promises';
 import {createServer} from 'node:http';
@@ -11,8 +11,9 @@ import {dirname, extname, join, normalize} from 'node:path';
 import process from 'node:process';
 import {fileURLToPath} from 'node:url';
 
-const kRoot = join(dirname(fileURLToPath(import.meta.url)), '..');
+const kHere = dirname(fileURLToPath(import.meta.url)), kRoot = join(kHere, '../..');
 const kTimeoutMs = 180_000;
+const kPages = {three: 'three.html', babylon: 'babylon.html'};
 const kTypes = {'.js': 'text/javascript', '.html': 'text/html', '.glb': 'model/gltf-binary'};
 
 class UserError extends Error {}
@@ -51,8 +52,8 @@ async function viewOf(run, sequence, frame, exposure) {
     return {camera: color, colorFromDepth, pose: await poseOf(join(run, 'trajectory.txt'), frame), exposure};
 }
 
-/** Serves page, view, scene and three.js on this machine alone; `done` gets the picture, or an Error. */
-function serve(view, scene, done) {
+/** Serves page, view, scene and libraries on this machine alone; `done` gets the picture, or an Error. */
+function serve(page, view, scene, done) {
     const server = createServer(async (request, response) => {
         const answer = (body, type) => response.writeHead(200, {'Content-Type': type}).end(body);
         const body = async () => {
@@ -62,12 +63,13 @@ function serve(view, scene, done) {
         };
         try {
             const path = normalize(new URL(request.url, 'http://localhost').pathname);
-            if (path === '/') answer(await read(join(kRoot, 'tools/render_gltf.html')), kTypes['.html']);
+            if (path === '/') answer(await read(join(kHere, page)), kTypes['.html']);
+            else if (path === '/view.js') answer(await read(join(kHere, 'view.js')), kTypes['.js']);
             else if (path === '/view.json') answer(JSON.stringify(view), 'application/json');
             else if (path === '/scene.glb') answer(scene, kTypes['.glb']);
             else if (path === '/picture') answer('', 'text/plain') && done(await body());
             else if (path === '/failure') answer('', 'text/plain') && done(new UserError((await body()).toString()));
-            else if (path.startsWith('/three/')) {
+            else if (/^\/(three|babylonjs|babylonjs-loaders)\//.test(path)) {
                 answer(await read(join(kRoot, 'node_modules', path)), kTypes[extname(path)] ?? 'text/plain');
             } else response.writeHead(404).end();
         } catch (failure) {
@@ -86,13 +88,13 @@ function browse(address, profile) {
     return spawn('chromium', [...switches, address], {stdio: 'ignore'});
 }
 
-async function picture(view, scene) {
+async function picture(page, view, scene) {
     const profile = await mkdtemp(join(tmpdir(), 'render-gltf-'));
     let server, browser, timer;
     try {
         return await new Promise(async (resolve, reject) => {
             const done = (result) => (result instanceof Error ? reject(result) : resolve(result));
-            server = await serve(view, scene, done);
+            server = await serve(page, view, scene, done);
             browser = browse(`http://127.0.0.1:${server.address().port}/`, profile);
             browser.on('error', (failure) => reject(new UserError(`chromium cannot be started (${failure.code})`)));
             browser.on('exit', (code) => reject(new UserError(`chromium ended with ${code} before it had a picture`)));
@@ -107,12 +109,15 @@ async function picture(view, scene) {
     }
 }
 
-async function main([run, sequence, frame, out, exposure = '1']) {
-    if (!out || !/^\d+$/.test(frame) || !(Number(exposure) > 0)) {
-        throw new UserError('usage: node tools/render_gltf.mjs RUN SEQUENCE FRAME OUT.png [EXPOSURE]');
+async function main(given) {
+    const [renderer, words] = given[0] === '--with' ? [given[1], given.slice(2)] : ['three', given];
+    const [run, sequence, frame, out, exposure = '1'] = words;
+    if (!out || !(renderer in kPages) || !/^\d+$/.test(frame) || !(Number(exposure) > 0)) {
+        throw new UserError('usage: node tools/render_gltf/render_gltf.mjs [--with three|babylon] RUN SEQUENCE FRAME '
+                            + 'OUT.png [EXPOSURE]');
     }
     const view = await viewOf(run, sequence, Number(frame), Number(exposure));
-    const pixels = await picture(view, await read(join(run, 'scene.glb')));
+    const pixels = await picture(kPages[renderer], view, await read(join(run, 'scene.glb')));
     await writeFile(`${out}.partial`, pixels);
     await rename(`${out}.partial`, out);
 }
