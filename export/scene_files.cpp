@@ -118,7 +118,7 @@ class TidiedSurface {
 
   private:
     static constexpr uint64_t kMostTriangles = 100'000;
-    static constexpr double kMostError_m = 5e-3, kAnyError_m = 1e9;
+    static constexpr double kMostError_m = 1e-2, kAnyError_m = 1e9;
 
     uint64_t most_triangles() const {
         return options_.most_triangles.value_or(options_.error_m > 0 ? kMostTriangles : 0);

@@ -23,7 +23,7 @@ struct TidyOptions {
     /// Whether what is tidied may be a piece of a surface that others go on from: open borders then stay as they are.
     bool in_pieces = true;
     /// Triangles of the whole surface, about, whatever the distance is; 0: as many as error_m leaves. Empty: 100 000,
-    /// or more where the surface would be farther than 5 mm from what it was; where error_m is 0, all.
+    /// or more where the surface would be farther than 1 cm from what it was; where error_m is 0, all.
     std::optional<uint64_t> most_triangles{};
 };
 

@@ -46,7 +46,7 @@ void declare_scene_choices(CLI::App& command, RunOptions& run) {
         ->option_text("auto|off|MM");
     command.add_option(
         "--triangles", run.files.tidy.most_triangles,
-        "Most triangles of scene.glb, about: by default 100000, or more where it would be off by more than 5 mm; "
+        "Most triangles of scene.glb, about: by default 100000, or more where it would be off by more than 1 cm; "
         "0: as many as --surface-error leaves");
     command
         .add_option_function<double>(
