@@ -37,6 +37,7 @@ FrameCameras make_frame_cameras(const RgbdFrame& frame) {
 void FrameHistory::note(const FrameContext& frame) {
     world_from_color = frame.color.world_from_camera;
     ++frames;
+    if (frame.precedes) ++preceding;
     if (frame.fuses_color) ++color_frames;
 }
 

@@ -49,6 +49,7 @@ struct FrameContext {
     double shadows_m = 0;                  ///< what lies farther from the depth camera throws no shadow
     bool fuses_color = true;               ///< its colour is fused
     bool held_out = false;                 ///< its colour is neither fused nor observed
+    bool precedes = false;                 ///< a frame of low exposure before the first one: Pipeline::add_low_exposure
     std::span<const uint16_t> labels{};    ///< RgbdFrame::labels, borrowed
     /// Of the part of the map whose labels are swept in this frame: voxels that are away from the device, by label.
     std::span<const uint32_t> labels_away{};
@@ -57,6 +58,7 @@ struct FrameContext {
 /// What the frames so far leave to the next one's context.
 struct FrameHistory {
     uint32_t frames = 0;
+    uint32_t preceding = 0;                            ///< of these, that precede the recording's own
     uint32_t color_frames = 0;                         ///< of these, whose colour was fused
     std::optional<RigidTransform> world_from_color{};  ///< of the last one
 

@@ -50,7 +50,8 @@ FrameReadbacks wire_frame(graph::FrameGraph& graph, Stages& stages, const FrameC
     if (stages.keyframes) stages.keyframes->add_keep(graph, {input.depth_m, input.color}, frame);
     const graph::ImageId slope = add_measure_slope(graph, input.filtered_depth_m, frame.depth.intrinsics);
     const graph::BufferId params = geometry.add_params(graph, frame);
-    if (stages.color_correction) input.color = stages.color_correction->add(graph, voxels, input.color, frame);
+    if (stages.color_correction && !frame.precedes)
+        input.color = stages.color_correction->add(graph, voxels, input.color, frame);
 
     // Allocate, integrate.
     geometry.add_allocate(graph, voxels, input.depth_m, params);

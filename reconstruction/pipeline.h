@@ -49,9 +49,13 @@ class Pipeline {
 
     /// Takes a frame of low exposure, which shows how bright is what the others clip: lamps, windows, patches of sun.
     /// At any time, best before the first frame; in the frames' world. `radiance_scale` is their exposure over its own;
-    /// pixels from `lamp_luminance` on, 1 being full scale, are lamps', which lights tell of, and left out.
+    /// pixels from `lamp_luminance` on, 1 being full scale, are lamps', which lights tell of, and left out. Before the
+    /// first frame, where poses are given and gloss is estimated, it tells geometry and segments, too, and which of
+    /// them are mirrors.
     /// Without reflectance nothing changes. Throws Error when a picture is not its camera's size.
     void add_low_exposure(const RgbdFrame& frame, float radiance_scale, float lamp_luminance);
+    /// There are no more of them before the first frame.
+    void end_low_exposure() { fusion_.end_preceding(); }
 
     /// Asks `relocaliser` for poses of every frame that tracking lost, instead of the keyframes; the first from which
     /// the frame tracks is taken. Without tracking nothing changes.

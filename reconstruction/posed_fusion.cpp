@@ -25,6 +25,21 @@ void PosedFusion::add(const RgbdFrame& frame) {
     note(submit(begin(frame), frame));
 }
 
+void PosedFusion::add_preceding(const RgbdFrame& frame) {
+    precedes_ = true;
+    add(frame);
+}
+
+void PosedFusion::end_preceding() {
+    if (!precedes_) return;
+    precedes_ = false;
+    history_.world_from_color.reset();
+    graph::FrameGraph graph = runner_.begin();
+    stages_.forget_observations(graph, center_m_, history_.frames);
+    runner_.submit(std::move(graph));
+    streaming_.forget_records();
+}
+
 /// Nothing is known yet of what the first frame asks for. Where that is more than the pools hold, they grow, and the
 /// frame is fused anew, into an empty model.
 void PosedFusion::add_first(const RgbdFrame& frame) {
@@ -40,7 +55,8 @@ void PosedFusion::add_first(const RgbdFrame& frame) {
 
 void PosedFusion::start_map(const RgbdFrame& frame) {
     graph::FrameGraph graph = runner_.begin();
-    stages_.reset(graph, glm::dvec3(frame.world_from_depth[3]));
+    center_m_ = glm::dvec3(frame.world_from_depth[3]);
+    stages_.reset(graph, center_m_);
     runner_.submit(std::move(graph));
     pools_.reset();
     streaming_.reset();
@@ -76,6 +92,8 @@ PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdF
     declared.frame =
         make_frame_context(frame, history_, stages_.geometry.range(frame.depth.camera), stages_.settings.fusion.color);
     declared.frame.around = stages_.geometry.around(declared.frame.depth, declared.frame.color);
+    declared.frame.precedes = precedes_;
+    if (precedes_) declared.frame.fuses_color = false;
     declared.frame.shadows_m = stages_.settings.around_m;
     streaming_.add(graph);
     declared.frame.labels_away = streaming_.labels_away(declared.frame.index);
@@ -91,7 +109,7 @@ void PosedFusion::note(const Declared& declared) {
 
 void PosedFusion::count(const Declared& declared) {
     streaming_.note_submitted();
-    pending_.push_back(declared.counters);
+    if (!declared.frame.precedes) pending_.push_back(declared.counters);
     history_.note(declared.frame);
     take_counters();
 }
@@ -125,7 +143,7 @@ void PosedFusion::visit(graph::StateVisitor& visitor) {
 PipelineCounters PosedFusion::counters() {
     take_counters();
     PipelineCounters counters = counted_;
-    counters.frames = history_.frames;
+    counters.frames = frames();
     counters.pools = pools_.states();
     return counters;
 }

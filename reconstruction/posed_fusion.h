@@ -24,6 +24,11 @@ class PosedFusion {
     /// device was lost or lacks memory.
     void add(const RgbdFrame& frame);
 
+    /// A frame of low exposure, before the first one: what it tells of geometry, of segments, and of which are mirrors.
+    void add_preceding(const RgbdFrame& frame);
+    /// There are no more of them: what was observed at low exposure is forgotten.
+    void end_preceding();
+
     /// A frame whose passes are declared.
     struct Declared {
         FrameContext frame;
@@ -39,7 +44,7 @@ class PosedFusion {
     /// besides frames.
     void require(const Intrinsics& camera, const RigidTransform& world_from_camera);
 
-    uint32_t frames() const { return history_.frames; }  ///< fused so far
+    uint32_t frames() const { return history_.frames - history_.preceding; }  ///< fused so far
 
     /// The device must have finished.
     void visit(graph::StateVisitor& visitor);
@@ -59,6 +64,8 @@ class PosedFusion {
     Streaming& streaming_;
     GrowingPools pools_;
     FrameHistory history_;
+    glm::dvec3 center_m_{0};              ///< of the map
+    bool precedes_ = false;               ///< frames precede the first one
     std::deque<FrameReadbacks> pending_;  ///< of frames that the device may work on
     PipelineCounters counted_;            ///< but for pools
 };

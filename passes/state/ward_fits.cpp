@@ -17,9 +17,13 @@ WardFits::WardFits(vulkan::Device& device, uint32_t labels)
       mirrors_(device.create_buffer({"specular.mirrors", labels * sizeof(gpu::MirrorFit)})) {}
 
 void WardFits::reset(graph::FrameGraph& frame) const {
+    forget_gloss(frame);
+    frame.keep(frame.fill(frame.import(mirrors_), 0));
+}
+
+void WardFits::forget_gloss(graph::FrameGraph& frame) const {
     frame.keep(frame.fill(frame.import(fits_), 0));
     frame.keep(frame.fill(frame.import(progress_), 0));
-    frame.keep(frame.fill(frame.import(mirrors_), 0));
 }
 
 void WardFits::enlarge(graph::Enlargement& enlargement, uint32_t labels) {

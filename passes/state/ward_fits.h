@@ -30,6 +30,8 @@ class WardFits {
 
     /// Forgets all; the first thing done with it.
     void reset(graph::FrameGraph& frame) const;
+    /// Forgets all but what is known of mirrors.
+    void forget_gloss(graph::FrameGraph& frame) const;
 
     /// Announces that there will be `labels` of them; of new ones nothing is known.
     void enlarge(graph::Enlargement& enlargement, uint32_t labels);

@@ -189,9 +189,11 @@ void add_low_exposure(vulkan::Device& device, Pipeline& pipeline, const SessionO
         for_each_low_exposure(device, find, [&](const RgbdFrame& frame, float scale) {
             pipeline.add_low_exposure(frame, scale, find.settings.find.threshold);
         });
+        pipeline.end_low_exposure();
     } catch (const Interrupted&) {
         throw;
     } catch (const std::exception& error) {
+        pipeline.end_low_exposure();
         report(options.callbacks, text("warning: what '", find.sequence, "' shows was left out: ", reason_of(error)));
     }
 }

@@ -137,7 +137,7 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
     ObservationMapIds records = observations_.import(graph);
     const CollectedRecords collected = add_collect_observations(
         graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
-    if (settings_.refine.gathered_rays > 0) {
+    if (settings_.refine.gathered_rays > 0 && !frame.precedes) {
         ReflectanceStateIds state = state_.import(graph);
         add_collect_far_field(
             graph, state,

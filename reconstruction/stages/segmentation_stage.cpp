@@ -76,9 +76,14 @@ void SegmentationStage::enlarge_labels(graph::Enlargement& enlargement, uint32_t
     samples_.enlarge(enlargement, labels);
 }
 
-void SegmentationStage::reset(graph::FrameGraph& graph) const {
+void SegmentationStage::reset(graph::FrameGraph& graph) {
     table_.reset(graph);
+    forget_samples(graph, 0);
+}
+
+void SegmentationStage::forget_samples(graph::FrameGraph& graph, uint32_t next_frame) {
     samples_.reset(graph);
+    samples_since_ = next_frame - next_frame % gpu::kSweepEvery;  // as records leave in turns of sweeps
 }
 
 gpu::SegmentationParams SegmentationStage::params(const gpu::Camera& color_camera, Extent2D extent,
@@ -133,7 +138,7 @@ graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapId
     KnownMaterials materials{samples_.import(graph).kd, inputs.fits ? *inputs.fits : no_fits(graph)};
     const graph::BufferId assigned = add_assign_labels(graph, table, seen, overlaps, materials, uniforms);
     // In these frames add_records() begins it anew.
-    if (!samples_are_due(frame.index, settings_.sample_every)) graph.keep(materials.kd);
+    if (!chooses_samples(frame.index)) graph.keep(materials.kd);
     const DueBlocks due = add_list_due_blocks(graph, map_, voxels, labels, surface.blocks, values.stamp);
     add_update_labels(graph, map_, voxels, labels, table, surface, due, seen, assigned, access_);
     if (sweeps(frame.index)) add_sweep_labels(graph, map_, voxels, labels, table, uniforms);
@@ -153,7 +158,11 @@ uint32_t SegmentationStage::swept_part(uint32_t frame_index) {
 }
 
 bool SegmentationStage::may_lose_records(uint32_t frame_index) const {
-    return settings_.sample_every == 0 || samples_are_due(frame_index, settings_.sample_every);
+    return settings_.sample_every == 0 || chooses_samples(frame_index);
+}
+
+bool SegmentationStage::chooses_samples(uint32_t frame_index) const {
+    return samples_are_due(frame_index - samples_since_, settings_.sample_every);
 }
 
 graph::BufferId SegmentationStage::add_place_samples(graph::FrameGraph& graph, const ObservationMap& map) const {
@@ -178,7 +187,7 @@ void SegmentationStage::add_records(graph::FrameGraph& graph, const ObservationM
         add_relabel_records(graph, map, records, table, uniforms);
         if (away) add_relabel_away(graph, *away, table, uniforms);
     }
-    if (!samples_are_due(frame.index, settings_.sample_every)) return;
+    if (!chooses_samples(frame.index)) return;
     SegmentSampleIds ids = samples_.import(graph);
     // What estimates look at beside a record lies in the region, too.
     const double beside_m = kBlocksBesideSamples * double{map_.settings().voxel_m} * gpu::kBlockEdge;
@@ -200,6 +209,7 @@ void SegmentationStage::visit(graph::StateVisitor& visitor) {
     labels_.visit(visitor);
     table_.visit(visitor);
     samples_.visit(visitor);
+    visitor.value("segmentation.samples_since", samples_since_);
 }
 
 }  // namespace patina

@@ -82,7 +82,10 @@ class SegmentationStage {
                       MapAccess access);
 
     /// Forgets everything; the first thing done with it.
-    void reset(graph::FrameGraph& graph) const;
+    void reset(graph::FrameGraph& graph);
+
+    /// Forgets which records segments keep; they are chosen as often as at first from frame `next_frame` on.
+    void forget_samples(graph::FrameGraph& graph, uint32_t next_frame);
 
     /// Announces that the voxel map's pool grows to `blocks`.
     void enlarge_blocks(graph::Enlargement& enlargement, uint32_t blocks) { labels_.enlarge(enlargement, blocks); }
@@ -133,6 +136,7 @@ class SegmentationStage {
     const SegmentSamples& samples() const { return samples_; }
 
   private:
+    bool chooses_samples(uint32_t frame_index) const;
     FrameSegments segments(graph::FrameGraph& graph, const SegmentationInputs& inputs, const FrameContext& frame) const;
     gpu::SegmentationParams params(const gpu::Camera& color_camera, Extent2D extent, uint32_t frame_index) const;
 
@@ -142,6 +146,7 @@ class SegmentationStage {
     LabelMap labels_;
     SegmentTable table_;
     SegmentSamples samples_;
+    uint32_t samples_since_ = 0;  ///< the frame from which on their choices are counted
 };
 
 }  // namespace patina

@@ -7,6 +7,7 @@
 #include "passes/specular/fit_ward.h"
 #include "passes/specular/fuse_estimates.h"
 #include "passes/specular/hemi_images.h"
+#include "passes/specular/keep_mirrors.h"
 #include "passes/specular/run_network.h"
 
 namespace patina {
@@ -30,6 +31,17 @@ SpecularStage::SpecularStage(vulkan::Device& device, const SpecularSettings& set
 void SpecularStage::reset(graph::FrameGraph& graph) const {
     estimates_.reset(graph);
     fits_.reset(graph);
+}
+
+void SpecularStage::forget_gloss(graph::FrameGraph& graph, ReflectanceStage& reflectance) const {
+    estimates_.reset(graph);
+    fits_.forget_gloss(graph);
+    const SpecularInputs inputs = reflectance.add_specular_inputs(graph);
+    WardFitIds fits = fits_.import(graph);
+    graph::BufferId materials = inputs.materials;
+    add_keep_mirrors(graph, fits_, fits, inputs.material_count, materials);
+    graph.keep(fits.mirrors);
+    graph.keep(materials);
 }
 
 void SpecularStage::enlarge_labels(graph::Enlargement& enlargement, uint32_t labels) {

@@ -35,6 +35,9 @@ class SpecularStage {
     /// Forgets everything; the first thing done with it.
     void reset(graph::FrameGraph& graph) const;
 
+    /// Forgets all but which segments are mirrors for sure, also in the materials of the reflectance.
+    void forget_gloss(graph::FrameGraph& graph, ReflectanceStage& reflectance) const;
+
     /// Announces that there will be `labels` of them.
     void enlarge_labels(graph::Enlargement& enlargement, uint32_t labels);
 

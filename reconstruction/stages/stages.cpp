@@ -64,6 +64,12 @@ void Stages::reset(graph::FrameGraph& graph, glm::dvec3 center_m) {
     if (keyframes) keyframes->reset(graph);
 }
 
+void Stages::forget_observations(graph::FrameGraph& graph, glm::dvec3 center_m, uint32_t next_frame) {
+    if (reflectance) reflectance->reset(graph, center_m);
+    if (segmentation) segmentation->forget_samples(graph, next_frame);
+    if (specular) specular->forget_gloss(graph, *reflectance);
+}
+
 void Stages::visit(graph::StateVisitor& visitor) {
     geometry.visit(visitor);
     if (color_correction) color_correction->visit(visitor);

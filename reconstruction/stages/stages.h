@@ -19,6 +19,10 @@ struct Stages {
     /// Empties all of them, for a map around `center_m`; before the first frame.
     void reset(graph::FrameGraph& graph, glm::dvec3 center_m);
 
+    /// Forgets what was observed before frame `next_frame`, but neither the surface with its segments nor which of
+    /// these are mirrors. `center_m`: as of reset().
+    void forget_observations(graph::FrameGraph& graph, glm::dvec3 center_m, uint32_t next_frame);
+
     void visit(graph::StateVisitor& visitor);
 
     /// Whether anything needs the model as the depth camera of each frame sees it.

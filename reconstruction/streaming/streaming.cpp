@@ -33,6 +33,10 @@ void Streaming::reset() {
     if (records_) records_->reset();
 }
 
+void Streaming::forget_records() {
+    if (records_) records_->reset();
+}
+
 ComingPlaces Streaming::plan(const StreamRegion& near, uint32_t index, Many many) {
     const bool relabels = stages_.segmentation.has_value();
     const auto turn = [&](bool leaves, bool (*in_frame)(uint32_t)) {

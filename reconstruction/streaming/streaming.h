@@ -43,6 +43,9 @@ class Streaming {
     /// Nothing is away; whenever the map is reset.
     void reset();
 
+    /// No observed voxels are away; whenever they are forgotten.
+    void forget_records();
+
     /// Of which kinds more is in use than should be.
     struct Many {
         bool blocks = false, records = false;

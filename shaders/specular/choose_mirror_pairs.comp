@@ -24,8 +24,11 @@ layout(push_constant) uniform Push { MirrorParams params; };
 
 const float kLeastCosine = 0.4;  // 66 degrees: there glass reflects 13 %
 
-bool is_usable(uint word, vec3 normal) {
-    return !any(observation_clipped(word)) && dot(observation_direction(word), normal) > kLeastCosine;
+// Frames of low exposure show what is brighter than pixels of the others can be. What mirrored rays meet ends there,
+// too.
+bool is_usable(uint word, uint color, vec3 normal) {
+    return !any(observation_clipped(word)) && all(lessThanEqual(unpack_shared_exponent(color), vec3(1.0))) &&
+           dot(observation_direction(word), normal) > kLeastCosine;
 }
 
 MirrorPair choose(uint record) {
@@ -36,23 +39,25 @@ MirrorPair choose(uint record) {
     if (count < 2u) return none;
     const uint first = sample_hash(known, params.stamp) % count;
     const uint word = load_direction(params.records.chunk_shift, record, first);
-    if (!is_usable(word, normal)) return none;
+    const uint color = load_color(params.records.chunk_shift, record, first);
+    if (!is_usable(word, color, normal)) return none;
     const vec3 direction = observation_direction(word);
     uint second = first, other = word;
     float nearest = 0.9999;  // 0.8 degrees
     for (uint quad = 0u; 4u * quad < count; ++quad) {
         const uvec4 words = load_directions(params.records.chunk_shift, record, quad);
+        const uvec4 seen = load_colors(params.records.chunk_shift, record, quad);
         [[unroll]] for (uint i = 0u; i < 4u; ++i) {
             const uint k = 4u * quad + i;
             const float cosine = dot(observation_direction(words[i]), direction);
-            const bool farther = k < count && cosine < nearest && is_usable(words[i], normal);
+            const bool farther = k < count && cosine < nearest && is_usable(words[i], seen[i], normal);
             second = farther ? k : second;
             other = farther ? words[i] : other;
             nearest = farther ? cosine : nearest;
         }
     }
     if (second == first) return none;
-    const vec3 a = unpack_shared_exponent(load_color(params.records.chunk_shift, record, first));
+    const vec3 a = unpack_shared_exponent(color);
     const vec3 b = unpack_shared_exponent(load_color(params.records.chunk_shift, record, second));
     return MirrorPair(record, word, other, mean_of(a) - mean_of(b));
 }

@@ -24,6 +24,7 @@ const uint kRaysOfSet = 2u;
 const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
 const uint kLeastPairs = 8u;     // of a look, of kSegmentSamples
+const uint kMostMissed = 4u;     // of so many pairs of views, at least one shows what surroundings are known of
 const float kErrors = 2.0;       // from the estimate down to what is sure
 const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat views,
 const float kMetalKs = 0.25;     // and no metal less
@@ -33,6 +34,7 @@ shared int sum_product;
 shared int sum_square;
 shared int sum_product2;
 shared uint sum_pairs;
+shared uint sum_views;  // pairs, whether or not their rays meet anything
 
 // The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing.
 // What is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
@@ -79,16 +81,20 @@ void main() {
     const uint label = batch[1u + segment];
     if (lane == 0u) {
         sum_product = sum_square = sum_product2 = 0;
-        sum_pairs = 0u;
+        sum_pairs = sum_views = 0u;
     }
     barrier();
     for (uint slot = lane; slot < kSegmentSamples; slot += kMirrorGroup) {
         const MirrorPair pair = pairs[segment * kSegmentSamples + slot];
-        if (pair.record != kNoRecord) add_pair(pair);
+        if (pair.record == kNoRecord) continue;
+        atomicAdd(sum_views, 1u);
+        add_pair(pair);
     }
     barrier();
-    // A look that finds next to nothing tells nothing, and is no reason to doubt the ones before.
-    if (lane != 0u || label >= params.labels || sum_pairs < kLeastPairs) return;
+    // A look that finds next to nothing tells nothing, and is no reason to doubt the ones before. The few rays that
+    // meet something, where most go into the open, meet what stands on the surface: its rims, where colours change
+    // anyway.
+    if (lane != 0u || label >= params.labels || sum_pairs < max(kLeastPairs, sum_views / kMostMissed)) return;
     const MirrorFit before = mirrors[label];
     const MirrorFit fit = MirrorFit(params.memory * before.product + float(sum_product) / kSteps,
                                     params.memory * before.square + float(sum_square) / kSteps,

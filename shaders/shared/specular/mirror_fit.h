@@ -23,6 +23,11 @@ struct MirrorFit {
     float pairs;
 };
 
+struct KeepMirrorsParams {
+    uint labels;     // of the table of fits
+    uint materials;  // entries of theirs
+};
+
 struct MirrorParams {
     VoxelGrid records;  // the observation map's grid
     uint edge_shift;    // of the observation map

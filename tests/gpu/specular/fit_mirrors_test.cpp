@@ -158,6 +158,27 @@ TEST_F(FitMirrorsTest, ClippedViewsDoNotCount) {
     EXPECT_EQ(find().fit.pairs, 0.0f);
 }
 
+// Frames of low exposure show more than pixels of the others can.
+TEST_F(FitMirrorsTest, ViewsBrighterThanPixelsDoNotCount) {
+    auto records = plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0);
+    for (FilledRecord& record : records)
+        for (FilledObservation& seen : record.observations) seen.rgb += 1.0f;
+    fill(records);
+    EXPECT_EQ(find().fit.pairs, 0.0f);
+}
+
+// The wall is seen in one direction of six: what the others show is not known.
+TEST_F(FitMirrorsTest, WhereMostRaysMeetNothingNothingIsTold) {
+    std::vector<FilledRecord> records = plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0);
+    for (size_t i = 0; i < records.size(); ++i)
+        if (i % 6 != 0) records[i].normal = {0, 0, -1};
+    for (FilledRecord& record : records)
+        if (record.normal.z < 0)
+            for (FilledObservation& seen : record.observations) seen.to_viewer.z = -seen.to_viewer.z;
+    fill(records);
+    EXPECT_EQ(find().fit.pairs, 0.0f);
+}
+
 TEST_F(FitMirrorsTest, ALookThatFindsNothingKeepsWhatIsKnown) {
     const auto records = plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0);
     fill(records);
