@@ -5,6 +5,7 @@
 
 #include "engine/core/version.h"
 #include "export/drawable_mesh.h"
+#include "export/fill_unseen.h"
 #include "export/materials.h"
 #include "export/photometric.h"
 #include "export/segment_names.h"
@@ -71,17 +72,8 @@ class TidiedSurface {
     void add(const Mesh& mesh, const MeshReflectance& reflectance) {
         check_mesh(file_, mesh);
         if (!reflectance.kd.empty()) check_reflectance(file_, mesh, reflectance);
-        survey.add(mesh, reflectance.labels);
-        TidyPiece piece = tidied(mesh, reflectance, options_);
-        loose_ += piece.loose_triangles;
-        collapsed_ += piece.collapsed_triangles;
-        holes_ += piece.closed_holes;
-        triangles_ += piece.mesh.triangles.size();
-        if (hold_) {
-            held.push_back(std::move(piece));
-        } else {
-            writer_.add(piece.mesh, &piece.reflectance, piece.filled);
-        }
+        if (const auto filled = filled_unseen(mesh, reflectance)) return add_whole(filled->mesh, filled->reflectance);
+        add_whole(mesh, reflectance);
     }
 
     /// Brings what is held to the number of triangles that is asked for, and leaves out what that cut off.
@@ -119,6 +111,21 @@ class TidiedSurface {
   private:
     static constexpr uint64_t kMostTriangles = 100'000;
     static constexpr double kMostError_m = 1e-2, kAnyError_m = 1e9;
+
+    /// All of it has a colour.
+    void add_whole(const Mesh& mesh, const MeshReflectance& reflectance) {
+        survey.add(mesh, reflectance.labels);
+        TidyPiece piece = tidied(mesh, reflectance, options_);
+        loose_ += piece.loose_triangles;
+        collapsed_ += piece.collapsed_triangles;
+        holes_ += piece.closed_holes;
+        triangles_ += piece.mesh.triangles.size();
+        if (hold_) {
+            held.push_back(std::move(piece));
+        } else {
+            writer_.add(piece.mesh, &piece.reflectance, piece.filled);
+        }
+    }
 
     uint64_t most_triangles() const {
         return options_.most_triangles.value_or(options_.error_m > 0 ? kMostTriangles : 0);
