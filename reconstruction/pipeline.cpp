@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/core/srgb.h"
 #include "passes/input/convert_color.h"
 #include "passes/input/convert_depth.h"
 #include "reconstruction/sample_surface.h"
@@ -12,26 +11,6 @@
 #include "reconstruction/texture/split_triangles.h"
 
 namespace patina {
-
-namespace {
-
-/// A picture's linear colours, times a scale.
-std::vector<glm::vec3> radiance_of(const ColorInput& color, float scale) {
-    return std::visit(
-        [&](const auto& pixels) {
-            std::vector<glm::vec3> radiance(pixels.size());
-            std::ranges::transform(pixels, radiance.begin(), [&](const auto& pixel) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(pixel)>, SrgbPixel>)
-                    return scale * linear_color(pixel);
-                else
-                    return scale * pixel;
-            });
-            return radiance;
-        },
-        color.pixels);
-}
-
-}  // namespace
 
 Pipeline::Pipeline(vulkan::Device& device, const ReconstructionSettings& settings)
     : runner_(device), stages_(device, settings), streaming_(runner_, stages_), fusion_(runner_, stages_, streaming_) {
@@ -72,11 +51,7 @@ void Pipeline::add_low_exposure(const RgbdFrame& frame, float radiance_scale, fl
         graph, {add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color), cameras.depth.gpu,
                 cameras.color.gpu, low_exposures_++, radiance_scale, lamp_luminance});
     runner_.submit(std::move(graph));
-    if (frames() > 0 || tracked_ || !stages_.specular) return;
-    const std::vector<glm::vec3> radiance = radiance_of(frame.color, radiance_scale);
-    RgbdFrame preceding = frame;
-    preceding.color.pixels = std::span(radiance);
-    fusion_.add_preceding(preceding);
+    if (frames() == 0 && !tracked_ && stages_.specular) fusion_.add_preceding(frame, radiance_scale);
 }
 
 void Pipeline::fuse_waiting() {

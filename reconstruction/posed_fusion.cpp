@@ -1,7 +1,10 @@
 #include "reconstruction/posed_fusion.h"
 
+#include <array>
+
 #include "passes/input/convert_color.h"
 #include "passes/input/convert_depth.h"
+#include "passes/photometry/estimate_gains.h"
 
 namespace patina {
 
@@ -25,14 +28,14 @@ void PosedFusion::add(const RgbdFrame& frame) {
     note(submit(begin(frame), frame));
 }
 
-void PosedFusion::add_preceding(const RgbdFrame& frame) {
-    precedes_ = true;
+void PosedFusion::add_preceding(const RgbdFrame& frame, float radiance_scale) {
+    radiance_scale_ = radiance_scale;
     add(frame);
 }
 
 void PosedFusion::end_preceding() {
-    if (!precedes_) return;
-    precedes_ = false;
+    if (radiance_scale_ == 0) return;
+    radiance_scale_ = 0;
     history_.world_from_color.reset();
     graph::FrameGraph graph = runner_.begin();
     stages_.forget_observations(graph, center_m_, history_.frames);
@@ -63,7 +66,12 @@ void PosedFusion::start_map(const RgbdFrame& frame) {
 }
 
 PosedFusion::Declared PosedFusion::submit(graph::FrameGraph graph, const RgbdFrame& frame) {
-    const InputPictures pictures{add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)};
+    InputPictures pictures{add_convert_depth(graph, frame.depth), add_convert_color(graph, frame.color)};
+    if (radiance_scale_ > 0) {
+        const std::array gains{gpu::ColorGains{glm::vec4(1 / radiance_scale_), glm::uvec4(0)}};
+        pictures.color =
+            add_apply_gains(graph, pictures.color, graph.upload<gpu::ColorGains>("frames.relative_exposure", gains));
+    }
     Declared declared = declare(graph, frame, pictures);
     runner_.submit(std::move(graph));
     return declared;
@@ -92,8 +100,8 @@ PosedFusion::Declared PosedFusion::declare(graph::FrameGraph& graph, const RgbdF
     declared.frame =
         make_frame_context(frame, history_, stages_.geometry.range(frame.depth.camera), stages_.settings.fusion.color);
     declared.frame.around = stages_.geometry.around(declared.frame.depth, declared.frame.color);
-    declared.frame.precedes = precedes_;
-    if (precedes_) declared.frame.fuses_color = false;
+    declared.frame.precedes = radiance_scale_ > 0;
+    if (declared.frame.precedes) declared.frame.fuses_color = false;
     declared.frame.shadows_m = stages_.settings.around_m;
     streaming_.add(graph);
     declared.frame.labels_away = streaming_.labels_away(declared.frame.index);

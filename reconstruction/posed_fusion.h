@@ -25,7 +25,8 @@ class PosedFusion {
     void add(const RgbdFrame& frame);
 
     /// A frame of low exposure, before the first one: what it tells of geometry, of segments, and of which are mirrors.
-    void add_preceding(const RgbdFrame& frame);
+    /// `radiance_scale`: the others' exposure over its own.
+    void add_preceding(const RgbdFrame& frame, float radiance_scale);
     /// There are no more of them: what was observed at low exposure is forgotten.
     void end_preceding();
 
@@ -65,7 +66,7 @@ class PosedFusion {
     GrowingPools pools_;
     FrameHistory history_;
     glm::dvec3 center_m_{0};              ///< of the map
-    bool precedes_ = false;               ///< frames precede the first one
+    float radiance_scale_ = 0;            ///< of frames that precede the first one; 0: none do at present
     std::deque<FrameReadbacks> pending_;  ///< of frames that the device may work on
     PipelineCounters counted_;            ///< but for pools
 };

@@ -31,8 +31,8 @@ class TextureBake {
     /// Waits for the device. Nothing may be added after it.
     std::vector<TexturePage> finish();
 
-    /// Adds what the volume's surface faces to the pages of the layout (TexturePage::detail), in texels of about half a
-    /// voxel, where the mesh differs from it enough to see. Waits for the device.
+    /// Adds what the volume's surface faces to the pages of the layout (TexturePage::detail), in texels as large as
+    /// voxels, where the mesh differs from it enough to see. Waits for the device.
     void add_detail(const TextureLayout& layout, std::vector<TexturePage>& pages);
 
   private:

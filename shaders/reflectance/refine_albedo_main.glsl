@@ -266,9 +266,10 @@ void main() {
     const Center center = find_center(guess, noise);
     Estimate estimate = robust_mean(center, noise);
     estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
-    const float mirror = has_entry ? material.mirror : 0.0, apart = views_apart(count);
+    const float mirror = has_entry ? material.mirror : 0.0;
     if (gathered.met > 0.0) {
-        const float share = unreflected_share(center, noise, mirror) * (1.0 - mirror * (1.0 - apart));
+        float share = unreflected_share(center, noise, mirror);
+        if (mirror > 0.0) share *= 1.0 - mirror * (1.0 - views_apart(count));
         estimate.diffuse *= share;
         estimate.variance *= mix(1.0, share * share, mirror);
     }
