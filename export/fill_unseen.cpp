@@ -54,12 +54,12 @@ std::optional<FilledSurface> filled_unseen(const Mesh& mesh, const MeshReflectan
         for (const uint32_t beside : neighbours.of(vertex)) {
             if (!seen[beside]) continue;
             color += filled.mesh.colors[beside];
-            ++colors;
+            colors += filled.mesh.colors[beside] == glm::vec3(0) ? 0.0f : 1.0f;
             first = std::min(first.value_or(beside), beside);
             if (reflects && filled.reflectance.kd[beside].a > 0)
                 kd += glm::vec4(glm::vec3(filled.reflectance.kd[beside]), 1);
         }
-        filled.mesh.colors[vertex] = color / colors;
+        filled.mesh.colors[vertex] = color / std::max(colors, 1.0f);
         if (!reflects) return;
         filled.reflectance.kd[vertex] = kd.a > 0 ? glm::vec4(glm::vec3(kd) / kd.a, 0.5f) : glm::vec4(0);
         filled.reflectance.labels[vertex] = filled.reflectance.labels[*first];

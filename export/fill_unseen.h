@@ -7,7 +7,7 @@
 
 namespace patina {
 
-/// A surface all of whose vertices have a colour.
+/// A surface without vertices that nothing is known of, but for parts all of which are such.
 struct FilledSurface {
     Mesh mesh;
     MeshReflectance reflectance;

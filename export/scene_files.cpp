@@ -72,8 +72,10 @@ class TidiedSurface {
     void add(const Mesh& mesh, const MeshReflectance& reflectance) {
         check_mesh(file_, mesh);
         if (!reflectance.kd.empty()) check_reflectance(file_, mesh, reflectance);
-        if (const auto filled = filled_unseen(mesh, reflectance)) return add_whole(filled->mesh, filled->reflectance);
-        add_whole(mesh, reflectance);
+        const auto filled = filled_unseen(mesh, reflectance);
+        if (!filled) return tidy(mesh, reflectance);
+        unseen_ += filled->vertices;
+        tidy(filled->mesh, filled->reflectance);
     }
 
     /// Brings what is held to the number of triangles that is asked for, and leaves out what that cut off.
@@ -103,6 +105,7 @@ class TidiedSurface {
         summary.loose_triangles = loose_;
         summary.collapsed_triangles = collapsed_;
         summary.closed_holes = holes_;
+        summary.unseen_vertices = unseen_;
     }
 
     SurfaceSurvey survey;
@@ -112,8 +115,7 @@ class TidiedSurface {
     static constexpr uint64_t kMostTriangles = 100'000;
     static constexpr double kMostError_m = 1e-2, kAnyError_m = 1e9;
 
-    /// All of it has a colour.
-    void add_whole(const Mesh& mesh, const MeshReflectance& reflectance) {
+    void tidy(const Mesh& mesh, const MeshReflectance& reflectance) {
         survey.add(mesh, reflectance.labels);
         TidyPiece piece = tidied(mesh, reflectance, options_);
         loose_ += piece.loose_triangles;
@@ -135,7 +137,7 @@ class TidiedSurface {
     GlbWriter& writer_;
     TidyOptions options_;
     bool hold_;
-    uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0, holes_ = 0;
+    uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0, holes_ = 0, unseen_ = 0;
 };
 
 }  // namespace

@@ -47,6 +47,7 @@ struct GlbSummary {
     uint64_t loose_triangles = 0;       ///< left out before, with stray parts (tidy_surface.h)
     uint64_t collapsed_triangles = 0;   ///< gone before, where fewer show the same
     uint64_t closed_holes = 0;          ///< before (close_holes.h)
+    uint64_t unseen_vertices = 0;       ///< before, which no colour picture saw (fill_unseen.h)
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
     uint64_t texture_pages = 0;

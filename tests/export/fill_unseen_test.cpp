@@ -65,6 +65,16 @@ TEST(FillUnseen, TheNearestCounts) {
     }
 }
 
+TEST(FillUnseen, AnAlbedoWithoutAColourDarkensNone) {
+    Strip strip(2);
+    strip.forget(4);
+    strip.mesh.colors[2] = glm::vec3(0);  // beside it, as 3 and 5 are
+    const auto filled = filled_unseen(strip.mesh, strip.reflectance);
+    ASSERT_TRUE(filled);
+    EXPECT_EQ(filled->mesh.colors[4], glm::vec3(0.5f));
+    EXPECT_EQ(filled->mesh.colors[2], glm::vec3(0)) << "it was seen";
+}
+
 TEST(FillUnseen, WhereAllOrNothingWasSeenAllStays) {
     Strip strip(4);
     EXPECT_FALSE(filled_unseen(strip.mesh, strip.reflectance));

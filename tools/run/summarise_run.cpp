@@ -133,6 +133,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"triangles of stray parts left out", scene.loose_triangles},
                       {"triangles collapsed", scene.collapsed_triangles},
                       {"holes closed", scene.closed_holes},
+                      {"vertices that no colour picture saw", scene.unseen_vertices},
                       {"vertices whose base colour was clamped", scene.clamped_colors},
                       {"pages of the texture", scene.texture_pages},
                       {"normal maps", scene.detail_pages},
