@@ -25,28 +25,78 @@ constexpr Extent2D kExtent{4, 3};
 Image<uint16_t> depth(uint16_t value) { return Image<uint16_t>(kExtent, value); }
 Image<SrgbPixel> color(uint8_t value) { return Image<SrgbPixel>(kExtent, SrgbPixel(value)); }
 
-TEST(PicturePairs, JoinWhatIsNearInTimeWhicheverComesFirst) {
+/// What PicturePairs made: depth and colour of each pair, and why depth was lost.
+struct Joined {
     std::vector<std::pair<uint16_t, int>> pairs;
     std::vector<std::string> lost;
-    PicturePairs joined(
-        0.018,
-        [&](double timestamp_s, Image<uint16_t> d, Image<SrgbPixel> c) {
-            EXPECT_EQ(timestamp_s, d.at(0, 0) / 1000.0);
-            pairs.emplace_back(d.at(0, 0), c.at(0, 0).r);
-        },
-        [&](const std::string& reason) { lost.push_back(reason); });
-    joined.depth(0.100, depth(100));
-    joined.color(0.110, color(1));  // after it
-    joined.color(0.125, color(2));  // before it
-    joined.depth(0.133, depth(133));
-    joined.color(0.145, color(3));
-    joined.depth(0.170, depth(170));  // 25 ms after: not that one
-    EXPECT_THAT(lost, ::testing::IsEmpty());
-    joined.depth(0.200, depth(200));  // and no other came for it
-    joined.color(0.201, color(4));
-    EXPECT_EQ(pairs, (std::vector<std::pair<uint16_t, int>>{{100, 1}, {133, 2}, {200, 4}}));
-    ASSERT_EQ(lost.size(), 1u);
-    EXPECT_THAT(lost[0], HasSubstr("within 0.018 s"));
+    PicturePairs join{0.018,
+                      [this](double timestamp_s, Image<uint16_t> d, Image<SrgbPixel> c) {
+                          EXPECT_EQ(timestamp_s, d.at(0, 0) / 1000.0);
+                          pairs.emplace_back(d.at(0, 0), c.at(0, 0).r);
+                      },
+                      [this](const std::string& reason) { lost.push_back(reason); }};
+};
+
+TEST(PicturePairs, JoinWhatIsNearInTimeWhicheverComesFirst) {
+    Joined joined;
+    joined.join.depth(0.100, depth(100));
+    joined.join.color(0.110, color(1));  // after it
+    joined.join.color(0.125, color(2));  // before it
+    joined.join.depth(0.133, depth(133));
+    joined.join.color(0.145, color(3));
+    joined.join.depth(0.170, depth(170));  // 25 ms after: not that one
+    joined.join.depth(0.200, depth(200));
+    EXPECT_THAT(joined.lost, ::testing::IsEmpty()) << "its colour may still come";
+    joined.join.color(0.201, color(4));
+    EXPECT_EQ(joined.pairs, (std::vector<std::pair<uint16_t, int>>{{100, 1}, {133, 2}, {200, 4}}));
+    ASSERT_EQ(joined.lost.size(), 1u);
+    EXPECT_THAT(joined.lost[0], HasSubstr("within 0.018 s"));
+}
+
+TEST(PicturePairs, OfTwoThatWaitTheNearerOneIsTaken) {
+    Joined joined;
+    joined.join.depth(0.100, depth(100));  // its colour is missing
+    joined.join.depth(0.110, depth(110));
+    joined.join.color(0.111, color(1));
+    joined.join.color(0.121, color(2));  // its depth is missing
+    joined.join.color(0.131, color(3));
+    joined.join.depth(0.130, depth(130));
+    EXPECT_EQ(joined.pairs, (std::vector<std::pair<uint16_t, int>>{{110, 1}, {130, 3}}));
+    EXPECT_EQ(joined.lost.size(), 1u);
+}
+
+TEST(PicturePairs, OneStreamMayComeLate) {
+    for (const bool depth_is_late : {false, true}) {
+        Joined joined;
+        constexpr int kLate = static_cast<int>(PicturePairs::kMostWaiting) - 1;
+        std::vector<std::pair<uint16_t, int>> expected;
+        const auto give = [&joined](bool is_depth, int i) {
+            const int time_ms = 33 * i;
+            if (is_depth) joined.join.depth(time_ms / 1000.0, depth(static_cast<uint16_t>(time_ms)));
+            if (!is_depth) joined.join.color((time_ms + 5) / 1000.0, color(static_cast<uint8_t>(i)));
+        };
+        for (int i = 1; i <= 40; ++i) {
+            give(!depth_is_late, i);
+            if (i <= kLate) continue;
+            give(depth_is_late, i - kLate);
+            expected.emplace_back(33 * (i - kLate), i - kLate);
+        }
+        EXPECT_EQ(joined.pairs, expected) << depth_is_late;
+        EXPECT_THAT(joined.lost, ::testing::IsEmpty()) << depth_is_late;
+    }
+}
+
+TEST(PicturePairs, NoMoreThanHalfASecondWaits) {
+    Joined joined;
+    for (uint16_t i = 0; i < PicturePairs::kMostWaiting; ++i) joined.join.depth(i / 1000.0, depth(i));
+    EXPECT_THAT(joined.lost, ::testing::IsEmpty());
+    joined.join.depth(0.100, depth(100));
+    EXPECT_EQ(joined.lost.size(), 1u) << "depth without colour";
+    for (uint8_t i = 0; i < 100; ++i) joined.join.color(1 + i / 100.0, color(i));
+    joined.join.depth(1.5, depth(1500));
+    EXPECT_THAT(joined.pairs, ::testing::IsEmpty()) << "the colour of that time has gone";
+    joined.join.depth(1.99, depth(1990));
+    EXPECT_EQ(joined.pairs, (std::vector<std::pair<uint16_t, int>>{{1990, 99}}));
 }
 
 TEST(WrappingClock, GoesOnWhereTheCounterBeginsAnew) {
