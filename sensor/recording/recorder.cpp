@@ -109,6 +109,10 @@ void Recorder::hand_over(Item item) {
     if (options_.when_full == WhenFull::kWait) changed_.wait(lock, fits);
     const bool is_frame = !std::holds_alternative<Begin>(item.content);
     counts_.given += is_frame;
+    if (const auto* raw = std::get_if<RecordedFrame>(&item.content); raw && !raw->skipped.empty()) {
+        ++counts_.skipped;
+        skipped_for_ = raw->skipped;
+    }
     if (ending_ || !problem_.empty()) {
         counts_.lost += is_frame;
         return;
@@ -130,6 +134,11 @@ void Recorder::hand_over(Item item) {
 RecorderCounts Recorder::counts() const {
     const std::lock_guard lock(mutex_);
     return counts_;
+}
+
+std::string Recorder::skipped_for() const {
+    const std::lock_guard lock(mutex_);
+    return skipped_for_;
 }
 
 std::string Recorder::problem() const {

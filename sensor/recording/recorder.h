@@ -25,6 +25,7 @@ namespace patina::sensor {
 struct RecorderCounts {
     uint64_t given = 0;         ///< frames that were handed over, skipped ones included; written + lost at the end
     uint64_t written = 0;       ///< of these, committed
+    uint64_t skipped = 0;       ///< frames that were handed over without pictures
     uint64_t dropped = 0;       ///< frames that found the queue full; the file has them as skipped
     uint64_t lost = 0;          ///< not in the file: it could not be written, or the recording had ended
     uint64_t bytes = 0;         ///< of committed payloads
@@ -76,6 +77,9 @@ class Recorder {
     /// Why a cut of the power could have cost more than it should, in one sentence; empty where it could not.
     std::string warning() const;
 
+    /// Why the last frame that was handed over without pictures has none.
+    std::string skipped_for() const;
+
     /// Writes what waits, and ends the recording. Throws Error with problem() where there is one; the file then keeps
     /// what was committed.
     void finish();
@@ -117,7 +121,7 @@ class Recorder {
     std::deque<Item> queue_;
     bool ending_ = false;
     RecorderCounts counts_;
-    std::string problem_, warning_;
+    std::string problem_, warning_, skipped_for_;
 
     // Of the writing thread alone.
     RecordingWriter writer_;

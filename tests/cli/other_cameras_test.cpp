@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AnyOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 constexpr uint32_t kWidth = 640, kHeight = 480;
@@ -43,8 +44,9 @@ void write_picture(const fs::path& file, const char* magic, const At& at) {
 }
 
 /// Pictures at ten a second; every name in the index stands for the one picture of its kind. `kinds`: 'd' for
-/// depth, 'r' for colour.
-void write_session(const fs::path& folder, const std::string& kinds = "dr", uint32_t frames = 30) {
+/// depth, 'r' for colour, which is `color_late_s` after the depth.
+void write_session(const fs::path& folder, const std::string& kinds = "dr", uint32_t frames = 30,
+                   double color_late_s = 0) {
     fs::create_directories(folder);
     write_picture<uint16_t>(folder / "depth", "P5", [](uint32_t x, uint32_t y) { return raw_of(depth_at(x, y)); });
     write_picture<SrgbPixel>(folder / "color", "P6", [](uint32_t x, uint32_t y) {
@@ -54,7 +56,8 @@ void write_session(const fs::path& folder, const std::string& kinds = "dr", uint
     for (uint32_t i = 0; i < frames; ++i) {
         for (const char kind : kinds) {
             char name[64];
-            std::snprintf(name, sizeof(name), "%c-%.6f-%u.ppm", kind, i / 10.0, 1000 + i * 6'000'000);
+            const double time_s = i / 10.0 + (kind == 'r' ? color_late_s : 0);
+            std::snprintf(name, sizeof(name), "%c-%.6f-%.0f.ppm", kind, time_s, 1000 + 60e6 * time_s);
             fs::create_symlink(kind == 'd' ? "depth" : "color", folder / name);
             index << name << '\n';
         }
@@ -119,6 +122,17 @@ TEST_F(OtherCameras, AKinectV1WithoutDepthEndsTheRunThoughColorGoesOn) {
     const Outcome outcome = patina(
         {"live", "kinect1", "--seconds", "20", "--out", out(), "--lighting", "none", "--quiet"}, with_fakenect());
     EXPECT_THAT(expect_failure(outcome), HasSubstr("no depth pictures for 5 s"));
+}
+
+TEST_F(OtherCameras, AKinectV1WhoseColorFitsNoDepthIsStillStoppedInTime) {
+    if (absent("kinect1", "libfreenect-dev")) return;
+    if (std::string(PATINA_FAKENECT_FOLDER).empty()) GTEST_SKIP() << "fakenect is not installed";
+    write_session(beside("session"), "dr", 100, 0.05);
+    const fs::path file = beside("x.patina");
+    const Outcome outcome = patina({"record", "kinect1", "--seconds", "1", "--out", file, "--quiet"}, with_fakenect());
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+    EXPECT_THAT(outcome.err,
+                ContainsRegex("none of [0-9]+ frames has pictures: no colour picture came within 0.018 s"));
 }
 
 TEST_F(OtherCameras, WithoutAKinectV1ItIsOneSentence) {

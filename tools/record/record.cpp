@@ -1,5 +1,6 @@
 #include "tools/record/record.h"
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -110,6 +111,12 @@ class Recording {
         if (counts.dropped > 0)
             outcome.fall_short(fmt::format("{} of {} frames are missing: the disk did not keep pace with the camera",
                                            counts.dropped, counts.given));
+        if (counts.skipped == counts.given)
+            outcome.fall_short(
+                fmt::format("none of {} frames has pictures: {}", counts.given, recorder_->skipped_for()));
+        else if (counts.skipped > 0)
+            advice_.push_back(fmt::format("{} of {} frames have no pictures, the last of them: {}", counts.skipped,
+                                          counts.given, recorder_->skipped_for()));
         if (frames_of_lighting_ == 0) outcome.fall_short("no frame of the sequence of low exposure was recorded");
         outcome.print(options_.quiet);
         if (!options_.quiet) {
@@ -134,6 +141,7 @@ class Recording {
     void begin_pass(SequenceRole role) {
         given_before_ = recorder_->counts().given;
         first_s_.reset();
+        first_skipped_.reset();
         (role == SequenceRole::kMain ? frames_of_main_ : frames_of_lighting_) = 0;
     }
 
@@ -154,10 +162,9 @@ class Recording {
         if (last) watch.emplace(capture, interrupt_);
         Progress progress("Recording", std::nullopt, options_.quiet);
         while (const auto frame = capture.next()) {
-            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame)) {
-                if (is_over(raw->timestamp_s)) break;
-                check(*raw, capture.sequence(), exposure);
-            }
+            const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame);
+            if (raw ? is_over(raw->timestamp_s) : is_over_by_our_clock()) break;
+            if (raw) check(*raw, capture.sequence(), exposure);
             if (interrupted() || !recorder_->problem().empty()) break;
             progress.update(static_cast<uint32_t>(recorder_->counts().given - given_before_), detail(exposure));
         }
@@ -223,7 +230,9 @@ class Recording {
         Progress progress("Recording", frames, options_.quiet);
         const CameraWatch watch(source, interrupt_);
         while (std::optional<Reading> reading = source.next()) {
-            if (interrupted() || is_over(*reading) || !recorder_->problem().empty()) break;
+            const bool is_frame = std::holds_alternative<Frame>(*reading);
+            if (is_frame ? is_over(*reading) : is_over_by_our_clock()) break;
+            if (interrupted() || !recorder_->problem().empty()) break;
             check(*reading, exposure);
             progress.update(static_cast<uint32_t>(source.counts().captured), detail(exposure));
         }
@@ -239,6 +248,13 @@ class Recording {
         if (options_.seconds <= 0) return false;
         if (!first_s_) first_s_ = timestamp_s;
         return timestamp_s - *first_s_ >= options_.seconds;
+    }
+
+    /// Of frames that a camera skipped, which have no time: if it skips them all, the sequence ends even so.
+    bool is_over_by_our_clock() {
+        const auto now = std::chrono::steady_clock::now();
+        if (!first_skipped_) first_skipped_ = now;
+        return options_.seconds > 0 && now - *first_skipped_ >= std::chrono::duration<double>(options_.seconds);
     }
 
     static void check(const Reading& reading, sensor::ExposureCheck& exposure) {
@@ -271,6 +287,7 @@ class Recording {
     uint64_t given_before_ = 0;                                    ///< to the recorder, when the present sequence began
     std::optional<uint64_t> frames_of_main_, frames_of_lighting_;  ///< empty: not begun
     std::optional<double> first_s_;                                ///< time of the present sequence's first frame
+    std::optional<std::chrono::steady_clock::time_point> first_skipped_;  ///< of the present sequence
     std::vector<std::string> advice_;
 };
 
