@@ -45,6 +45,7 @@ FrameContext make_frame_context(const RgbdFrame& frame, const FrameHistory& befo
                                 bool fuses_color) {
     FrameContext context;
     context.index = before.frames;
+    context.preceding = before.preceding;
     context.color_index = before.color_frames;
     const FrameCameras cameras = make_frame_cameras(frame);
     context.depth = cameras.depth;

@@ -40,6 +40,7 @@ struct DepthRange {
 /// What the stages know of one RGB-D frame besides its pictures. Made once a frame, when its pose is known.
 struct FrameContext {
     uint32_t index = 0;        ///< how many frames were fused before
+    uint32_t preceding = 0;    ///< of these, that precede the recording's own
     uint32_t color_index = 0;  ///< of these, whose colour was fused
     PosedCamera depth;
     PosedCamera color;
@@ -53,6 +54,9 @@ struct FrameContext {
     std::span<const uint16_t> labels{};    ///< RgbdFrame::labels, borrowed
     /// Of the part of the map whose labels are swept in this frame: voxels that are away from the device, by label.
     std::span<const uint32_t> labels_away{};
+
+    /// Whether no frame of its kind came before it.
+    bool first() const { return index == 0 || (index == preceding && !precedes); }
 };
 
 /// What the frames so far leave to the next one's context.

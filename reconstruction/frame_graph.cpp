@@ -54,7 +54,7 @@ FrameReadbacks wire_frame(graph::FrameGraph& graph, Stages& stages, const FrameC
         input.color = stages.color_correction->add(graph, voxels, input.color, frame);
 
     // Allocate, integrate.
-    geometry.add_allocate(graph, voxels, input.depth_m, params);
+    geometry.add_allocate(graph, voxels, input.depth_m, params, frame);
     if (stages.segmentation) stages.segmentation->clear_new_blocks(graph, voxels);
     const VisibleBlocks visible = geometry.add_visible(graph, voxels, frame.depth);
     const auto fused_color = frame.fuses_color ? std::optional(input.color) : std::nullopt;

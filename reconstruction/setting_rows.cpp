@@ -136,8 +136,10 @@ constexpr std::array kRows = {
     number<&Fuse::settled_color_every>("fusion.settled_color_every", "frames", 1, 64,
                                        "A block whose surface has settled takes colour once in this many frames."),
     choice<&Fuse::color>("fusion.color", "Fuses colours; without it the map holds the surface alone."),
-    number<&Fuse::allocation_stride_px>("fusion.allocation_stride_px", "px", 1, 64,
-                                        "Every N-th pixel in x and y allocates blocks, others in every frame."),
+    number<&Fuse::allocation_stride_px>(
+        "fusion.allocation_stride_px", "px", 1, 64,
+        "Every N-th pixel in x and y allocates blocks, others in every frame. In the first frame "
+        "all do, and in pictures of few pixels more."),
     number<&Fuse::seed>("fusion.seed", "", 0, kAnyCount,
                         "Seed of the chance by which fused colours are rounded up or down."),
     number<&DepthFilter::sigma_px>("input.sigma_px", "px", 0.001, 1000,
@@ -316,8 +318,10 @@ constexpr std::array kRows = {
                                    "Materials that the table has room for, where no segments are found; else it is as "
                                    "large as the table of labels."),
     choice<&Refine::albedo>("reflectance.albedo", "Estimates albedo; without it only shadows are found."),
-    number<&Obs::stride_px>("observe.stride_px", "px", 1, 64,
-                            "Every N-th pixel in x and y observes, others in every frame."),
+    number<&Obs::stride_px>(
+        "observe.stride_px", "px", 1, 64,
+        "Every N-th pixel in x and y observes, others in every frame. In the first frame all do, and in "
+        "pictures of few pixels more."),
     number<&Obs::max_distance_m>("observe.max_distance_m", "m", 0, kFar_m, "Farther surface is not observed."),
     number<&Obs::max_angle_degrees>("observe.max_angle_degrees", "degrees", 0, 90,
                                     "Surface is not observed if its normal is turned away from the camera by more than "

@@ -13,7 +13,7 @@ namespace patina {
 struct FusionSettings {
     float truncation_m = 0.02f;       ///< t(z) = truncation_m + truncation_slope * z, at least 3 voxels
     float truncation_slope = 0.005f;  ///< grows with the sensor's noise
-    float max_depth_m = 6.0f;         ///< farther readings are not fused
+    float max_depth_m = 8.0f;         ///< farther readings are not fused
     uint32_t max_weight = 6;          ///< samples after which a distance becomes a sliding average: poses drift
     uint32_t max_color_weight = 64;
     /// Frames from colour to colour of a block whose voxels near the surface all have half of max_weight; a voxel there

@@ -72,10 +72,9 @@ void set_detail(Settings& settings, Detail level) {
     set_unless_given(settings, "fusion.max_depth_m", values.fusion.max_depth_m, chosen.max_depth_m);
 }
 
-std::string sentence_of(const DetailChoice& choice, const Settings& settings) {
-    const ReconstructionSettings& values = Access::values(settings);
-    return fmt::format("detail: {}, voxels of {} mm, depth up to {} m, since {}", name_of(choice.level),
-                       1000 * values.map.voxel_m, values.fusion.max_depth_m, choice.because);
+std::string sentence_of(const DetailChoice& choice, const Settings& settings, double reach_m) {
+    return fmt::format("detail: {}, voxels of {} mm, depth up to {:.3g} m, since {}", name_of(choice.level),
+                       1000 * Access::values(settings).map.voxel_m, reach_m, choice.because);
 }
 
 }  // namespace patina

@@ -18,7 +18,7 @@ struct DetailChoice {
 struct DetailValues {
     float voxel_m;       ///< map.voxel_m
     float truncation_m;  ///< fusion.truncation_m
-    float max_depth_m;   ///< fusion.max_depth_m: within what the view of a Kinect v2 reaches with such voxels
+    float max_depth_m;   ///< fusion.max_depth_m; wide views reach less with such voxels (Pipeline::reach_m)
     float record_m;      ///< reflectance.voxel_m
     float observe_m;     ///< observe.max_distance_m
 };
@@ -34,6 +34,7 @@ DetailChoice choose_detail(const SessionOptions& options, const SequenceInfo& in
 void set_detail(Settings& settings, Detail level);
 
 /// For a person: "detail: fine, voxels of 2.5 mm, depth up to 3 m, since the median depth is 0.55 m, where ...".
-std::string sentence_of(const DetailChoice& choice, const Settings& settings);
+/// `reach_m`: as far as the camera's readings are fused.
+std::string sentence_of(const DetailChoice& choice, const Settings& settings, double reach_m);
 
 }  // namespace patina

@@ -171,7 +171,10 @@ bool SessionCore::step() {
         return false;
     }
     ledger_.note(*reading);
-    if (!scene_ && ledger_.read() <= 1) report(options_.callbacks, sentence_of(detail_, options_.settings));
+    if (!scene_ && ledger_.read() <= 1) {
+        const double reach_m = std::min<double>(pipeline_->reach_m(info_.depth), info_.max_metres);
+        report(options_.callbacks, sentence_of(detail_, options_.settings, reach_m));
+    }
     const std::optional<std::string> repeated = repeats_last(*reading);
     if (inspector_) inspector_->add(*reading);
     if (repeated) {
@@ -306,6 +309,8 @@ std::string SessionCore::gains_text() {
 }
 
 std::optional<std::string> SessionCore::reach_warning() const {
+    const Settings& given = options_.settings;
+    if (!Access::is_given(given, "fusion.max_depth_m") && !Access::is_given(given, "map.voxel_m")) return std::nullopt;
     const float reach_m = pipeline_->reach_m(info_.depth);
     const double wanted_m = std::min<double>(settings().fusion.max_depth_m, info_.max_metres);
     if (reach_m >= wanted_m) return std::nullopt;

@@ -115,7 +115,8 @@ class SessionCore {
     std::string gains_text();
     /// How full the pools are, and what keeps them from growing; waits. Of a device that was lost what the host knows.
     std::vector<PoolState> pools();
-    /// Says that surfaces are left out that fusion.max_depth_m and the sequence would have, where that is so.
+    /// Says that surfaces are left out that fusion.max_depth_m and the sequence would have, where that or the voxel was
+    /// asked for.
     std::optional<std::string> reach_warning() const;
     /// How each frame that was read was tracked; empty where poses are given.
     const std::vector<TrackedFrame>& tracked() const { return tracked_; }

@@ -7,6 +7,7 @@
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/sharpen_normals.h"
+#include "passes/state/sampling_stride.h"
 #include "shared/fusion/remove_empty_blocks.h"
 
 namespace patina {
@@ -71,18 +72,25 @@ StreamRegion GeometryStage::around(const PosedCamera& depth, const PosedCamera& 
 
 StreamRegion GeometryStage::around_view(const PosedCamera& camera) const { return seen_by(camera, view_far_m()); }
 
+uint32_t GeometryStage::allocation_stride_px(const FrameContext& frame) const {
+    if (frame.first()) return 1;
+    const double block_m = double{settings_.map.voxel_m} * gpu::kBlockEdge;
+    return sampling_stride(settings_.fusion.allocation_stride_px, frame.depth.intrinsics.fx, block_m);
+}
+
 graph::BufferId GeometryStage::add_params(graph::FrameGraph& graph, const FrameContext& frame) const {
     // What the view does not reach would take blocks that no frame fuses into.
     FusionSettings fusion = settings_.fusion;
     fusion.max_depth_m = frame.range.reach_m;
+    fusion.allocation_stride_px = allocation_stride_px(frame);
     const gpu::FusionParams values =
         make_fusion_params(map_, fusion, frame.depth.gpu, frame.color.gpu, frame.index, frame.color_index);
     return graph.upload<gpu::FusionParams>("fusion.params", std::span(&values, 1));
 }
 
 void GeometryStage::add_allocate(graph::FrameGraph& graph, VoxelMapIds& voxels, graph::ImageId depth_m,
-                                 graph::BufferId params) const {
-    add_allocate_blocks(graph, map_, voxels, depth_m, params, settings_.fusion.allocation_stride_px);
+                                 graph::BufferId params, const FrameContext& frame) const {
+    add_allocate_blocks(graph, map_, voxels, depth_m, params, allocation_stride_px(frame));
 }
 
 VisibleBlocks GeometryStage::add_visible(graph::FrameGraph& graph, const VoxelMapIds& voxels,

@@ -53,8 +53,8 @@ class GeometryStage {
     graph::BufferId add_params(graph::FrameGraph& graph, const FrameContext& frame) const;
 
     /// Gives blocks to the surface that a frame's readings show (touch, then assign).
-    void add_allocate(graph::FrameGraph& graph, VoxelMapIds& voxels, graph::ImageId depth_m,
-                      graph::BufferId params) const;
+    void add_allocate(graph::FrameGraph& graph, VoxelMapIds& voxels, graph::ImageId depth_m, graph::BufferId params,
+                      const FrameContext& frame) const;
 
     /// The blocks that a depth camera sees, as far as frames are fused.
     VisibleBlocks add_visible(graph::FrameGraph& graph, const VoxelMapIds& voxels, const PosedCamera& camera) const;
@@ -85,6 +85,9 @@ class GeometryStage {
     MapAccess access() const { return access_; }
 
   private:
+    /// Every pixel of the first frame allocates: later ones see most of their surface for more than one time.
+    uint32_t allocation_stride_px(const FrameContext& frame) const;
+
     float far_m() const;
     float view_far_m() const { return 2 * settings_.fusion.max_depth_m; }
     StreamRegion seen_by(const PosedCamera& camera, float far_m) const;

@@ -8,6 +8,7 @@
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
 #include "passes/shading/sample_coverage.h"
+#include "passes/state/sampling_stride.h"
 #include "shared/fusion/voxel_map.h"
 
 namespace patina {
@@ -135,8 +136,11 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
                                  const FrameContext& frame) {
     shared_ = false;
     ObservationMapIds records = observations_.import(graph);
-    const CollectedRecords collected = add_collect_observations(
-        graph, observations_, records, inputs, settings_.observe, frame.depth.gpu, frame.color.gpu, frame.index);
+    ObservationSettings observe = settings_.observe;
+    observe.stride_px =
+        frame.first() ? 1 : sampling_stride(observe.stride_px, frame.depth.intrinsics.fx, settings_.voxel_m);
+    const CollectedRecords collected = add_collect_observations(graph, observations_, records, inputs, observe,
+                                                                frame.depth.gpu, frame.color.gpu, frame.index);
     if (settings_.refine.gathered_rays > 0 && !frame.precedes) {
         ReflectanceStateIds state = state_.import(graph);
         add_collect_far_field(

@@ -40,19 +40,30 @@ uint load_voxel(ivec3 coordinates) {
 struct Cell {
     bool complete;  // all eight corners have been seen
     float sdf;
-    vec3 gradient;  // of the trilinear interpolant, per voxel
+    vec3 gradient;       // of the trilinear interpolant, per voxel
+    vec3 seen_gradient;  // the same, the mean of the edges with two seen corners; 0 along an axis without one
 };
 
 // The trilinear interpolant of the eight voxels around a point (voxel units, voxel centres at integers).
 Cell interpolate(vec3 point_vox) {
     const ivec3 low = ivec3(floor(point_vox));
     const vec3 t = point_vox - vec3(low);
-    float f[8];
+    float f[8], seen[8];
     uint least_weight = 0xffffu;
     [[unroll]] for (int i = 0; i < 8; ++i) {
         const uint voxel = load_voxel(low + ivec3(i & 1, i >> 1 & 1, i >> 2));
         least_weight = min(least_weight, voxel_weight(voxel));
         f[i] = voxel_sdf(voxel);
+        seen[i] = min(float(voxel_weight(voxel)), 1.0);
+    }
+    vec3 slopes = vec3(0.0), edges = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 8; ++i) {
+        [[unroll]] for (int axis = 0; axis < 3; ++axis) {
+            const int next = i | 1 << axis;
+            const float both = next != i ? seen[i] * seen[next] : 0.0;
+            slopes[axis] += both * (f[next] - f[i]);
+            edges[axis] += both;
+        }
     }
     const vec4 at_x = mix(vec4(f[0], f[2], f[4], f[6]), vec4(f[1], f[3], f[5], f[7]), t.x);
     const vec4 slope_x = vec4(f[1], f[3], f[5], f[7]) - vec4(f[0], f[2], f[4], f[6]);
@@ -63,15 +74,18 @@ Cell interpolate(vec3 point_vox) {
     cell.complete = least_weight > 0u;
     cell.sdf = mix(at_y.x, at_y.y, t.z);
     cell.gradient = vec3(mix(slope_xy.x, slope_xy.y, t.z), mix(slope_y.x, slope_y.y, t.z), at_y.y - at_y.x);
+    cell.seen_gradient = slopes / max(edges, 1.0);
     return cell;
 }
 
-// Two depths between which the nearest voxels change from outside to inside.
+// The first voxel inside on a ray.
 struct Bracket {
-    bool found;
+    bool inside;        // there is one
+    bool seen_outside;  // and the last one before it is outside; else nobody saw what is before it
     float outside_depth;
     float inside_depth;
     float outside_share;  // where between them the distances, taken as linear, are zero
+    float inside_sdf;
 };
 
 // Marches from `depth` on to the first voxel inside. A short loop without branches: on software devices a divergent
@@ -93,8 +107,7 @@ Bracket march(vec3 origin, vec3 direction, float depth, float far, float depth_p
         depth = inside ? depth : depth + step_vox * depth_per_vox;
         marching = !inside && depth < far;
     }
-    // A step from unknown space into the inside meets the back of a surface, or one that nobody saw from the front.
-    return Bracket(here <= 0.0 && seen_outside, outside_depth, depth, outside / (outside - here));
+    return Bracket(here <= 0.0, seen_outside, outside_depth, depth, outside / (outside - here), here);
 }
 
 void main() {
@@ -115,29 +128,47 @@ void main() {
     float depth = range.near_bits == 0xffffffffu ? far + 1.0 : max(uintBitsToFloat(range.near_bits), view.near_m);
     vec4 hit_position = vec4(0.0);
     vec4 hit_normal = vec4(0.0);
-    bool marching = true;
-    float estimate = 0.0;
+    bool marching = true, from_unknown = false;
+    float estimate = 0.0, unknown_sdf = 0.0;
     for (uint attempt = 0u; attempt < kMaxAttempts && depth < far; ++attempt) {
         if (marching) {
             const Bracket bracket = march(origin, direction, depth, far, depth_per_vox);
-            if (!bracket.found) break;
-            estimate = mix(bracket.outside_depth, bracket.inside_depth, bracket.outside_share);
+            if (!bracket.inside) break;
             depth = bracket.inside_depth;
+            estimate = bracket.seen_outside ? mix(bracket.outside_depth, depth, bracket.outside_share) : depth;
+            from_unknown = !bracket.seen_outside && attempt == 0u;
+            unknown_sdf = bracket.inside_sdf;
         }
-        const Cell cell = interpolate(origin + direction * estimate - 0.5);
+        // What is behind the first voxel inside has been seen sooner than what is before it.
+        const float looked_at = from_unknown ? estimate + depth_per_vox : estimate;
+        const Cell cell = interpolate(origin + direction * looked_at - 0.5);
+        // From unknown space into the inside: the back of a surface, or one whose front is missing, as at the border of
+        // the only picture of it. The latter faces the ray, and lies within the step that led through unknown space.
+        if (from_unknown) {
+            const float facing = -dot(cell.seen_gradient, direction) * depth_per_vox * kSdfRangeVox;
+            const float before_vox = -unknown_sdf * kSdfRangeVox / max(facing, kLeastFacing);
+            if (facing >= kLeastFacing && before_vox <= kUnknownStepVox) {
+                const float accepted = estimate - before_vox * depth_per_vox;
+                hit_position = vec4((origin + direction * accepted) * view.grid.voxel_m, accepted);
+            }
+            break;
+        }
         // A Newton step along the ray. Nearest voxels are off by up to a voxel across the surface, and by more along a
         // ray that grazes it; such a ray can even pass through a voxel whose centre is inside and yet stay outside.
         const float slope = dot(cell.gradient, direction);
         const float hit = estimate - cell.sdf / min(slope, -1e-6);
         const float moved_vox = abs(hit - estimate) / depth_per_vox;
-        if (cell.complete && moved_vox > kAcceptedStepVox) {
-            marching = moved_vox > kLongestStepVox;
+        const bool passes = moved_vox > kLongestStepVox;
+        if (cell.complete && moved_vox > kAcceptedStepVox && attempt + 1u < kMaxAttempts) {
+            // A ray that passes by goes on from the next voxel, which may be inside, too.
+            marching = passes;
             depth = marching ? depth + depth_per_vox : depth;
             estimate = hit;
             continue;
         }
-        // Where the cell has corners that nobody saw, the nearest voxels have to do.
-        const float accepted = cell.complete ? hit : estimate;
+        // Where the cell has corners that nobody saw, the nearest voxels have to do; so they have where a ray has gone
+        // along a surface, less than a voxel from it, for so long that its attempts are over.
+        const float accepted = cell.complete && !passes ? hit : estimate;
         hit_position = vec4((origin + direction * accepted) * view.grid.voxel_m, accepted);
         const float steepness = length(cell.gradient);
         if (cell.complete && steepness > 0.0) hit_normal = vec4(cell.gradient / steepness, 0.0);

@@ -34,7 +34,8 @@ TEST(Detail, IsFineForWhatLiesOnATableAndCoarseForHalls) {
 TEST(Detail, ReasonsAreTold) {
     const DetailChoice fine = choose_detail({}, camera(610), sensor::DepthStatistics{1, 0.4, 0.55, 0.64});
     EXPECT_EQ(fine.because, "the median depth is 0.55 m, where a pixel covers 0.9 mm");
-    EXPECT_THAT(sentence_of(fine, {}), HasSubstr("detail: fine, voxels of 5 mm, depth up to 6 m, since the median"));
+    EXPECT_THAT(sentence_of(fine, {}, 6.93),
+                HasSubstr("detail: fine, voxels of 5 mm, depth up to 6.93 m, since the median"));
     EXPECT_THAT(choose_detail({}, camera(610), std::nullopt).because, HasSubstr("not looked at"));
     EXPECT_EQ(choose_detail({}, camera(610), sensor::DepthStatistics{}).level, Detail::kNormal) << "no reading";
 }
@@ -58,11 +59,11 @@ TEST(Detail, NormalChangesNothing) {
 
 TEST(Detail, SettingsThatAreGivenStay) {
     Settings settings;
-    settings.set("fusion.max_depth_m", "6");  // the default, but asked for
+    settings.set("fusion.max_depth_m", "8");  // the default, but asked for
     Access::assign(settings, "fusion.truncation_m=0.015", "--set");
     set_detail(settings, Detail::kFine);
     EXPECT_EQ(Access::values(settings).map.voxel_m, 0.0025f);
-    EXPECT_EQ(Access::values(settings).fusion.max_depth_m, 6.0f);
+    EXPECT_EQ(Access::values(settings).fusion.max_depth_m, 8.0f);
     EXPECT_EQ(Access::values(settings).fusion.truncation_m, 0.015f);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/gpu/fusion/fusion_rig.h"
 #include "tests/gpu/gpu_test.h"
@@ -125,8 +126,38 @@ TEST_F(RaycastTest, SurfaceIsMetFromItsSeenSideOnly) {
     FusionRig wall(device(), runner(), {0.01f, 8192});
     const RigidTransform front = reference::look_at({0, 0, -1}, {0, 0, 0});
     for (int i = 0; i < 4; ++i) wall.fuse(kCamera, front, Image<float>(kCamera.extent, 1.0f));
-    EXPECT_GT(hits(wall.raycast(kCamera, front)), kCamera.extent.area() * 95 / 100);
+    EXPECT_GT(hits(wall.raycast(kCamera, front)), kCamera.extent.area() * 99 / 100);
     EXPECT_EQ(hits(wall.raycast(kCamera, reference::look_at({0, 0, 1}, {0, 0, 0}))), 0u);
+}
+
+TEST_F(RaycastTest, RaysThatPassByAnOutlineMeetWhatIsBehind) {
+    const reference::DistanceField ball = reference::sphere({0, 0, 0}, 0.25),
+                                   wall = reference::box({0, 0, 1.1}, {2, 2, 0.5});
+    const reference::DistanceField scene = [&](glm::dvec3 p) { return std::min(ball(p), wall(p)); };
+    FusionRig rig(device(), runner(), {0.01f, 16384});
+    for (int i = 0; i < 16; ++i) {
+        const double angle = i * std::numbers::pi / 8;
+        const RigidTransform pose =
+            reference::look_at({0.3 * std::cos(angle), 0.3 * std::sin(angle), -0.9}, {0, 0, 0.1});
+        rig.fuse(kCamera, pose, reference::render_depth(scene, kCamera, pose, 4.0));
+    }
+    const reference::Volume volume = rig.volume();
+    const Intrinsics camera = pinhole_camera({160, 120});
+    for (const double x : {-0.25, 0.02, 0.2}) {
+        const RigidTransform pose = reference::look_at({x, 0.07, -0.85}, {0, 0, 0.1});
+        const Image<float> expected = reference::raycast(volume, camera, pose, 0.1, 2);
+        const FusionRig::View got = rig.raycast(camera, pose);
+        size_t both = 0, missed = 0, off = 0;
+        for (size_t i = 0; i < expected.pixels().size(); ++i) {
+            const float depth = got.position_m.pixels()[i].w, want = expected.pixels()[i];
+            missed += want != 0 && depth == 0;
+            both += want != 0 && depth != 0;
+            off += want != 0 && std::abs(depth - want) > 0.005;
+        }
+        EXPECT_GE(both, expected.pixels().size() * 8 / 10) << x;
+        EXPECT_EQ(missed, 0u) << x;
+        EXPECT_LE(off, both / 100) << x;
+    }
 }
 
 TEST_F(RaycastTest, AnEmptyMapHasNoSurface) {
