@@ -42,6 +42,8 @@ set(PATINA_SWIFTSHADER_TESTS_LEFT_OUT Golden.CubesBeyondFourMetresGiveTheStoredN
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.
 set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading|surface|tracking)$")
+# The narrower lavapipe runs every pass; what goes through whole scenes it leaves out, too.
+set(PATINA_LAVAPIPE128_FOLDERS "^(engine|fusion|input|kinect2|lighting|observation|photometry|reflectance|segmentation|shading|specular|surface|texture|tracking|viewer)$")
 
 # Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
 # there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the
@@ -66,6 +68,8 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")
+    elseif(LABEL STREQUAL lavapipe128 AND NOT PATINA_TEST_FULL)
+        set(FOLDERS "${PATINA_LAVAPIPE128_FOLDERS}")
     endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
     configure_file(discover_suites.cmake.in ${DISCOVERY_FILE} @ONLY)

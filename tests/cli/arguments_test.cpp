@@ -141,7 +141,7 @@ TEST_F(Arguments, SettingsThatNoRunCanUse) {
     EXPECT_THAT(complaint("fusion.max_weight=0"), HasSubstr("fusion.max_weight is 0"));
     EXPECT_THAT(complaint("fusion.max_color_weight=65536"), HasSubstr("fusion.max_color_weight is 65536"));
     EXPECT_THAT(complaint("fusion.settled_color_every=0"), HasSubstr("fusion.settled_color_every is 0"));
-    EXPECT_THAT(complaint("fusion.truncation_m=0.5"), HasSubstr("truncation band is 0.53 m wide"));
+    EXPECT_THAT(complaint("fusion.truncation_m=0.5"), HasSubstr("truncation band is 0.54 m wide"));
 }
 
 TEST_F(Arguments, BadSettingsFilesAreNamed) {

@@ -196,10 +196,11 @@ TEST_F(BadInput, InfoOfNothing) {
 
 TEST_F(BadInput, FullVoxelPoolEndsWell) {
     const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "2", "--lighting", "none", "--out", out(),
-                                    "--set", "map.capacity_blocks=200"});
+                                    "--texture", "off", "--set", "map.capacity_blocks=200"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
-    EXPECT_EQ(summary["voxel_pool"]["blocks_used"], 200);
+    EXPECT_LE(summary["voxel_pool"]["blocks_used"], 200);
+    EXPECT_GE(summary["voxel_pool"]["blocks_used"], 180) << "in the order of keys, some at a time";
     const uint64_t refused = summary["voxel_pool"]["blocks_refused"];
     EXPECT_GT(refused, 0u);
     EXPECT_THAT(outcome.err, HasSubstr("the pool of voxel blocks is full"));
@@ -214,7 +215,7 @@ TEST_F(BadInput, FullVoxelPoolEndsWell) {
 TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "2", "--lights", beside("l.json"), "--out",
-                                    out(), "--set", "reflectance.capacity_records=1000"});
+                                    out(), "--texture", "off", "--set", "reflectance.capacity_records=1000"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
     EXPECT_GT(summary["observation_pool"]["records_used"], 900);
@@ -228,8 +229,9 @@ TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
 }
 
 TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
-    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lighting", "none", "--out", out(),
-                                    "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
+    const Outcome outcome =
+        patina({"run", "synthetic:cubes", "--frames", "1", "--lighting", "none", "--out", out(), "--texture", "off",
+                "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("with voxels of 0.0025 m the view reaches 3."));
     EXPECT_THAT(summary_of(out())["warnings"].dump(), HasSubstr("not 6.00 m: what lies farther is left out"));
@@ -238,7 +240,7 @@ TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
 TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"),
-                                    "--observation-mm", "10", "--out", out(), "--quiet"});
+                                    "--observation-mm", "10", "--texture", "off", "--out", out(), "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0);
     const nlohmann::json summary = summary_of(out());
     EXPECT_EQ(summary["settings"]["reflectance.voxel_m"], 0.01);

@@ -153,8 +153,9 @@ TEST_F(FromSceneToScores, ReflectanceIsEstimatedUnderLightsThatAreFound) {
     const Outcome synth = patina({"synth", "cubes", "--frames", "4", "--truth-every", "3", "--extent", "192x160",
                                   "--quiet", "--out", recording});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    const auto summary = run_quietly(recording, {"--labels", "truth", "--materials", "truth", "--dump-every", "3",
-                                                 "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"});
+    const auto summary =
+        run_quietly(recording, {"--labels", "truth", "--materials", "truth", "--dump-every", "3", "--set",
+                                "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04", "--texture", "off"});
     EXPECT_EQ(summary["lights"]["found_by"], "lighting sequence");
     ASSERT_EQ(summary["lights"]["lamps"].size(), 3u);
     for (const auto& lamp : summary["lights"]["lamps"]) {
@@ -176,8 +177,8 @@ TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunTha
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
     for (const char* views : {"novel", "relit"})
         EXPECT_TRUE(fs::exists(recording / "truth" / views / "truth/frames/000001.exr")) << views;
-    const std::vector<std::string> options{"--dump-every",     "3",     "--set",
-                                           "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04"};
+    const std::vector<std::string> options{
+        "--dump-every", "3", "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04", "--texture", "off"};
     run_quietly(recording, options);
     EXPECT_THAT(patina({"eval", recording, out()}).out,
                 HasSubstr("Note: Views that were never recorded were not compared: the run kept no map"));
@@ -214,7 +215,7 @@ class HeldOutFrames : public RunFolderTest {
         EXPECT_EQ(synth.exit_code, 0) << synth.err;
         return recording;
     }
-    const std::vector<std::string> options_{"--hold-out", "3", "--set", "map.voxel_m=0.02"};
+    const std::vector<std::string> options_{"--hold-out", "3", "--set", "map.voxel_m=0.02", "--texture", "off"};
 };
 
 TEST_F(HeldOutFrames, ChangeNothingOfTheScene) {

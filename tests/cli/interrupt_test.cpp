@@ -41,7 +41,8 @@ class Interrupt : public RunFolderTest {
     }
 
     std::vector<std::string> endless(std::vector<std::string> more) {
-        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out", out()};
+        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--texture",
+                                           "off", "--out",           out()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }

@@ -118,7 +118,8 @@ class Kinect2Commands : public RunFolderTest {
 
 TEST_F(Kinect2Commands, LiveReconstructsWhatTheKinectSees) {
     const Outcome outcome =
-        patina({"live", "kinect2", "--seconds", "3", "--out", out(), "--record", file_, "--quiet"}, with_kinect());
+        patina({"live", "kinect2", "--seconds", "3", "--texture", "off", "--out", out(), "--record", file_, "--quiet"},
+               with_kinect());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const nlohmann::json summary = summary_of(out());
     EXPECT_EQ(summary["finished"], true);
@@ -158,7 +159,7 @@ TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
     EXPECT_NEAR(std::stod(farthest[1]), kWall_m, 0.01);
     expect_a_copy_of_its_rows(file_);
     expect_infrared_in_export(file_, beside("native"));
-    const nlohmann::json summary = run_quietly(file_, {"--frames", "3", "--lighting", "none"});
+    const nlohmann::json summary = run_quietly(file_, {"--frames", "3", "--lighting", "none", "--texture", "off"});
     EXPECT_EQ(taken(summary), 3u);
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
 }

@@ -73,7 +73,8 @@ TEST_F(Render, RecordedPosesOrbitAndVideo) {
 }
 
 TEST_F(Render, PosesOfAFileAreThoseOfASequence) {
-    const Outcome run = patina({"run", kCubes, "--frames", "2", "--lighting", "none", "--out", out(), "--quiet"});
+    const Outcome run =
+        patina({"run", kCubes, "--frames", "2", "--lighting", "none", "--texture", "off", "--out", out(), "--quiet"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     render_cubes(beside("recorded"), {"--lighting", "none"});
     render_cubes(beside("given"), {"--lighting", "none", "--poses", out() / "trajectory.txt"});

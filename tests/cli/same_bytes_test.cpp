@@ -68,7 +68,7 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
             sequence["color"].erase("motion_blur");
             write_text(recording_ / "sequence.json", sequence.dump());
         }
-        const std::vector<std::string> more{"--set", "observe.max_blur_px=0.001"};
+        const std::vector<std::string> more{"--set", "observe.max_blur_px=0.001", "--texture", blurs ? "off" : "auto"};
         const auto with_truth = files_of_run(more);
         fs::rename(recording_ / "truth", beside("truth"));
         const auto without_truth = files_of_run(more);
@@ -80,7 +80,8 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
 
 TEST_F(SameBytes, ASeedChangesMaterialsAndNeitherPathNorLights) {
     record("24");  // until the network has seen a segment
-    const auto zero = files_of_run({}), one = files_of_run({"--seed", "1"}), again = files_of_run({"--seed", "1"});
+    const auto zero = files_of_run({"--texture", "off"}), one = files_of_run({"--texture", "off", "--seed", "1"}),
+               again = files_of_run({"--texture", "off", "--seed", "1"});
     expect_same(one, again);
     EXPECT_FALSE(one.at("scene.glb") == zero.at("scene.glb"));
     EXPECT_FALSE(one.at("materials.json") == zero.at("materials.json")) << "the network is shown other voxels";
@@ -113,6 +114,7 @@ TEST_F(SameBytes, ASeedIsAlsoThatOfASyntheticScenesNoise) {
         "path": {"orbit": {"target": [0, 0, 0], "distance": 2, "azimuth_degrees": 180}},
         "recording": {"noise": "kinect2", "pose_noise": {"translation": 0.01, "rotation_degrees": 0.1}, "seed": 3}})");
     const auto path_of = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--texture", "off"});
         run_quietly("synthetic:" + beside("noisy.json").string(), std::move(more));
         return read_text(out() / "trajectory.txt");
     };
@@ -126,7 +128,8 @@ TEST_F(SameBytes, WhatSteersATerminalIsNotPrinted) {
     const fs::path steering = beside("a\033[31mb");
     fs::rename(recording_, steering);
     fs::remove(steering / "color/000001.png");
-    const Outcome outcome = patina({"run", steering, "--lighting", "none", "--out", beside("c\033[2Jd")});
+    const Outcome outcome =
+        patina({"run", steering, "--lighting", "none", "--texture", "off", "--out", beside("c\033[2Jd")});
     ASSERT_TRUE(fs::exists(beside("c\033[2Jd") / "scene.glb")) << outcome.err;
     EXPECT_THAT(outcome.out + outcome.err, ::testing::Not(::testing::HasSubstr("\033")));
     EXPECT_THAT(outcome.err, ::testing::HasSubstr("a\\x1b[31mb/color/000001 is missing"));
