@@ -8,7 +8,8 @@
 
 namespace patina {
 
-/// Casts a ray per pixel of `visible`'s camera to the first zero crossing from seen free space into the inside.
+/// Casts a ray per pixel of `visible`'s camera to the first zero crossing from seen free space into the inside, or from
+/// space that nobody saw into a surface that faces the ray; such a hit has no normal.
 RaycastImages add_raycast(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& ids,
                           const VisibleBlocks& visible, MapAccess access);
 

@@ -134,9 +134,10 @@ void main() {
         if (marching) {
             const Bracket bracket = march(origin, direction, depth, far, depth_per_vox);
             if (!bracket.inside) break;
+            const bool from_inside = attempt > 0u && bracket.inside_depth <= depth;
             depth = bracket.inside_depth;
             estimate = bracket.seen_outside ? mix(bracket.outside_depth, depth, bracket.outside_share) : depth;
-            from_unknown = !bracket.seen_outside && attempt == 0u;
+            from_unknown = !bracket.seen_outside && !from_inside;
             unknown_sdf = bracket.inside_sdf;
         }
         // What is behind the first voxel inside has been seen sooner than what is before it.
