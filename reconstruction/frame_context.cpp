@@ -1,5 +1,6 @@
 #include "reconstruction/frame_context.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.h"
@@ -32,6 +33,13 @@ PosedCamera resized(const PosedCamera& camera, Extent2D extent) {
 FrameCameras make_frame_cameras(const RgbdFrame& frame) {
     return {make_posed_camera(frame.depth.camera, frame.world_from_depth),
             make_posed_camera(frame.color.camera, frame.world_from_depth * rigid_inverse(frame.color_from_depth))};
+}
+
+uint32_t FrameContext::stride_px(uint32_t most_px, double cell_m) const {
+    if (first()) return 1;
+    const double usual_m = 3.0 / 8 * double{range.reach_m};
+    const double fits = cell_m * depth.intrinsics.fx / usual_m;
+    return static_cast<uint32_t>(std::clamp(fits, 1.0, static_cast<double>(std::max(most_px, 1u))));
 }
 
 void FrameHistory::note(const FrameContext& frame) {

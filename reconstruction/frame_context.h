@@ -57,6 +57,11 @@ struct FrameContext {
 
     /// Whether no frame of its kind came before it.
     bool first() const { return index == 0 || (index == preceding && !precedes); }
+
+    /// How many pixels of the depth camera apart, in x and y, those are that look for cells of surface to take:
+    /// `most_px`, another phase in every frame; but fewer where a picture of few pixels would leave out cells of
+    /// `cell_m` on surface that faces it at a usual depth, 3/8 of range.reach_m. Every pixel of the first frame looks.
+    uint32_t stride_px(uint32_t most_px, double cell_m) const;
 };
 
 /// What the frames so far leave to the next one's context.

@@ -7,7 +7,6 @@
 #include "passes/fusion/integrate.h"
 #include "passes/fusion/remove_empty_blocks.h"
 #include "passes/fusion/sharpen_normals.h"
-#include "passes/state/sampling_stride.h"
 #include "shared/fusion/remove_empty_blocks.h"
 
 namespace patina {
@@ -73,9 +72,7 @@ StreamRegion GeometryStage::around(const PosedCamera& depth, const PosedCamera& 
 StreamRegion GeometryStage::around_view(const PosedCamera& camera) const { return seen_by(camera, view_far_m()); }
 
 uint32_t GeometryStage::allocation_stride_px(const FrameContext& frame) const {
-    if (frame.first()) return 1;
-    const double block_m = double{settings_.map.voxel_m} * gpu::kBlockEdge;
-    return sampling_stride(settings_.fusion.allocation_stride_px, frame.depth.intrinsics.fx, block_m);
+    return frame.stride_px(settings_.fusion.allocation_stride_px, double{settings_.map.voxel_m} * gpu::kBlockEdge);
 }
 
 graph::BufferId GeometryStage::add_params(graph::FrameGraph& graph, const FrameContext& frame) const {

@@ -85,7 +85,7 @@ class GeometryStage {
     MapAccess access() const { return access_; }
 
   private:
-    /// Every pixel of the first frame allocates: later ones see most of their surface for more than one time.
+    /// Of the pixels that allocate blocks.
     uint32_t allocation_stride_px(const FrameContext& frame) const;
 
     float far_m() const;

@@ -8,7 +8,6 @@
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
 #include "passes/shading/sample_coverage.h"
-#include "passes/state/sampling_stride.h"
 #include "shared/fusion/voxel_map.h"
 
 namespace patina {
@@ -137,8 +136,7 @@ RecordList ReflectanceStage::add(graph::FrameGraph& graph, const VoxelMapIds& vo
     shared_ = false;
     ObservationMapIds records = observations_.import(graph);
     ObservationSettings observe = settings_.observe;
-    observe.stride_px =
-        frame.first() ? 1 : sampling_stride(observe.stride_px, frame.depth.intrinsics.fx, settings_.voxel_m);
+    observe.stride_px = frame.stride_px(observe.stride_px, double{settings_.voxel_m});
     const CollectedRecords collected = add_collect_observations(graph, observations_, records, inputs, observe,
                                                                 frame.depth.gpu, frame.color.gpu, frame.index);
     if (settings_.refine.gathered_rays > 0 && !frame.precedes) {

@@ -102,6 +102,8 @@ TEST_F(Golden, TwoRunsGiveTheSameBytes) {
         EXPECT_TRUE(content == second.at(name)) << name << " differs";
     }
     EXPECT_EQ(without_times(summary_of(beside("first"))), without_times(summary_of(beside("second"))));
+    EXPECT_EQ(summary_of(beside("first"))["warnings"].size(), 0u)
+        << "the view reaches less than 8 m, of which nobody asked";
 }
 
 TEST_F(Golden, TwoTrackedRunsGiveTheSameBytes) {

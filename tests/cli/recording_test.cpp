@@ -68,6 +68,14 @@ TEST_F(RecordingCommands, ARecordingReconstructsAsItsFolder) {
     EXPECT_THAT(info.out, HasSubstr("patina-recording"));
 }
 
+TEST_F(RecordingCommands, FramesWithoutPicturesAreTold) {
+    synthesise("3");
+    fs::remove(folder_ / "color/000001.png");
+    const Outcome outcome = patina({"record", folder_, "--out", file_});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("warning: 1 of 3 frames have no pictures, the last of them: "));
+}
+
 TEST_F(RecordingCommands, ExportGivesBackTheFolder) {
     synthesise("4");
     fs::create_directories(folder_ / "lighting");
@@ -202,15 +210,14 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
 TEST_F(RecordingCommands, LiveFindsTheLightsThatTheRunOfItsFramesFinds) {
     expect_done(patina({"synth", "cubes", "--frames", "30", "--extent", "64x53", "--quiet", "--out", folder_}));
     // With the sequence of low exposure beside it.
-    expect_done(patina({"live", "--simulate", folder_, "--texture", "off", "--out", out(), "--quiet"}));
+    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--quiet"}));
     const nlohmann::json lights = summary_of(out())["lights"];
     EXPECT_EQ(lights["found_by"], "lighting sequence");
     std::set<int64_t> used_ms;
     for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt"))
         used_ms.insert(milliseconds(pose.timestamp_s));
     keep_frames(folder_, used_ms, file_);
-    expect_done(patina(
-        {"run", file_, "--lighting", folder_ / "lighting", "--texture", "off", "--out", beside("again"), "--quiet"}));
+    expect_done(patina({"run", file_, "--lighting", folder_ / "lighting", "--out", beside("again"), "--quiet"}));
     EXPECT_EQ(summary_of(beside("again"))["lights"], lights);
     expect_same(reconstructed(out()), reconstructed(beside("again")));
 }

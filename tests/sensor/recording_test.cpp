@@ -345,6 +345,8 @@ TEST_F(RecordingTest, WhatComesAfterItsEndIsCountedAsLost) {
     EXPECT_EQ(recorder.counts().given, 3u);
     EXPECT_EQ(recorder.counts().written, 1u);
     EXPECT_EQ(recorder.counts().lost, 2u);
+    EXPECT_EQ(recorder.counts().skipped, 1u);
+    EXPECT_EQ(recorder.skipped_for(), "late");
     EXPECT_EQ(RecordingFile(file()).sequence(SequenceRole::kMain).info.frames, 1u);
     recorder.discard();
     EXPECT_FALSE(fs::exists(file()));

@@ -93,6 +93,27 @@ TEST(FrameContext, HeldOutFramesCountButNotTheirColours) {
     EXPECT_FALSE(make_frame_context(shot.frame, history, {}, false).fuses_color) << "of a model without colours";
 }
 
+TEST(FrameContext, TheFirstFrameOfEachKindLooksWithEveryPixelLaterOnesWithFew) {
+    const DepthRange range{0.3f, 8.2f, 8};  // a usual depth of 3 m, where a pixel covers 1/3 m
+    const Shot shot;
+    FrameHistory history;
+    for (const bool precedes : {true, false}) {
+        for (int i = 0; i < 3; ++i) {
+            FrameContext context = make_frame_context(shot.frame, history, range, true);
+            context.precedes = precedes;
+            EXPECT_EQ(context.first(), i == 0) << precedes << " " << i;
+            EXPECT_EQ(context.stride_px(2, 10), i == 0 ? 1u : 2u) << precedes << " " << i;
+            history.note(context);
+        }
+    }
+    const FrameContext later = make_frame_context(shot.frame, history, range, true);
+    EXPECT_EQ(later.stride_px(4, 1.1), 3u) << "as many as leave out no cell";
+    EXPECT_EQ(later.stride_px(4, 0.01), 1u) << "pixels are farther apart than cells";
+    EXPECT_EQ(later.stride_px(0, 10), 1u);
+    const FrameContext near = make_frame_context(shot.frame, history, {0.3f, 2.1f, 2}, true);
+    EXPECT_EQ(near.stride_px(8, 0.5), 6u) << "what is near is seen by more pixels";
+}
+
 TEST(FrameContext, RangeAndLabelsAreTheFramesOwn) {
     Shot shot;
     const std::vector<uint16_t> labels(kDepthCamera.extent.area(), 3);

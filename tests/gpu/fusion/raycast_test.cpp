@@ -160,6 +160,25 @@ TEST_F(RaycastTest, RaysThatPassByAnOutlineMeetWhatIsBehind) {
     }
 }
 
+TEST_F(RaycastTest, RaysThatPassByAnOutlineDoNotMeetBacks) {
+    FusionRig rig = fused_ball(device(), runner(), {0.01f, 16384});
+    const reference::DistanceField wall = reference::box({0, 0, 0.8}, {2, 2, 0.1});
+    const RigidTransform behind = reference::look_at({0, 0, 2}, {0, 0, 0.8});
+    rig.fuse(kCamera, behind, reference::render_depth(wall, kCamera, behind, 4.0));
+    const reference::DistanceField ball = reference::sphere({0, 0, 0}, 0.25);
+    size_t on_ball = 0, beyond = 0;
+    for (const double x : {-0.3, -0.1, 0.1, 0.3}) {
+        const FusionRig::View view = rig.raycast(kCamera, reference::look_at({x, 0.05, -1}, {0, 0, 0}));
+        for (const glm::vec4& hit : view.position_m.pixels()) {
+            if (hit.w == 0) continue;
+            const bool near = std::abs(ball(glm::dvec3(hit))) < 0.05;
+            ++(near ? on_ball : beyond);
+        }
+    }
+    EXPECT_GT(on_ball, 10000u);
+    EXPECT_EQ(beyond, 0u);
+}
+
 TEST_F(RaycastTest, AnEmptyMapHasNoSurface) {
     FusionRig rig(device(), runner(), {0.01f, 64});
     for (const Extent2D extent : {Extent2D{1, 1}, {13, 7}, {65, 33}}) {

@@ -280,6 +280,24 @@ TEST_F(PipelineTest, LabelsOfAnotherSizeAreRefused) {
     EXPECT_THROW(pipeline.add(frame), Error);
 }
 
+TEST_F(PipelineTest, EveryPixelOfTheFirstFrameLooksForSurface) {
+    const auto counters_at = [&](uint32_t stride_px, uint32_t frames) {
+        ReconstructionSettings settings = small_settings_with_reflectance();
+        settings.segmentation.reset();
+        settings.fusion.allocation_stride_px = settings.reflectance->observe.stride_px = stride_px;
+        Pipeline pipeline(device(), settings);
+        for (uint32_t i = 0; i < frames; ++i) cubes_.add_to(pipeline, i);
+        pipeline.wait();
+        return pipeline.counters();
+    };
+    const PipelineCounters all = counters_at(1, 1), few = counters_at(8, 1);
+    EXPECT_GT(few.map.high_water, 1000u);
+    EXPECT_EQ(few.map.high_water, all.map.high_water);
+    EXPECT_GT(few.observations.records.high_water, 1000u);
+    EXPECT_EQ(few.observations.records.high_water, all.observations.records.high_water);
+    EXPECT_LT(counters_at(8, 2).observations.records.high_water, counters_at(1, 2).observations.records.high_water);
+}
+
 TEST_F(PipelineTest, AFrameOfAKnownShapeIsNotCompiledAgain) {
     ReconstructionSettings settings = small_settings();
     settings.map.capacity_blocks = 32768;  // a pool that grows changes the shape
