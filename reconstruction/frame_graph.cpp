@@ -18,11 +18,14 @@ void wire_materials(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds&
     if (!stages.reflectance) return;
     if (!stages.segmentation || stages.segmentation->may_lose_records(frame.index))
         stages.reflectance->reclaim(graph, voxels, stages.geometry.near_surface_m(), frame);
-    if (stages.segmentation)
-        stages.segmentation->add_records(graph, stages.reflectance->observations(), stages.reflectance->away(graph),
-                                         frame);
-    if (frame.held_out) return stages.reflectance->keep(graph);
+    const ObservationMap& map = stages.reflectance->observations();
+    if (stages.segmentation) stages.segmentation->add_relabel(graph, map, stages.reflectance->away(graph), frame.index);
+    if (frame.held_out) {
+        if (stages.segmentation) stages.segmentation->add_choose_records(graph, map, frame);
+        return stages.reflectance->keep(graph);
+    }
     const RecordList changed = stages.reflectance->add(graph, voxels, observed, frame);
+    if (stages.segmentation) stages.segmentation->add_choose_records(graph, map, frame);
     if (stages.specular) stages.specular->add(graph, *stages.reflectance, *stages.segmentation, changed, frame.index);
 }
 

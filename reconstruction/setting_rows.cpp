@@ -263,8 +263,9 @@ constexpr std::array kRows = {
     number<&Seg::sample_every>("segmentation.sample_every", "frames", 0, kAnyCount,
                                "The records that stand for a segment are chosen anew once in this many frames; 0 "
                                "never chooses any."),
-    number<&Seg::sample_observations>("segmentation.sample_observations", "", 0, 30,
-                                      "Records with fewer observations are not chosen to stand for a segment."),
+    number<&Seg::sample_observations>(
+        "segmentation.sample_observations", "", 0, 30,
+        "Records with fewer observations stand for a segment only where there are too few others."),
     number<&Seg::sample_seed>("segmentation.sample_seed", "", 0, kAnyCount,
                               "Seed of the choice of records that stand for a segment."),
     number<&Gain::reduction>("gains.reduction", "px", 1, 64,

@@ -16,7 +16,7 @@ void add_sample_records(graph::FrameGraph& frame, const ObservationMap& map, con
     auto count = frame.compute("segmentation.count_samples", spirv::count_samples);
     count.read("RecordCounters", records.record_counters).read("Records", records.records).push(part);
     const graph::BufferId levels =
-        count.modify("Levels", zeros("segmentation.sample_levels", uint64_t{labels} * gpu::kSampleLevels));
+        count.modify("Levels", zeros("segmentation.sample_levels", uint64_t{labels} * 2 * gpu::kSampleLevels));
     count.dispatch_covering(capacity);
 
     auto choose = frame.compute("segmentation.choose_samples", spirv::choose_samples);

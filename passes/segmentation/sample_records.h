@@ -8,9 +8,9 @@ namespace patina {
 
 /// Which records of segments may be kept.
 struct SampleChoice {
-    gpu::VoxelGrid voxels{};     ///< the voxel map's
-    gpu::StreamRegion region{};  ///< where their blocks lie
-    uint32_t min_observations = 4;
+    gpu::VoxelGrid voxels{};        ///< the voxel map's
+    gpu::StreamRegion region{};     ///< where their blocks lie
+    uint32_t min_observations = 4;  ///< records with fewer are kept only where there is room
     uint32_t seed = 1;
 };
 

@@ -18,9 +18,9 @@ struct SegmentSampleIds {
 };
 
 /// References to records of an observation map by segment: all of them where there are at most gpu::kSegmentSamples,
-/// else between half as many and that, chosen by hashes of their voxels and a seed. So every eligible record is as
-/// likely to be among them as any other, whenever it came, and the same ones are in every run. Filled by
-/// segmentation/sample_records.h.
+/// else between half as many and that, chosen by hashes of their voxels and a seed: first of those with enough
+/// observations, then of others. So every record of each kind is as likely to be among them as any other, whenever it
+/// came, and the same ones are in every run. Filled by segmentation/sample_records.h.
 class SegmentSamples {
   public:
     /// Throws Error when memory runs out.

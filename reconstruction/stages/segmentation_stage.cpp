@@ -28,11 +28,11 @@ constexpr uint32_t kSweepTurn = 1, kRelabelTurn = 3;
 constexpr double kBlocksBesideSamples = 2;
 static_assert(kBlocksBesideSamples < StreamRegion::kBlocksBeside);
 
-/// In the beginning, when most records are new, more often: after 4, 8, ... frames.
+/// In the beginning, when most records are new, more often: after 1, 2, 4, 8, ... frames.
 bool samples_are_due(uint32_t frame_index, uint32_t every) {
     if (every == 0) return false;
     const uint32_t frames = frame_index + 1;
-    return frames % every == 0 || (frames >= 4 && frames < every && std::has_single_bit(frames));
+    return frames % every == 0 || (frames < every && std::has_single_bit(frames));
 }
 
 /// Of no label: one entry, as buffers have some bytes.
@@ -137,7 +137,7 @@ graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapId
         add_count_overlaps(graph, table, seen, known, surface.position_m, inputs.color_linear, uniforms);
     KnownMaterials materials{samples_.import(graph).kd, inputs.fits ? *inputs.fits : no_fits(graph)};
     const graph::BufferId assigned = add_assign_labels(graph, table, seen, overlaps, materials, uniforms);
-    // In these frames add_records() begins it anew.
+    // In these frames add_choose_records() begins it anew.
     if (!chooses_samples(frame.index)) graph.keep(materials.kd);
     const DueBlocks due = add_list_due_blocks(graph, map_, voxels, labels, surface.blocks, values.stamp);
     add_update_labels(graph, map_, voxels, labels, table, surface, due, seen, assigned, access_);
@@ -176,18 +176,22 @@ void SegmentationStage::add_find_samples(graph::FrameGraph& graph, const Observa
     SegmentSamples::keep(graph, ids);
 }
 
-void SegmentationStage::add_records(graph::FrameGraph& graph, const ObservationMap& map,
-                                    std::optional<graph::BufferId> away, const FrameContext& frame) const {
+void SegmentationStage::add_relabel(graph::FrameGraph& graph, const ObservationMap& map,
+                                    std::optional<graph::BufferId> away, uint32_t frame_index) const {
+    if (!relabels(frame_index)) return;
     ObservationMapIds records = map.import(graph);
     gpu::SegmentationParams values{};
-    values.stamp = frame.index + 1;
+    values.stamp = frame_index + 1;
     const auto uniforms = graph.upload<gpu::SegmentationParams>("segmentation.record_params", std::span(&values, 1));
-    if (relabels(frame.index)) {
-        const SegmentTableIds table = table_.import(graph);
-        add_relabel_records(graph, map, records, table, uniforms);
-        if (away) add_relabel_away(graph, *away, table, uniforms);
-    }
+    const SegmentTableIds table = table_.import(graph);
+    add_relabel_records(graph, map, records, table, uniforms);
+    if (away) add_relabel_away(graph, *away, table, uniforms);
+}
+
+void SegmentationStage::add_choose_records(graph::FrameGraph& graph, const ObservationMap& map,
+                                           const FrameContext& frame) const {
     if (!chooses_samples(frame.index)) return;
+    const ObservationMapIds records = map.import(graph);
     SegmentSampleIds ids = samples_.import(graph);
     // What estimates look at beside a record lies in the region, too.
     const double beside_m = kBlocksBesideSamples * double{map_.settings().voxel_m} * gpu::kBlockEdge;

@@ -36,7 +36,7 @@ struct SegmentationSettings {
     uint32_t prune_frames = 30;     ///< when they were not seen for so many frames
     /// Frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_every = 16;
-    uint32_t sample_observations = 4;  ///< of a record that may be chosen, at least
+    uint32_t sample_observations = 4;  ///< records with fewer are chosen only where there are too few others
     uint32_t sample_seed = 1;          ///< of the first choice; others differ
 };
 
@@ -102,8 +102,8 @@ class SegmentationStage {
     graph::ImageId add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const SegmentationInputs& inputs,
                        const FrameContext& frame) const;
 
-    /// Whether records may be given back before add_records() of this frame: it chooses the segments' records anew, or
-    /// never does.
+    /// Whether records may be given back before a frame's observations: it chooses the segments' records anew, or never
+    /// does.
     bool may_lose_records(uint32_t frame_index) const;
 
     /// Whether a frame's graph sweeps over a part of the map's labels, and which (segmentation/sweep_labels.h).
@@ -113,11 +113,14 @@ class SegmentationStage {
     static uint32_t swept_part(uint32_t frame_index);
 
     /// Brings one part of the observations' labels up to date with merged and pruned segments, another every few
-    /// frames, and chooses the segments' records when that is due, of those around the camera: the same ones wherever
-    /// others are. To be called in every frame in which add() was.
+    /// frames. To be called in every frame in which add() was, before its observations.
     /// `away`: of the records that are not on the device (AwayAlbedo); it is replaced.
-    void add_records(graph::FrameGraph& graph, const ObservationMap& map, std::optional<graph::BufferId> away,
-                     const FrameContext& frame) const;
+    void add_relabel(graph::FrameGraph& graph, const ObservationMap& map, std::optional<graph::BufferId> away,
+                     uint32_t frame_index) const;
+
+    /// Chooses the segments' records when that is due, of those around the camera: the same ones wherever others are.
+    /// To be called in every frame in which add() was, after its observations.
+    void add_choose_records(graph::FrameGraph& graph, const ObservationMap& map, const FrameContext& frame) const;
 
     /// Where records lie that segments keep from frame to frame, and keeping those at such places again
     /// (segmentation/sample_records.h).

@@ -259,7 +259,7 @@ void main() {
     const Irradiance indirect = indirect_light(gathered);
     const Irradiance irradiance = add_lights(indirect, light_count, point_m, normal, ward_shape(alpha), specular,
                                              visibility[record], status[record].uncertain);
-    const vec3 ks = specular ? material.ks_alpha.rgb : vec3(0.0);
+    const vec3 ks = specular ? material.ks_alpha.rgb * (1.0 - material.unobserved) : vec3(0.0);
     const Center guess = remove_highlights(record, count, ks * ward_scale(alpha));
     const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);
     set_trust(count, noise);

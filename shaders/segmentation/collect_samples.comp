@@ -30,7 +30,8 @@ void main() {
     const VoxelRecord record = records[item];
     if (!is_eligible(record, part)) return;
     const uint label = record_label(record);
-    if (sample_level(sample_hash(record, part.samples.seed)) < counts[label].level) return;
+    const uint lowest = is_sparsely_observed(record, part) ? counts[label].sparsely_level : counts[label].level;
+    if (sample_level(sample_hash(record, part.samples.seed)) < lowest) return;
     kept[label * kSegmentSamples + atomicAdd(filled[label], 1u)] = item;
     add_kd(label, albedo[item]);
 }

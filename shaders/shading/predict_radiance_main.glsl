@@ -221,7 +221,10 @@ void main() {
         if (!found.known) found = fill(point, found);
         segment = found.labelled == kNoRecord ? 0u : record_label(records[found.labelled]);
         const bool has_entry = segment != 0u && segment < params.materials;
-        gloss = has_entry ? materials[segment].ks_alpha : vec4(0.0);
+        const SegmentMaterial material = materials[has_entry ? segment : 0u];
+        gloss = has_entry ? material.ks_alpha : vec4(0.0);
+        // What is a guess was not taken from kd either.
+        const vec4 shown_gloss = vec4(gloss.rgb * (1.0 - material.unobserved), gloss.w);
         const Reflectance own = found;
         found = with_segment(found, has_entry ? segment_kd(segments[segment]) : vec4(0.0), point.to_viewer);
         if (kMostLights > kLightsOfOneWord) load_further_visibility();
@@ -229,7 +232,7 @@ void main() {
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
         const vec3 of_picture = shaded_kd(own, found);
         shaded_with = found.known ? vec4(of_picture, 1.0) : vec4(0.0);
-        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, gloss,
+        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, shown_gloss,
                                  indirect_light(marched));
         known_kd = kOfPicture != 0u ? shaded_with : found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);

@@ -22,5 +22,5 @@ void main() {
     fits[label].confidence = weight / kMostEstimateWeight;
     fits[label].diffuse = vec4(estimates[label].kd_weight.rgb, 0.0);
     fits[label].light2 = vec4(1.0);
-    if (label < params.materials) materials[label] = changed_material(materials[label], estimates[label].ks_alpha);
+    if (label < params.materials) materials[label] = changed_material(materials[label], estimates[label].ks_alpha, 0.0);
 }

@@ -36,7 +36,7 @@ MirrorPair choose(uint record) {
     const vec3 normal = surface_normal(known);
     const uint count = observation_count(known);
     const MirrorPair none = MirrorPair(kNoRecord, 0u, 0u, 0.0);
-    if (count < 2u) return none;
+    if (count < kFitLeastObservations) return MirrorPair(kNoRecord, kFewViews, 0u, 0.0);
     const uint first = sample_hash(known, params.stamp) % count;
     const uint word = load_direction(params.records.chunk_shift, record, first);
     const uint color = load_color(params.records.chunk_shift, record, first);

@@ -33,7 +33,7 @@ void forget(uint label) {
     if (label >= params.materials) return;
     const uint version = materials[label].version;
     if (version != 0u)
-        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0.0, 0u, 0u);
+        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), version % 0xffffu + 1u, 0.0, 0.0, 0u);
 }
 
 // Merging makes a label older, never younger.

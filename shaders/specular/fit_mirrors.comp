@@ -35,6 +35,7 @@ shared int sum_square;
 shared int sum_product2;
 shared uint sum_pairs;
 shared uint sum_views;  // pairs, whether or not their rays meet anything
+shared uint sum_few;    // voxels that were seen too seldom
 
 // The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing.
 // What is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
@@ -81,20 +82,24 @@ void main() {
     const uint label = batch[1u + segment];
     if (lane == 0u) {
         sum_product = sum_square = sum_product2 = 0;
-        sum_pairs = sum_views = 0u;
+        sum_pairs = sum_views = sum_few = 0u;
     }
     barrier();
     for (uint slot = lane; slot < kSegmentSamples; slot += kMirrorGroup) {
         const MirrorPair pair = pairs[segment * kSegmentSamples + slot];
-        if (pair.record == kNoRecord) continue;
+        if (pair.record == kNoRecord) {
+            if (pair.first == kFewViews) atomicAdd(sum_few, 1u);
+            continue;
+        }
         atomicAdd(sum_views, 1u);
         add_pair(pair);
     }
     barrier();
     // A look that finds next to nothing tells nothing, and is no reason to doubt the ones before. The few rays that
     // meet something, where most go into the open, meet what stands on the surface: its rims, where colours change
-    // anyway.
+    // anyway. Nor do the first voxels that were seen often tell of all the others.
     if (lane != 0u || label >= params.labels || sum_pairs < max(kLeastPairs, sum_views / kMostMissed)) return;
+    if (sum_views < sum_few) return;
     const MirrorFit before = mirrors[label];
     const MirrorFit fit = MirrorFit(params.memory * before.product + float(sum_product) / kSteps,
                                     params.memory * before.square + float(sum_square) / kSteps,

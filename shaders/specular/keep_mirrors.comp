@@ -19,5 +19,5 @@ void main() {
     if (known && material.mirror >= kSure) return;
     mirrors[label] = MirrorFit(0.0, 0.0, 0.0, 0.0);
     if (known && material.version != 0u)
-        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), material.version % 0xffffu + 1u, 0.0, 0u, 0u);
+        materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), material.version % 0xffffu + 1u, 0.0, 0.0, 0u);
 }

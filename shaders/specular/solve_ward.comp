@@ -84,6 +84,7 @@ vec4 refined(uint best) {
 
 struct Estimate {
     vec4 ks_alpha;
+    float observed;  // the share of ks that observations tell
     float confidence;
 };
 
@@ -106,7 +107,8 @@ Estimate averaged(uint best, float unit) {
     const vec4 ks_alpha = mix(refined(best), mean, min(variance, 1.0));
     const bool dull = max(max(ks_alpha.r, ks_alpha.g), ks_alpha.b) < kDullKs;
     const float octaves2 = variance / float(kFitAlphaSteps * kFitAlphaSteps);
-    return Estimate(ks_alpha, share / sum * (dull ? 1.0 : 1.0 / (1.0 + octaves2 / (kSharpAlpha * kSharpAlpha))));
+    return Estimate(ks_alpha, share / sum,
+                    share / sum * (dull ? 1.0 : 1.0 / (1.0 + octaves2 / (kSharpAlpha * kSharpAlpha))));
 }
 
 void main() {
@@ -139,5 +141,6 @@ void main() {
     fit.deviation = sqrt(max(ks_misfit[best].w, 0.0) / max(fit.color2_weight.w, 1.0));
     fit.estimates = fit.color2_weight.w > 0.0 ? min(fit.estimates + 1u, 0xffffu) : 0u;
     fits[label] = fit;
-    if (label < params.materials) materials[label] = changed_material(materials[label], fit.ks_alpha);
+    if (label < params.materials)
+        materials[label] = changed_material(materials[label], fit.ks_alpha, 1.0 - estimate.observed);
 }

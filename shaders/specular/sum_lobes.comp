@@ -227,6 +227,7 @@ void main() {
         const FitVoxel chosen = voxels[segment * kSegmentSamples + slot];
         if (chosen.record == kNoRecord) continue;
         const VoxelRecord record = records[chosen.record];
+        if (observation_count(record) < kFitLeastObservations) continue;
         blur_lobes(first_alpha, chosen.blur2);
         add_voxel(Voxel(chosen.record, segment * kMaxObservations * kSegmentSamples + slot,
                         surface_point_m(record, params.records, params.edge_shift), surface_normal(record),

@@ -15,8 +15,12 @@ uint sample_level(uint hash) { return min(31u - uint(findMSB(hash | 1u)), kSampl
 
 bool is_eligible(VoxelRecord record, SampledPart part) {
     const uint label = record_label(record);
-    return label != 0u && label < part.samples.labels && observation_count(record) >= part.samples.min_observations &&
+    return label != 0u && label < part.samples.labels && observation_count(record) > 0u &&
            stays(part.voxels, part.region, record.block_key);
+}
+// Few observations tell of kd, but hardly of gloss.
+bool is_sparsely_observed(VoxelRecord record, SampledPart part) {
+    return observation_count(record) < part.samples.min_observations;
 }
 
 #endif

@@ -12,11 +12,11 @@ INTEROP_CONST float kLeastRefreshed = 1.0f / 16.0f;  // of fewer their share, bu
 
 // The specular part of a segment's material; label 0, and labels without an entry, have none.
 struct SegmentMaterial {
-    vec4 ks_alpha;  // rgb, Ward roughness
-    uint version;   // changes with the material, above 0; 0: no entry
-    float mirror;   // 1: a metal or a mirror, which has no diffuse part; passes/specular/fit_mirrors.h
-    uint pad1;
-    uint pad2;
+    vec4 ks_alpha;     // rgb, Ward roughness
+    uint version;      // changes with the material, above 0; 0: no entry
+    float mirror;      // 1: a metal or a mirror, which has no diffuse part; passes/specular/fit_mirrors.h
+    float unobserved;  // the share of ks that is a guess, which refinement leaves out
+    uint pad0;
 };
 
 // A segment's albedo: sums over its records, whole numbers, so that the order of arrival does not matter.

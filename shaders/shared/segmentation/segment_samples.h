@@ -14,8 +14,8 @@ INTEROP_CONST uint kDrawGroup = 128u;       // invocations per segment
 struct SegmentSampleCount {
     uint kept;
     uint eligible;
-    uint level;  // records of this level or above were kept
-    uint pad0;
+    uint level;           // of those with enough observations, records of this level or above were kept
+    uint sparsely_level;  // and of those with fewer, which fill up what room there is
 };
 
 // The albedo of the records that were kept of a segment: whole numbers, so that the order of arrival does not matter.
@@ -32,11 +32,11 @@ INTEROP_CONST uint kLeastKdSamples = 8u;       // that say what a segment's albe
 struct SegmentSampleParams {
     uint seed;
     uint labels;            // label 0 included
-    uint min_observations;  // of an eligible record
+    uint min_observations;  // records with fewer come after those with as many
     uint draws;             // samples to draw from each segment
 };
 
-// Where eligible records lie.
+// Which records are eligible, and where they lie.
 struct SampledPart {
     VoxelGrid voxels;  // the voxel map's, whose blocks' coordinates the region is about
     StreamRegion region;

@@ -6,11 +6,12 @@
 INTEROP_BEGIN
 
 INTEROP_CONST uint kMirrorGroup = 64u;
+INTEROP_CONST uint kFewViews = 1u;
 
 // Two views of one voxel that lie far apart.
 struct MirrorPair {
     uint record;  // kNoRecord: none
-    uint first;   // direction words
+    uint first;   // direction words; of none, kFewViews where the voxel was seen too seldom
     uint second;
     float brighter;  // by how much the first is, linear, mean of the channels
 };

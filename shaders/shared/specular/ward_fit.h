@@ -12,7 +12,9 @@ INTEROP_CONST uint kFitAlphaSteps = 8u;      // from an alpha to half of it
 INTEROP_CONST float kFitMostAlpha = 0.6f;    // the first; the last is 0.02
 INTEROP_CONST float kFitBlurM = 0.0076f;  // metres of a bent surface that an observation shows at once; a voxel at most
 INTEROP_CONST uint kFitGroup = 64u;       // invocations over the voxels of a segment
-INTEROP_CONST uint kFitDiffuseEvery = 4u;     // fits the segment's albedo follows; with the first ones it always does
+INTEROP_CONST uint kFitDiffuseEvery = 4u;  // fits the segment's albedo follows; with the first ones it always does
+// Of a voxel that tells of gloss. Of fewer, whose views lie close together, kd is known, and hardly what changes.
+INTEROP_CONST uint kFitLeastObservations = 4u;
 INTEROP_CONST float kFitLeastCosine = 0.15f;  // of observations, to the viewer: what is flatter does not count
 
 // The network is asked below it. From there on its word, a prior of alpha, hardly changes what is fitted, but for the

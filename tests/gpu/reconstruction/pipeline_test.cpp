@@ -226,6 +226,22 @@ TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {
     EXPECT_FALSE(found.segments[100].gloss) << "no segment";
 }
 
+// Nobody has seen from two sides yet what it is like.
+TEST_F(PipelineTest, TheFirstFrameGivesSegmentsAMaterial) {
+    constexpr uint32_t kFloor = 1;
+    const LabelledCubes cubes(device(), 1);
+    ReconstructionSettings settings = small_settings_with_reflectance();
+    settings.specular.emplace();
+    Pipeline pipeline(device(), settings);
+    pipeline.set_lights(cubes.lights);
+    pipeline.add(cubes.frame(0));
+    const MeshReflectance found = pipeline.sample_reflectance(pipeline.extract_surface());
+    const std::optional<WardGloss>& gloss = found.segments[kFloor].gloss;
+    ASSERT_TRUE(gloss && gloss->confidence);
+    EXPECT_LT(glm::distance(gloss->ks, glm::vec3(0.04f)), 1e-5f) << "what is usual";
+    EXPECT_LT(*gloss->confidence, 0.01f);
+}
+
 TEST_F(PipelineTest, SpecularMaterialsFollowTheNetwork) {
     const LabelledCubes cubes(device(), 8);
     for (const bool fit : {false, true}) {

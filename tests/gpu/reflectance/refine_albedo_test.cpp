@@ -324,6 +324,22 @@ TEST_F(RefineAlbedoTest, AMirrorHasNoDiffusePartAndTellsNothingWhereItIsClipped)
     EXPECT_EQ(refine(record).certainty, glm::dvec3(0));
 }
 
+// Of lamps, and of all around: as if the segment had as much less ks.
+TEST_F(RefineAlbedoTest, GlossThatIsAGuessIsNotTakenFromKd) {
+    const Ward material{glm::dvec3(0.4, 0.3, 0.2), glm::dvec3(0.2), 0.3}, half{{}, glm::dvec3(0.1), 0.3};
+    FilledRecord record = random_record(5);
+    observe(record, material);
+    const reference::GatheredRays around{glm::dvec3(0.3), 64, 0};
+    for (const float guess : {0.0f, 0.5f, 1.0f}) {
+        rig_.materials.set(5, glm::vec3(0.2f), 0.3f);
+        rig_.set_unobserved(5, guess);
+        rig_.set_incident(1, around);
+        const Ward taken = guess == 0 ? material : guess == 0.5f ? half : Ward{{}, glm::dvec3(0), 0.3};
+        EXPECT_LT(max_of(glm::abs(refine(record).kd - expected(record, taken, around).kd)), 4 * kPacking) << guess;
+    }
+    EXPECT_GT(max_of(expected(record, half, around).kd - expected(record, material, around).kd), 0.02);
+}
+
 // What a mirror shows does not change while nobody moves. That a part of its segment is none shows once somebody does.
 TEST_F(RefineAlbedoTest, AMirrorThatWasSeenFromOneSideHasNoDiffusePart) {
     ambient_ = glm::dvec3(0.5);

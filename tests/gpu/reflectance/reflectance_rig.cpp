@@ -99,12 +99,20 @@ void ReflectanceRig::change(const std::function<void(graph::FrameGraph&, Reflect
 }
 
 void ReflectanceRig::set_mirror(uint32_t label, float mirror) {
+    set_of_material(label, offsetof(gpu::SegmentMaterial, mirror), mirror);
+}
+
+void ReflectanceRig::set_unobserved(uint32_t label, float share) {
+    set_of_material(label, offsetof(gpu::SegmentMaterial, unobserved), share);
+}
+
+void ReflectanceRig::set_of_material(uint32_t label, uint64_t offset, float value) {
     graph::FrameGraph upload = runner_.begin();
     materials.import(upload);
     runner_.submit(std::move(upload));
     graph::FrameGraph frame = runner_.begin();
-    const uint64_t at = label * sizeof(gpu::SegmentMaterial) + offsetof(gpu::SegmentMaterial, mirror);
-    frame.keep(frame.upload_bytes(materials.import(frame), at, std::as_bytes(std::span(&mirror, 1)), false));
+    const uint64_t at = label * sizeof(gpu::SegmentMaterial) + offset;
+    frame.keep(frame.upload_bytes(materials.import(frame), at, std::as_bytes(std::span(&value, 1)), false));
     runner_.submit(std::move(frame));
     runner_.wait();
 }

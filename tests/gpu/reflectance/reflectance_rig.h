@@ -47,6 +47,8 @@ class ReflectanceRig {
 
     /// Sets how sure a label's segment is to have no diffuse part, beside its material.
     void set_mirror(uint32_t label, float mirror);
+    /// Sets which share of a label's ks is a guess.
+    void set_unobserved(uint32_t label, float share);
 
     struct Counts {
         uint32_t marched = 0, refined = 0;
@@ -69,6 +71,7 @@ class ReflectanceRig {
 
   private:
     ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_, part}; }
+    void set_of_material(uint32_t label, uint64_t offset, float value);
     Counts submit(graph::FrameGraph frame, const ObservationMapIds& ids, const RefinedReflectance& refined);
 
     graph::Runner& runner_;

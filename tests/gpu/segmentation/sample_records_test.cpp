@@ -93,13 +93,13 @@ TEST_F(SampleRecords, KeepsAllOfASmallSegmentAndBetweenHalfAndAllPlacesOfALargeO
     std::vector<gpu::VoxelRecord> records;
     for (uint32_t i = 0; i < 6000; ++i) {
         const uint32_t label = i < 24 ? 1 : i < 49 ? 2 : i < 305 ? 3 : i < 1000 ? 4 : 5;
-        records.push_back(record(i, label, label == 4 ? 3 : 10));
+        records.push_back(record(i, label, label == 4 ? 0 : 10));
     }
     const Sampled sampled = sample(records, 1, 2);
     EXPECT_EQ(sampled.kept[1].size(), 24u);
     EXPECT_EQ(sampled.kept[2].size(), 25u);
     EXPECT_EQ(sampled.kept[3].size(), 256u);
-    EXPECT_EQ(sampled.counts[4].eligible, 0u) << "too few observations";
+    EXPECT_EQ(sampled.counts[4].eligible, 0u) << "no observations";
     EXPECT_EQ(sampled.counts[5].eligible, 5000u);
     EXPECT_THAT(sampled.kept[5].size(), ::testing::AllOf(::testing::Ge(100u), ::testing::Le(256u)));
     EXPECT_TRUE(sampled.drawn[1].empty()) << "fewer than are drawn";
@@ -108,6 +108,23 @@ TEST_F(SampleRecords, KeepsAllOfASmallSegmentAndBetweenHalfAndAllPlacesOfALargeO
         EXPECT_EQ(different.size(), kDraws) << label;
         EXPECT_TRUE(std::ranges::includes(sampled.kept[label], different)) << label;
     }
+}
+
+TEST_F(SampleRecords, RecordsWithFewObservationsFillUpTheRoomThatOthersLeave) {
+    std::vector<gpu::VoxelRecord> records;
+    std::set<uint32_t> often, seldom;
+    for (uint32_t i = 0; i < 6000; ++i) {
+        const uint32_t label = i < 3000 ? 1 : i < 3100 ? 2 : 3;
+        const bool well = label == 1 ? i % 15 == 0 : label == 3;
+        records.push_back(record(i, label, well ? 4 : 1 + i % 3));
+        if (label == 1) (well ? often : seldom).insert(i);
+    }
+    const Sampled sampled = sample(records, 1, 2);
+    EXPECT_TRUE(std::ranges::includes(sampled.kept[1], often)) << "all 200";
+    EXPECT_THAT(sampled.kept[1].size() - often.size(), ::testing::AllOf(::testing::Ge(20u), ::testing::Le(56u)));
+    EXPECT_EQ(sampled.counts[1].eligible, 3000u);
+    EXPECT_EQ(sampled.kept[2].size(), 100u) << "where nothing was seen often, those few times";
+    EXPECT_GT(sampled.kept[3].size(), 100u);
 }
 
 /// kd as the refinement packs it: a shared exponent of 5 bits, which puts a half at 256; and three times 10 bits.

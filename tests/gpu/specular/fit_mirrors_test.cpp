@@ -179,6 +179,19 @@ TEST_F(FitMirrorsTest, WhereMostRaysMeetNothingNothingIsTold) {
     EXPECT_EQ(find().fit.pairs, 0.0f);
 }
 
+// A camera that begins to move sees a small part from several sides, long before the rest.
+TEST_F(FitMirrorsTest, ItIsNotToldByTheFewVoxelsThatWereSeenOften) {
+    for (const uint32_t often : {2u, 3u}) {
+        std::vector<FilledRecord> records = plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0);
+        for (uint32_t i = 0; i < kVoxels; ++i)
+            if (i % 5 >= often) records[i].observations.resize(3);
+        empty();
+        fill(records);
+        const float pairs = find().fit.pairs;
+        EXPECT_TRUE(often == 3 ? pairs > 20 : pairs == 0) << often << " of five: " << pairs;
+    }
+}
+
 TEST_F(FitMirrorsTest, ALookThatFindsNothingKeepsWhatIsKnown) {
     const auto records = plane(1, {.ks = 0.8, .least_kd = 0.02, .most_kd = 0.02}, 0);
     fill(records);

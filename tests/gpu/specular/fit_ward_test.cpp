@@ -200,6 +200,24 @@ TEST_F(FitWardTest, TheNetworksWordGivesWayToObservations) {
     EXPECT_NEAR(fitted.ks_alpha.w, truth.alpha, 2e-3);
 }
 
+// Three views of a voxel lie close together as often as not: what differs between them is as likely an error.
+TEST_F(FitWardTest, VoxelsThatWereSeenSeldomTellOfKdAlone) {
+    std::vector<FilledRecord> records = sphere(1, {{}, glm::dvec3(0.2), 0.15});
+    for (FilledRecord& record : records) record.observations.resize(3);
+    for (FilledRecord record : sphere(2, {{}, glm::dvec3(0.2), 0.15})) {
+        record.observations.resize(4);
+        records.push_back(record);
+    }
+    fill(records);
+    const auto fits = fit({1, 2}, 3);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(fits[1].ks_alpha) - 0.04)), 1e-6) << "the prior";
+    EXPECT_LT(fits[1].confidence, 0.01f);
+    EXPECT_EQ(materials_[1].unobserved, 1.0f);
+    EXPECT_LT(max_of(glm::abs(glm::dvec3(kd_of(fits[1]).value()) - 0.275)), 0.05) << "voxels have any from 0.05 to 0.5";
+    EXPECT_GT(fits[2].ks_alpha.r, 0.1f);
+    EXPECT_LT(materials_[2].unobserved, 0.3f);
+}
+
 TEST_F(FitWardTest, SegmentsWithoutVoxelsOrLightAreUnknown) {
     fill(sphere(1, {{}, glm::dvec3(0.1), 0.15}, 20));
     shadow_all();
