@@ -24,7 +24,7 @@ struct ReconstructionSettings {
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
     /// What lies farther from the camera, metres, throws no shadow until it comes near again; and where it is not in
     /// view, its blocks may leave the device.
-    float around_m = 5;
+    float around_m = 8;
     uint32_t resident_blocks = 65536;  ///< while more are in use, blocks that are far away leave the device; 0: none do
     uint32_t host_mib = 256;  ///< of memory for blocks that left; beyond, they go to a temporary file; 0: no limit
     /// Estimates each frame's colour gains, for cameras that change exposure or white balance by themselves; empty:

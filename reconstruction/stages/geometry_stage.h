@@ -19,7 +19,7 @@ struct GeometrySettings {
     FusionSettings fusion;
     float near_m = 0.1f;         ///< nothing nearer to a camera is cast
     uint32_t remove_every = 16;  ///< blocks without surface are removed every so many frames; 0 keeps them
-    float around_m = 5;          ///< what lies farther from the camera is left alone, but for what frames fuse
+    float around_m = 8;          ///< what lies farther from the camera is left alone, but for what frames fuse
 };
 
 /// A frame's pictures as they are fused. Those of depth have the depth camera's extent.
