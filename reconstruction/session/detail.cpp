@@ -21,6 +21,8 @@ constexpr double kCoarseMedian_m = 4.5, kCoarsePixel_m = 0.005, kFarthest_m = 30
 
 constexpr float kBandVoxels = 4;  // half width of the band at depth 0, of voxels that were given
 
+constexpr float kLeastAround_m = 5;  // a room throws shadows on what a near camera sees
+
 /// The depth at which the band is as wide as voxels can express: 16 voxels, at a slope of 0.005 (FusionSettings).
 constexpr float kReachVoxels = (16 - kBandVoxels) / 0.005f;
 
@@ -70,6 +72,8 @@ void set_detail(Settings& settings, Detail level) {
     set_unless_given(settings, "map.voxel_m", values.map.voxel_m, chosen.voxel_m);
     set_unless_given(settings, "fusion.truncation_m", values.fusion.truncation_m, chosen.truncation_m);
     set_unless_given(settings, "fusion.max_depth_m", values.fusion.max_depth_m, chosen.max_depth_m);
+    // What is fused is shaded.
+    set_unless_given(settings, "map.around_m", values.around_m, std::max(kLeastAround_m, values.fusion.max_depth_m));
 }
 
 std::string sentence_of(const DetailChoice& choice, const Settings& settings, double reach_m) {

@@ -67,6 +67,20 @@ TEST(Detail, SettingsThatAreGivenStay) {
     EXPECT_EQ(Access::values(settings).fusion.truncation_m, 0.015f);
 }
 
+TEST(Detail, ShadowsReachAsFarAsDepth) {
+    const auto around_m = [](Detail level, const char* given = nullptr) {
+        Settings settings;
+        if (given) settings.set("map.around_m", given);
+        set_detail(settings, level);
+        return Access::values(settings).around_m;
+    };
+    EXPECT_EQ(around_m(Detail::kFine), 5.0f) << "a room throws shadows that the camera is too near to see";
+    EXPECT_EQ(around_m(Detail::kNormal), 8.0f);
+    EXPECT_EQ(around_m(Detail::kCoarse), 12.0f);
+    EXPECT_EQ(around_m(Detail::kCoarse, "6"), 6.0f);
+    EXPECT_EQ(ReconstructionSettings().around_m, around_m(Detail::kNormal));
+}
+
 /// The band is 16 voxels wide at most, wherever a reading is.
 TEST(Detail, BandAndReachFollowTheVoxelThatWasGiven) {
     for (const char* voxel_m : {"0.001", "0.0025", "0.005", "0.02"}) {
