@@ -10,7 +10,7 @@ namespace patina {
 struct SampleChoice {
     gpu::VoxelGrid voxels{};        ///< the voxel map's
     gpu::StreamRegion region{};     ///< where their blocks lie
-    uint32_t min_observations = 4;  ///< records with fewer are kept only where there is room
+    uint32_t min_observations = 0;  ///< records with fewer are kept only where there is room
     uint32_t seed = 1;
 };
 

@@ -14,6 +14,7 @@
 #include "passes/state/segment_samples.h"
 #include "passes/state/segment_table.h"
 #include "reconstruction/frame_context.h"
+#include "shared/specular/ward_fit.h"
 
 namespace patina {
 
@@ -36,8 +37,9 @@ struct SegmentationSettings {
     uint32_t prune_frames = 30;     ///< when they were not seen for so many frames
     /// Frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_every = 16;
-    uint32_t sample_observations = 4;  ///< records with fewer are chosen only where there are too few others
-    uint32_t sample_seed = 1;          ///< of the first choice; others differ
+    /// Records with fewer are chosen only where there are too few others.
+    uint32_t sample_observations = gpu::kFitLeastObservations;
+    uint32_t sample_seed = 1;  ///< of the first choice; others differ
 };
 
 /// How often voxels changed from one label to another, after the first frames, and but for frames in which labels were
