@@ -10,7 +10,9 @@
 #include "shared/reflectance/far_field.h"
 #include "shared/reflectance/surroundings.h"
 
-layout(local_size_x = kRecordGroup) in;
+const uint kLanes = 4u;  // of a record, each of which marches every kLanes-th of its rays
+
+layout(local_size_x = kLanes * kRecordGroup) in;
 layout(constant_id = 1) const uint kRays = 8u;  // of a record in one update
 layout(std140, binding = 0) uniform Lights {
     LightHeader header;
@@ -30,23 +32,40 @@ vec3 ray_direction(uvec2 stream, uint index, mat3 frame) {
     return frame * vec3(radius * cos(angle), radius * sin(angle), sqrt(1.0 - u.x));
 }
 
-void main() {
-    const uint item = gl_GlobalInvocationID.x;
-    if (item >= listed[0]) return;
-    const uint record = listed[1u + item];
-    const VoxelRecord known = records[record];
+shared vec3 sums[kRecordGroup][kLanes];
+shared float mets[kRecordGroup][kLanes];
+
+// Sums a lane's rays.
+void gather(VoxelRecord known, uint lane, out vec3 sum, out float met) {
     grid = params.voxels;
     const vec3 normal = surface_normal(known);
     const vec3 point_vox = surface_point_m(known, params.records, params.edge_shift) / grid.voxel_m;
     const mat3 frame = tangent_frame(normal);
     const uvec2 stream = uvec2(hash_of_voxel(known.block_key, voxel_in_block(known)), 0u);
-    vec3 sum = vec3(0.0);
-    float met = 0.0;
-    for (uint i = 0u; i < kRays; ++i) {
+    sum = vec3(0.0);
+    met = 0.0;
+    for (uint i = lane; i < kRays; i += kLanes) {
         const vec3 direction = ray_direction(stream, params.stamp * kRays + i, frame);
         const Incident light = incident_light(point_vox, normal, direction, params.ball_m);
         sum += light.radiance;
         met += light.known ? 1.0 : 0.0;
+    }
+}
+
+void main() {
+    // Rays of one record lie side by side, so that a record takes as long as its longest ray, not as their sum.
+    const uint place = gl_LocalInvocationID.x / kLanes, lane = gl_LocalInvocationID.x % kLanes;
+    const uint item = gl_WorkGroupID.x * kRecordGroup + place;
+    const bool has_record = item < listed[0];
+    const uint record = has_record ? listed[1u + item] : kNoRecord;
+    if (has_record) gather(records[record], lane, sums[place][lane], mets[place][lane]);
+    barrier();
+    if (!has_record || lane != 0u) return;
+    vec3 sum = vec3(0.0);
+    float met = 0.0;
+    for (uint i = 0u; i < kLanes; ++i) {
+        sum += sums[place][i];
+        met += mets[place][i];
     }
     const GatheredLight light = unpack_gathered(gathered[record].rays);
     gathered[record].rays = pack_gathered(with_rays(light, sum, met, float(kRays) - met));

@@ -1,26 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment of the batch: how much of a change in what mirrored rays meet shows in the colours.
-#include "lib/brdf/ward.glsl"
-#include "lib/math/mean.glsl"
-#include "lib/math/random.glsl"
-#include "lib/records/record_hash.glsl"
-#include "lib/records/reflectance.glsl"
-#include "shared/reflectance/far_field.h"
 #include "shared/specular/mirror_fit.h"
 
 layout(local_size_x = kMirrorGroup) in;
-layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };  // count, then labels
-layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
-layout(std430, binding = 2) readonly buffer Pairs { MirrorPair pairs[]; };  // kSegmentSamples per segment
-layout(std430, binding = 3) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
-layout(std430, binding = 4) buffer Mirrors { MirrorFit mirrors[]; };
-layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
+layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };         // count, then labels
+layout(std430, binding = 1) readonly buffer Pairs { MirrorPair pairs[]; };   // kSegmentSamples per segment
+layout(std430, binding = 2) readonly buffer Mirrored { float mirrored[]; };  // kMirrorSets per pair
+layout(std430, binding = 3) buffer Mirrors { MirrorFit mirrors[]; };
+layout(std430, binding = 4) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { MirrorParams params; };
-#include "lib/lighting/march_surroundings.glsl"
 
-const float kLobeAlpha = 0.06;  // of the mirrors that are looked for
-const uint kRaysOfSet = 2u;
 const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
 const uint kLeastPairs = 8u;     // of a look, of kSegmentSamples
@@ -37,27 +27,11 @@ shared uint sum_pairs;
 shared uint sum_views;  // pairs, whether or not their rays meet anything
 shared uint sum_few;    // voxels that were seen too seldom
 
-// The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing.
-// What is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
-float mirrored(vec3 point_m, vec3 normal, vec3 to_viewer, uvec2 stream, uint set) {
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < kRaysOfSet; ++i) {
-        const vec3 direction = sample_ward(kLobeAlpha, normal, to_viewer, random_numbers(stream, set, i).xy);
-        if (dot(direction, normal) > 0.0) sum += min(march_surroundings(point_m, normal, direction).color, 1.0);
-    }
-    return sum.a > 0.0 ? mean_of(sum.rgb) / sum.a : -1.0;
-}
-
-void add_pair(MirrorPair pair) {
-    const VoxelRecord known = records[pair.record];
-    const vec3 normal = surface_normal(known);
-    const vec3 point_m = surface_point_m(known, params.records, params.edge_shift);
-    const uvec2 stream = uvec2(hash_of_voxel(known.block_key, voxel_in_block(known)), params.stamp);
+void add_pair(MirrorPair pair, uint at) {
     vec2 differs = vec2(0.0);
     bool all_met = true;
     for (uint set = 0u; set < 2u; ++set) {
-        const float first = mirrored(point_m, normal, observation_direction(pair.first), stream, 2u * set);
-        const float second = mirrored(point_m, normal, observation_direction(pair.second), stream, 2u * set + 1u);
+        const float first = mirrored[at * kMirrorSets + 2u * set], second = mirrored[at * kMirrorSets + 2u * set + 1u];
         differs[set] = first - second;
         all_met = all_met && first >= 0.0 && second >= 0.0;
     }
@@ -86,13 +60,14 @@ void main() {
     }
     barrier();
     for (uint slot = lane; slot < kSegmentSamples; slot += kMirrorGroup) {
-        const MirrorPair pair = pairs[segment * kSegmentSamples + slot];
+        const uint at = segment * kSegmentSamples + slot;
+        const MirrorPair pair = pairs[at];
         if (pair.record == kNoRecord) {
             if (pair.first == kFewViews) atomicAdd(sum_few, 1u);
             continue;
         }
         atomicAdd(sum_views, 1u);
-        add_pair(pair);
+        add_pair(pair, at);
     }
     barrier();
     // A look that finds next to nothing tells nothing, and is no reason to doubt the ones before. The few rays that

@@ -7,6 +7,7 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kMirrorGroup = 64u;
 INTEROP_CONST uint kFewViews = 1u;
+INTEROP_CONST uint kMirrorSets = 4u;  // of rays, of a pair: 0 and 2 of its first view, 1 and 3 of its second
 
 // Two views of one voxel that lie far apart.
 struct MirrorPair {
