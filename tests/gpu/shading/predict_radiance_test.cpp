@@ -75,7 +75,8 @@ TEST_F(PredictRadiance, AWallOfOneKdUnderALampIsEquation6) {
             const glm::dvec3 point(view.position_m.at(x, y));
             // At the image's border the model has no normal: the records' does, which is kept with 8 bits.
             const bool known = view.normal.at(x, y) != glm::vec4(0);
-            const glm::dvec3 normal = known ? glm::dvec3(view.normal.at(x, y)) : glm::dvec3(0, 0, -1);
+            // Halves, which some devices cut off: its length is 1 only nearly.
+            const glm::dvec3 normal = known ? glm::normalize(glm::dvec3(view.normal.at(x, y))) : glm::dvec3(0, 0, -1);
             const glm::dvec3 offset = glm::dvec3(kLamp.position_m) - point, to_light = glm::normalize(offset);
             const glm::dvec3 received =
                 glm::dvec3(kLamp.intensity) * std::max(glm::dot(normal, to_light), 0.0) / glm::dot(offset, offset);
@@ -294,7 +295,7 @@ TEST_F(PredictRadiance, LightsThatWereNotMarchedYetReachTheSurface) {
     for_each_hit(view, 8, [&](uint32_t x, uint32_t y) {
         ASSERT_EQ(view.rgb.at(x, y), without.rgb.at(x, y));
         ASSERT_EQ(view.light.at(x, y).a, gpu::kNotMarched) << "and says so";
-        ASSERT_EQ(without.light.at(x, y).a, 1) << "the paper's model knows of no shadows";
+        ASSERT_NEAR(without.light.at(x, y).a, 1, kHalf) << "the paper's model knows of no shadows";
     });
 }
 

@@ -50,9 +50,9 @@ NetworkLayer conv(uint32_t outputs, uint32_t pad, bool relu = true) {
 }
 const NetworkLayer kMaxPool{LayerKind::kMaxPool, "max_pool"}, kSamplePool{LayerKind::kSamplePool, "sample_pool"};
 
-/// Of the largest output, in 16-bit floats: their rounding, up to 2^-12, in up to 432 products and sums, by chance
-/// (the square root of their number times as much: 0.007 at most; seen: 0.0026).
-constexpr double kHalfError = 4e-3;
+/// Of the largest output, in 16-bit floats: their error, up to 2^-12 where a device rounds and 2^-11 where it cuts off,
+/// in up to 432 products and sums, by chance (seen: 0.0026 on llvmpipe, 0.0052 on an NVIDIA H200).
+constexpr double kHalfError = 8e-3;
 const NetworkVariant kHalves{NetworkFormat::kHalves, 0};
 
 class RunNetwork : public GpuTest {
