@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 // One invocation per voxel of a segment: how much each of its observations counts for the fit, as an inverse variance.
-// What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure). A
-// clipped channel is at least as bright as it was recorded: here it counts where that estimate is darker.
+// What is far off the segment's estimate so far, with the voxel's own diffuse part, counts less (Geman and McClure),
+// but for clipped channels: they are at least as bright as they were recorded, and count where that estimate is darker.
 #include "lib/brdf/fit_alphas.glsl"
 #include "lib/brdf/ward.glsl"
 #include "lib/map/voxel_chunks.glsl"
@@ -135,7 +135,8 @@ void reweight(float deviation) {
             const vec3 off = (rest[k] - mean) * channels[k];
             const float counted = max(dot(channels[k], vec3(1.0)), 1.0);
             const float share = 1.0 / (1.0 + dot(off, off) * trust[k] * inverse_scale2 / counted);
-            robust[k] = share * share;
+            // By how much a clipped channel is brighter than the estimate nobody knows: it is no outlier.
+            robust[k] = any(observation_clipped(direction_word[k])) ? 1.0 : share * share;
         }
     }
 }

@@ -295,7 +295,8 @@ uint32_t random_at(std::array<int, 3> at) {
 
 uint32_t make_voxel(int distance, uint32_t weight) { return (static_cast<uint32_t>(distance) & 0xffff) | weight << 16; }
 
-/// By coordinates to a hundredth of a millimetre, as devices differ in the last digits. No vertex lies between two steps.
+/// By coordinates to a hundredth of a millimetre, as devices differ in the last digits. No vertex lies between two
+/// steps.
 void sort_points(std::vector<glm::vec3>& points) {
     constexpr float kStep_m = 1.0f / 99730;
     const auto place = [](const glm::vec3& point) {

@@ -60,7 +60,7 @@ WardFitSeries::WardFitSeries(const SpecularPrior& prior, glm::dvec3 ambient)
     : prior_(prior), ambient_(ambient), lines_(kSteps + 1), seen_(kSteps + 1), solutions_(kSteps + 1) {}
 
 /// An inverse variance: what all of a voxel's observations have in common, and a part of the highlight that the
-/// estimate predicts; less, by Geman and McClure, of what is far off it.
+/// estimate predicts; less, by Geman and McClure, of what is far off it, unless a channel is clipped.
 WardFitSeries::Weighed WardFitSeries::weigh(const FittedVoxel& voxel) const {
     Weighed result{voxel, {}};
     std::vector<SeenColor>& seen = result.voxel.observations;
@@ -96,6 +96,7 @@ WardFitSeries::Weighed WardFitSeries::weigh(const FittedVoxel& voxel) const {
     for (int step = 0; step < 2; ++step) {
         const std::array<Mean, 3> mean = means(counts);
         for (size_t k = 0; k < seen.size(); ++k) {
+            if (std::ranges::count(seen[k].clipped, true) > 0) continue;
             double off2 = 0, channels = 0;
             for (size_t c = 0; c < 3; ++c) {
                 if (!counts[k][c]) continue;
