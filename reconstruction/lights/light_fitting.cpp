@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/core/error.h"
-#include "engine/core/seed.h"
 #include "engine/core/shader_light.h"
-#include "passes/lighting/sample_surface.h"
+#include "reconstruction/lights/surface_samples.h"
 
 namespace patina {
 namespace {
@@ -14,19 +12,6 @@ namespace {
 constexpr uint32_t kFinalSteps = 10;
 constexpr float kBrightAlbedo = 0.8f, kBrightQuantile = 0.95f;
 constexpr float kExplained = 0.5f;  // a highlight, by a lamp
-
-std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
-    const ReflectanceStage* reflectance = pipeline.reflectance();
-    if (!reflectance) throw Error("lights cannot be found in a reconstruction without reflectance");
-    pipeline.wait();  // so that all frames are fused
-    graph::FrameGraph frame = pipeline.runner().begin();
-    const ObservationMap& map = reflectance->observations();
-    const uint32_t seed = seed_of_draw(0, pipeline.settings().seed);
-    const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame), seed));
-    pipeline.runner().submit(std::move(frame));
-    pipeline.wait();
-    return samples.as<gpu::LightSample>();
-}
 
 /// The highlights as samples of a pass, which takes whole groups.
 std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
@@ -47,10 +32,11 @@ class TryInVolume {
         while (!places_m.empty()) {
             const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
             places_m = places_m.subspan(batch.size());
-            const std::vector<float> received = try_batch(drawn_, batch, count);
+            const std::vector<float> received = patina::try_lamps(pipeline_, drawn_, batch, count);
             const std::vector<float> reached =
-                highlights_.empty() ? std::vector<float>()
-                                    : try_batch(highlights_, batch, static_cast<uint32_t>(highlights_.size()));
+                highlights_.empty()
+                    ? std::vector<float>()
+                    : patina::try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
             for (size_t i = 0; i < batch.size(); ++i) {
                 const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
                 lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
@@ -63,18 +49,6 @@ class TryInVolume {
     }
 
   private:
-    std::vector<float> try_batch(std::span<const gpu::LightSample> lit, std::span<const glm::vec3> places_m,
-                                 uint32_t count) const {
-        graph::FrameGraph frame = pipeline_.runner().begin();
-        const auto samples = frame.upload<gpu::LightSample>("lighting.samples", lit);
-        const VoxelMap& map = pipeline_.map();
-        const graph::Readback received =
-            frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m, count));
-        pipeline_.runner().submit(std::move(frame));
-        pipeline_.wait();
-        return received.as<float>();
-    }
-
     Pipeline& pipeline_;
     std::span<const gpu::LightSample> drawn_;
     const LitSurface& surface_;

@@ -6,6 +6,7 @@
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
+#include "reconstruction/lights/unseen_light.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
 #include "reconstruction/session/preflight.h"
@@ -22,6 +23,8 @@
 namespace patina {
 
 namespace {
+
+constexpr size_t kFirstUnseenFrames = 8;  // after which light is looked for that no lamp gives
 
 std::string sequence_name(const SessionOptions& options, const SequenceInfo& info) {
     return options.sequence.empty() ? info.name : options.sequence;
@@ -267,6 +270,21 @@ void SessionCore::fuse(Frame frame) {
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
+    look_for_unseen_light();
+}
+
+/// A lighting sequence measures lamps; what else shines is too dark in it. Looked for whenever there are four times as
+/// many frames.
+void SessionCore::look_for_unseen_light() {
+    const ReflectanceStage* reflectance = pipeline_->reflectance();
+    if (!reflectance || !reflectance->gathers() || illumination_.found_by != "lighting sequence") return;
+    size_t frames = kFirstUnseenFrames;
+    while (frames < used_.size()) frames *= 4;
+    if (frames != used_.size() || illumination_.lights.empty()) return;
+    const auto unseen = find_unseen_light(*pipeline_, lights_of(illumination_));
+    if (!unseen) return;
+    illumination_.ambient = glm::dvec3(*unseen);
+    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }
 
 /// Sets the frame's pose where it is tracked.

@@ -141,6 +141,7 @@ class SessionCore {
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
+    void look_for_unseen_light();
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
     void skip(uint32_t index, std::string reason);

@@ -1,5 +1,6 @@
 #include <fstream>
 
+#include "sensor/truth.h"
 #include "tests/cli/run_folder.h"
 
 // A recording whose low-exposure sequence goes round the scene, in which surfaces light each other.
@@ -11,9 +12,9 @@ namespace fs = std::filesystem;
 
 class LowExposure : public RunFolderTest {
   protected:
-    LowExposure() {
-        const Outcome synth = patina({"synth", "bunnies-bounces", "--frames", "3", "--extent", "64x53", "--samples",
-                                      "2", "--out", scene(), "--quiet"});
+    void record(const std::string& what, int frames, const std::string& extent) {
+        const Outcome synth = patina({"synth", what, "--frames", std::to_string(frames), "--extent", extent,
+                                      "--samples", "2", "--out", scene(), "--quiet"});
         EXPECT_EQ(synth.exit_code, 0) << synth.err;
     }
 
@@ -36,6 +37,7 @@ class LowExposure : public RunFolderTest {
 };
 
 TEST_F(LowExposure, ItIsPartOfTheSurfaceAndOfNoCount) {
+    record("bunnies-bounces", 3, "64x53");
     const nlohmann::json with = run_to(out());
     const nlohmann::json without = run_to(beside("without"), {"--lights", scene() + "/truth/lights.json"});
     for (const nlohmann::json& summary : {with, without}) EXPECT_EQ(summary["frames"]["used"], 3);
@@ -47,6 +49,7 @@ TEST_F(LowExposure, ItIsPartOfTheSurfaceAndOfNoCount) {
 }
 
 TEST_F(LowExposure, FramesWithoutAPoseAreLeftOut) {
+    record("bunnies-bounces", 3, "64x53");
     const fs::path trajectory = fs::path(scene()) / "lighting/trajectory.txt";
     std::ifstream in(trajectory);
     std::string first, rest;
@@ -54,6 +57,19 @@ TEST_F(LowExposure, FramesWithoutAPoseAreLeftOut) {
     in.close();
     std::ofstream(trajectory) << "0 nan nan nan 0 0 0 1\n" << rest;
     EXPECT_EQ(run_to(out())["frames"]["used"], 3);
+}
+
+// Frames look down at the floor, and the sky is black at low exposure.
+TEST_F(LowExposure, LightThatNoFrameShowsIsTold) {
+    record("bunnies-sky", 8, "128x106");
+    EXPECT_EQ(run_to(out())["lights"]["ambient"], nlohmann::json({0, 0, 0})) << "the recording says that there is none";
+    nlohmann::json recording = nlohmann::json::parse(std::ifstream(scene() + "/sequence.json"));
+    ASSERT_EQ(recording.erase("indirect_light"), 1);
+    std::ofstream(scene() + "/sequence.json") << recording;
+    const nlohmann::json under_sky = run_to(out())["lights"]["ambient"];
+    EXPECT_GT(under_sky[0], 0.08) << "0.25 arrives at the floor";
+    EXPECT_LT(under_sky[0], 0.35);
+    EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, under_sky[0], 1e-6);
 }
 
 }  // namespace

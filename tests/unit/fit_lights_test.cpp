@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruction/lights/search_lights.h"
+#include "reconstruction/lights/unseen_light.h"
 
 namespace patina {
 namespace {
@@ -44,6 +45,15 @@ class Balls {
     ReceivedLight received_from(const LitSurface& surface, glm::vec3 place_m) const {
         std::vector<float> row;
         for (uint32_t i = 0; i < gpu::kLightSamples; ++i) row.push_back(received(drawn_[i], place_m));
+        return surface.received(row);
+    }
+
+    /// From all lamps together, mean of the channels.
+    ReceivedLight received_of_all(const LitSurface& surface) const {
+        std::vector<float> row(gpu::kLightSamples);
+        for (uint32_t i = 0; i < gpu::kLightSamples; ++i)
+            for (const Lamp& lamp : lamps_)
+                row[i] += glm::dot(lamp.intensity, glm::vec3(1)) / 3 * received(drawn_[i], lamp.place_m);
         return surface.received(row);
     }
 
@@ -103,6 +113,24 @@ class Balls {
 };
 
 const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f, -1.6f, 0.6f}, {5, 5, 5.5f}}};
+
+TEST(FitUnseenLight, IsWhatKnownLampsLeave) {
+    for (const float truth : {0.2f, 0.0f}) {
+        const Balls balls(kTwoLamps, glm::vec3(truth), 0.02f);
+        const LitSurface surface(balls.drawn(), 1);
+        const auto found = fit_unseen_light(surface, balls.received_of_all(surface));
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(*found, truth, 0.03f * truth + 0.005f);
+    }
+}
+
+TEST(FitUnseenLight, NothingIsSaidOfSurfaceThatLampsDoNotExplain) {
+    const Balls balls(kTwoLamps, glm::vec3(0.2f), 0.5f);
+    const LitSurface surface(balls.drawn(), 1);
+    EXPECT_FALSE(fit_unseen_light(surface, balls.received_of_all(surface)));
+    const LitSurface nothing(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
+    EXPECT_FALSE(fit_unseen_light(nothing, balls.received_of_all(nothing)));
+}
 
 TEST(FitIntensities, RatiosOfLampsAndAmbientLightWhereAlbedoIsUnknown) {
     const Balls balls(kTwoLamps, glm::vec3(0.3f));

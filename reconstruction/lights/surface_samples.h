@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "reconstruction/pipeline.h"
+#include "shared/lighting/fit_lights.h"
+
+namespace patina {
+
+/// Samples of what a reconstruction observed, as add_sample_surface draws them. Waits for the device, so that all
+/// frames are fused. Throws Error when the reconstruction has no reflectance.
+std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline);
+
+/// What lamps of intensity 1 at these places give the first `count` samples, as add_try_lights returns it: a row of
+/// gpu::kLightSamples for each. At most gpu::kTrialLights places. Waits for the device.
+std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                             std::span<const glm::vec3> places_m, uint32_t count = gpu::kLightSamples);
+
+}  // namespace patina
