@@ -36,12 +36,13 @@ endif()
 # single passes and in the stored results (Golden), so that all but the first driver run them with PATINA_TEST_FULL alone.
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
-# Of whole reconstructions SwiftShader, which takes minutes for each, does the one in which most passes take part.
-set(PATINA_SWIFTSHADER_TESTS_LEFT_OUT Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.SceneIsValidGltf)
+# Of whole reconstructions all but the first driver do the one in which most passes take part.
+list(APPEND PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers Golden.SceneIsValidGltf)
+list(JOIN PATINA_WHOLE_TESTS ":" PATINA_WHOLE_TESTS)
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.
-set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading|surface|tracking)$")
+set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading)$")
 # The narrower lavapipe runs every pass. Without PATINA_TEST_FULL it leaves out the folder of sessions made of these.
 set(PATINA_LAVAPIPE128_FOLDERS_LEFT_OUT "^reconstruction$")
 
@@ -96,9 +97,6 @@ function(patina_test_on_drivers TARGET NAME)
         set(FILTER "${ARG_FILTER}")
         if(DRIVER MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
             string(APPEND FILTER "-${PATINA_WHOLE_TESTS}")
-            if(DRIVER STREQUAL swiftshader)
-                string(APPEND FILTER ":${PATINA_SWIFTSHADER_TESTS_LEFT_OUT}")
-            endif()
         endif()
         gtest_discover_tests(${TARGET} TEST_PREFIX "${NAME}.${DRIVER}." TEST_LIST ${LIST} TEST_FILTER "${FILTER}"
                              DISCOVERY_MODE PRE_TEST)
