@@ -79,7 +79,7 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
 }
 
 TEST_F(SameBytes, ASeedChangesMaterialsAndNeitherPathNorLights) {
-    record("24");  // until the network has seen a segment
+    record("8");  // until the network has seen a segment
     const auto zero = files_of_run({"--texture", "off"}), one = files_of_run({"--texture", "off", "--seed", "1"}),
                again = files_of_run({"--texture", "off", "--seed", "1"});
     expect_same(one, again);
