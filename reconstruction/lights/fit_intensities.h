@@ -21,6 +21,8 @@ using ReceivedLight = std::shared_ptr<const ReceivedLightValues>;
 /// Which pixel values are explained.
 enum class LightChannel : uint8_t { kRed, kGreen, kBlue, kMean };
 
+constexpr uint32_t kIntensitySteps = 10;  ///< of LitSurface::fit, after which intensities hardly change
+
 /// Lamps' intensities that explain the pixel values of a surface.
 struct FittedIntensities {
     std::vector<double> intensities;  ///< one per lamp, then the ambient irradiance over pi; never below 0

@@ -9,7 +9,6 @@
 namespace patina {
 namespace {
 
-constexpr uint32_t kFinalSteps = 10;
 constexpr float kBrightAlbedo = 0.8f, kBrightQuantile = 0.95f;
 constexpr float kExplained = 0.5f;  // a highlight, by a lamp
 
@@ -32,11 +31,11 @@ class TryInVolume {
         while (!places_m.empty()) {
             const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
             places_m = places_m.subspan(batch.size());
-            const std::vector<float> received = patina::try_lamps(pipeline_, drawn_, batch, count);
+            const std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
             const std::vector<float> reached =
                 highlights_.empty()
                     ? std::vector<float>()
-                    : patina::try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
+                    : try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
             for (size_t i = 0; i < batch.size(); ++i) {
                 const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
                 lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
@@ -94,7 +93,7 @@ FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lam
     for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
     std::array<FittedIntensities, 3> channels;
     for (int c = 0; c < 3; ++c)
-        channels[c] = surface.fit(received, kFinalSteps, surface.size(), static_cast<LightChannel>(c));
+        channels[c] = surface.fit(received, kIntensitySteps, surface.size(), static_cast<LightChannel>(c));
     const double scale = brightest_albedo(channels) / kBrightAlbedo;
     FittedLights fitted;
     for (size_t l = 0; l < lamps.size(); ++l) {
@@ -104,7 +103,7 @@ FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lam
     }
     for (int c = 0; c < 3; ++c) fitted.ambient[c] = static_cast<float>(scale * channels[c].intensities.back());
     sort_brightest_first(fitted.lamps);
-    const FittedIntensities all = surface.fit(received, kFinalSteps, surface.size());
+    const FittedIntensities all = surface.fit(received, kIntensitySteps, surface.size());
     fitted.misfit = static_cast<float>(all.misfit);
     fitted.unexplained = static_cast<float>(unexplained_highlights(surface, lamps, all.intensities));
     return fitted;

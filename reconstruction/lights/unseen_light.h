@@ -17,7 +17,8 @@ namespace patina {
 std::optional<float> fit_unseen_light(const LitSurface& surface, const ReceivedLight& received);
 
 /// That of what the pipeline has observed, under lamps of these intensities. It is taken for white, as its colour is
-/// too uncertain. Waits for the device. Throws Error when the reconstruction has no reflectance.
+/// too uncertain. At least one lamp, at most gpu::kMaxPointLights. Waits for the device. Throws Error when the
+/// reconstruction has no reflectance.
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps);
 
 }  // namespace patina

@@ -144,7 +144,7 @@ void expect_shadow_of_box(const std::vector<gpu::LightSample>& drawn, const floa
 /// How often the reference decided.
 struct Decided {
     uint32_t lit = 0, shaded = 0, low = 0;
-    uint32_t wrong = 0;  ///< where the march passed a voxel by a hair on the other side
+    uint32_t wrong = 0;  ///< where hardware rounds otherwise, and passes a voxel by a hair on the other side
 };
 
 void expect_reference(const std::vector<gpu::LightSample>& drawn, const float* received, glm::vec3 lamp_m,
@@ -203,7 +203,7 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween)
     EXPECT_GT(decided.lit, 1000u);
     EXPECT_GT(decided.shaded, 100u);
     EXPECT_GT(decided.low, 30u);
-    EXPECT_LE(decided.wrong, decided.lit / 1000);
+    EXPECT_LE(decided.wrong, device().caps().software() ? 0 : decided.lit / 1000);
 }
 
 }  // namespace

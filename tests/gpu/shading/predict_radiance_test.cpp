@@ -295,7 +295,9 @@ TEST_F(PredictRadiance, LightsThatWereNotMarchedYetReachTheSurface) {
     for_each_hit(view, 8, [&](uint32_t x, uint32_t y) {
         ASSERT_EQ(view.rgb.at(x, y), without.rgb.at(x, y));
         ASSERT_EQ(view.light.at(x, y).a, gpu::kNotMarched) << "and says so";
-        ASSERT_NEAR(without.light.at(x, y).a, 1, kHalf) << "the paper's model knows of no shadows";
+        // Hardware may cut halves off.
+        ASSERT_NEAR(without.light.at(x, y).a, 1, device().caps().software() ? 0 : kHalf)
+            << "the paper's model knows of no shadows";
     });
 }
 
