@@ -9,10 +9,13 @@ namespace {
 
 ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds& voxels,
                                          const VisibleBlocks& visible, const RaycastImages& model,
-                                         const RestoreDetailInputs& inputs, const OtherLights* other) {
+                                         const RestoreDetailInputs& inputs, std::optional<glm::vec4> mirrored_ball_m,
+                                         const OtherLights* other) {
     ReflectanceStage& stage = *stages.reflectance;
     stage.share_albedo(graph);
-    const auto [predicted, segments] = stage.add_predict(graph, voxels, visible, model, other);
+    const auto [predicted, segments] = mirrored_ball_m
+                                           ? stage.add_predict_mirrors(graph, voxels, visible, model, *mirrored_ball_m)
+                                           : stage.add_predict(graph, voxels, visible, model, other);
     // Under other lights than those of the frames, their colours would bring back the shadows of these.
     const ReflectanceStageSettings& settings = stage.settings();
     const bool detailed = stages.settings.fusion.color && settings.refine.albedo && settings.detail && !other;
@@ -22,7 +25,7 @@ ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stage
 
 }  // namespace
 
-ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera,
+ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera, Gloss gloss,
                            const OtherLights* other) {
     const GeometryStage& geometry = stages.geometry;
     const VoxelMapIds voxels = geometry.map().import(graph);
@@ -38,7 +41,10 @@ ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const Posed
         const RestoreDetailInputs inputs{model.position_m, model.normal, view.color,
                                          static_cast<float>(camera.intrinsics.fx),
                                          stages.reflectance->settings().voxel_m};
-        view.reflectance = add_reflectance(graph, stages, voxels, visible, model, inputs, other);
+        std::optional<glm::vec4> mirrored_ball_m;
+        if (gloss == Gloss::kMirrors && !other)
+            mirrored_ball_m.emplace(glm::vec3(camera.world_from_camera[3]), stages.settings.around_m);
+        view.reflectance = add_reflectance(graph, stages, voxels, visible, model, inputs, mirrored_ball_m, other);
     }
     return view;
 }

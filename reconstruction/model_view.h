@@ -24,8 +24,8 @@ struct ModelImages {
 };
 
 /// Declares a view of the model: what a camera sees of its surface, colours, labels and reflectance. What nobody uses
-/// is culled. Throws Error as Lights::set does.
-ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera,
+/// is culled. Under other lights glossy surfaces mirror nothing. Throws Error as Lights::set does.
+ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera, Gloss gloss,
                            const OtherLights* other = nullptr);
 
 }  // namespace patina

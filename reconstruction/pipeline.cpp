@@ -93,7 +93,7 @@ graph::FrameTime Pipeline::draw(const Intrinsics& camera, const RigidTransform& 
     fuse_waiting();
     fusion_.require(camera, world_from_camera);
     graph::FrameGraph graph = runner_.begin();
-    use(graph, add_model_view(graph, stages_, make_posed_camera(camera, world_from_camera), other));
+    use(graph, add_model_view(graph, stages_, make_posed_camera(camera, world_from_camera), Gloss::kMean, other));
     const graph::FrameTime time = graph.time();
     runner_.submit(std::move(graph));
     return time;

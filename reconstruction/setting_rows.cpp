@@ -311,6 +311,10 @@ constexpr std::array kRows = {
         "Rays of each observed voxel whose shadows are found, by which it gathers the light "
         "that walls and things around it send it, 8 times as many at the end; 0: lamps and the "
         "ambient term are all."),
+    number<&Refl::mirrored_rays>("reflectance.mirrored_rays", "rays", 0, 256,
+                                 "Rays of a glossy pixel by which pictures mirror what is around, of a specular albedo "
+                                 "of 0.5 or more; of others in "
+                                 "proportion; 0: gloss shows the mean of it."),
     number<&Refl::capacity_blocks>("reflectance.initial_blocks", "blocks", 1, kAnyCount,
                                    "Observed blocks that the pool has room for at first; it grows when needed."),
     number<&Refl::capacity_records>("reflectance.initial_records", "records", 1, kAnyCount,

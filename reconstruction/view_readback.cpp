@@ -44,7 +44,7 @@ ModelView ViewReadback::get() const {
 }
 
 ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera) {
-    const ModelImages model = add_model_view(graph, stages, camera);
+    const ModelImages model = add_model_view(graph, stages, camera, Gloss::kMirrors);
     ViewReadback view;
     view.position_m_ = graph.read_back(model.position_m);
     view.normal_ = graph.read_back(model.normal);

@@ -2,6 +2,7 @@
 
 #include "passes/shading/pack_records.h"
 #include "shared/shading/predict_radiance.h"
+#include "shared/shading/reflect_surroundings.h"
 #include "spirv/shaders.h"
 
 namespace patina {
@@ -43,10 +44,11 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
                                  : inputs.most_lights <= gpu::kLightsOfOneWord ? gpu::kLightsOfOneWord
                                                                                : gpu::kMaxPointLights;
     pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
-    pass.specialise("kOfPicture", inputs.of_picture ? 1u : 0u);
+    pass.specialise("kOfPicture", inputs.of_picture ? 1u : 0u).specialise("kGlossApart", inputs.gloss_apart ? 1u : 0u);
     pass.read("Status", state.status).read("Gathered", state.gathered);
     PredictedImages out;
     out.packed = packed;
+    out.glossy = pass.create("Glossy", (inputs.gloss_apart ? uint64_t{extent.area()} : 1u) * sizeof(gpu::GlossyPixel));
     out.kd = pass.create("kd", {extent, vulkan::Format::kRgba16f});
     out.picture_kd = pass.create("picture_kd", {extent, vulkan::Format::kRgba16f});
     out.label = pass.create("label", {extent, vulkan::Format::kR32u});

@@ -27,6 +27,8 @@ struct PredictRadianceInputs {
     /// kd is the one that rgb is made with, so that kd x light and the highlight are rgb. It may be above 1, and
     /// RecordSurroundings::around does not count.
     bool of_picture = false;
+    /// rgb lacks what gloss mirrors of the light that records gathered; add_reflect_surroundings() adds it.
+    bool gloss_apart = false;
 };
 
 /// The records, with those that a view can show by voxel.
@@ -50,6 +52,7 @@ struct PredictedImages {
     /// around knows it; also where kd is not known.
     graph::ImageId light;
     PackedRecords packed{};  ///< what it was made from
+    graph::BufferId glossy;  ///< gpu::GlossyPixel per pixel, where gloss is apart; else without meaning
 };
 
 /// Reflectance and radiance of each surface point (paper, Eq. 6 with Ward's Eq. 2-4, and an ambient term). Kd is the

@@ -36,7 +36,7 @@ void add_fit_mirrors(graph::FrameGraph& frame, const FitMirrorsInputs& inputs, c
 
     auto march = frame.compute("specular.march_mirrors", spirv::march_mirrors);
     march.read("Records", records.records).read("Pairs", pairs).read("Surroundings", inputs.surroundings).push(params);
-    const graph::BufferId mirrored = march.create("Mirrored", pair_count * gpu::kMirrorSets * sizeof(float));
+    const graph::BufferId mirrored = march.create("Mirrored", pair_count * gpu::kMirrorSets * sizeof(glm::vec4));
     march.dispatch_indirect(arguments, sizeof(glm::uvec4));
 
     auto fit = frame.compute("specular.fit_mirrors", spirv::fit_mirrors);

@@ -57,6 +57,7 @@ void add_fit_ward(graph::FrameGraph& frame, const FitWardInputs& inputs, const S
 
     auto solve = frame.compute("specular.solve_ward", spirv::solve_ward);
     solve.read("Batch", batch.list).read("Sums", sums).read("Network", inputs.network);
+    solve.read("Mirrors", fits.mirrors);
     solve.push(params);
     fits.curves = solve.modify("Curves", fits.curves);
     fits.fits = solve.modify("Fits", fits.fits);

@@ -7,6 +7,7 @@
 #include "passes/reflectance/collect_surroundings.h"
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
+#include "passes/shading/reflect_surroundings.h"
 #include "passes/shading/sample_coverage.h"
 #include "shared/fusion/voxel_map.h"
 
@@ -195,21 +196,43 @@ void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
 PredictedView ReflectanceStage::add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                             const VisibleBlocks& visible, const RaycastImages& cast,
                                             const OtherLights* other) {
-    return predict(graph, voxels, visible, cast, other, false);
+    return predict(graph, voxels, visible, cast, other, {});
+}
+
+PredictedView ReflectanceStage::add_predict_mirrors(graph::FrameGraph& graph, const VoxelMapIds& voxels,
+                                                    const VisibleBlocks& visible, const RaycastImages& cast,
+                                                    glm::vec4 ball_m) {
+    PredictRadianceInputs inputs;
+    inputs.gloss_apart = settings_.mirrored_rays > 0 && gathers();
+    PredictedView view = predict(graph, voxels, visible, cast, nullptr, inputs);
+    if (!inputs.gloss_apart) return view;
+    ReflectSurroundingsInputs mirrored;
+    mirrored.position_m = cast.position_m;
+    mirrored.normal = cast.normal;
+    mirrored.rgb = view.images.rgb;
+    mirrored.glossy = view.images.glossy;
+    mirrored.surroundings = state_.import(graph).surroundings;
+    mirrored.lights = lights_.upload(graph);
+    mirrored.ball_m = ball_m;
+    mirrored.rays = settings_.mirrored_rays;
+    mirrored.access = access_.voxels;
+    view.images.rgb = add_reflect_surroundings(graph, map_, voxels, mirrored);
+    return view;
 }
 
 PredictedImages ReflectanceStage::add_predict_picture(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                                       const VisibleBlocks& visible, const RaycastImages& cast) {
-    return predict(graph, voxels, visible, cast, nullptr, true).images;
+    PredictRadianceInputs inputs;
+    inputs.of_picture = true;
+    return predict(graph, voxels, visible, cast, nullptr, inputs).images;
 }
 
 PredictedView ReflectanceStage::predict(graph::FrameGraph& graph, const VoxelMapIds& voxels,
                                         const VisibleBlocks& visible, const RaycastImages& cast,
-                                        const OtherLights* other, bool of_picture) {
+                                        const OtherLights* other, PredictRadianceInputs inputs) {
     Lights others;
     if (other) others.set(other->lights, other->ambient);
     const Lights& shining = other ? others : lights_;
-    PredictRadianceInputs inputs;
     inputs.position_m = cast.position_m;
     inputs.normal = cast.normal;
     inputs.view = visible.view;
@@ -221,9 +244,8 @@ PredictedView ReflectanceStage::predict(graph::FrameGraph& graph, const VoxelMap
     const ObservationMapIds records = observations_.import(graph);
     inputs.segments = add_average(graph, records);
     inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
-    inputs.gathers = settings_.refine.gathered_rays > 0 && !other;
+    inputs.gathers = gathers() && !other;
     inputs.access = access_.voxels;
-    inputs.of_picture = of_picture;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
             inputs.segments};
 }

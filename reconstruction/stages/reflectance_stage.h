@@ -31,6 +31,9 @@ struct ReflectanceStageSettings {
     /// Frames after which a part of the observations gives back what holds no surface any more; 0: never
     uint32_t reclaim_every = 16;
     bool detail = true;  ///< pictures show detail that is restored from the fused colour
+    /// Rays of a glossy pixel by which kept pictures mirror what is around (ReflectSurroundingsInputs::rays); 0: gloss
+    /// shows the mean of it, as in the window. None without light that records gather.
+    uint32_t mirrored_rays = 16;
     ObservationSettings observe;
     ReflectanceSettings refine{.gathered_rays = 4};
     uint32_t capacity_labels = 4096;  ///< materials by label, label 0 included; at first that of the segments
@@ -53,6 +56,10 @@ struct OtherLights {
 
     bool operator==(const OtherLights&) const = default;
 };
+
+/// Whether glossy surfaces of a view mirror what is around them, which takes longer than all else of it, or send the
+/// mean of it.
+enum class Gloss : uint8_t { kMean, kMirrors };
 
 /// What is known of the segments, by label.
 struct SegmentIds {
@@ -138,6 +145,10 @@ class ReflectanceStage {
     /// null. Throws Error as Lights::set does.
     PredictedView add_predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
                               const RaycastImages& cast, const OtherLights* other = nullptr);
+    /// The same, whose glossy surfaces mirror what is around where settings say so. `ball_m`: the camera's centre in
+    /// the world, and how far from it the map is looked at.
+    PredictedView add_predict_mirrors(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
+                                      const RaycastImages& cast, glm::vec4 ball_m);
 
     /// The same with the kd that rgb is made with (PredictRadianceInputs::of_picture), for whoever takes a picture
     /// apart into its diffuse part and highlights. It does not depend on when views were predicted.
@@ -164,7 +175,7 @@ class ReflectanceStage {
 
   private:
     PredictedView predict(graph::FrameGraph& graph, const VoxelMapIds& voxels, const VisibleBlocks& visible,
-                          const RaycastImages& cast, const OtherLights* other, bool of_picture);
+                          const RaycastImages& cast, const OtherLights* other, PredictRadianceInputs inputs);
     graph::BufferId add_average(graph::FrameGraph& graph, const ObservationMapIds& records) const;
     ReflectanceModels models(const RefinedPart& part) {
         return {map_, observations_, lights_, materials_, state_, part};

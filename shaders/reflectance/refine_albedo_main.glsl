@@ -37,6 +37,7 @@ const float kLeastCosine = 0.05;       // to the viewer; records hold no flatter
 const float kLeastAlpha = 0.01;
 const float kReflectedSpreads = 1.5;
 const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
+const float kMirroring = 0.25;       // of what is seen: from so much on it mirrors as its segment does
 const float kNearViews = 0.9994;     // 2 degrees
 const float kFarViews = 0.9962;      // 5 degrees
 const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views
@@ -265,14 +266,13 @@ void main() {
     set_trust(count, noise);
     const Center center = find_center(guess, noise);
     Estimate estimate = robust_mean(center, noise);
-    estimate.diffuse -= gathered_gloss(gathered, header.ambient.rgb, ks);
     const float mirror = has_entry ? material.mirror : 0.0;
-    if (gathered.met > 0.0) {
-        float share = unreflected_share(center, noise, mirror);
-        if (mirror > 0.0) share *= 1.0 - mirror * (1.0 - views_apart(count));
-        estimate.diffuse *= share;
-        estimate.variance *= mix(1.0, share * share, mirror);
-    }
+    float share = gathered.met > 0.0 ? unreflected_share(center, noise, mirror) : 1.0;
+    if (mirror > 0.0 && gathered.met > 0.0) share *= 1.0 - mirror * (1.0 - views_apart(count));
+    // What looks the same from everywhere is no mirror, though its segment is one.
+    const float mirrors = mix(1.0, min((1.0 - share) / kMirroring, 1.0), mirror);
+    estimate.diffuse = share * (estimate.diffuse - mirrors * gathered_gloss(gathered, header.ambient.rgb, ks));
+    estimate.variance *= mix(1.0, share * share, mirror);
     // In a mirror what is always clipped is a lamp or a window.
     albedo[record] = packed_albedo(estimate, irradiance, mix(1.0, estimate.known, mirror));
     status[record].refined = refined_word(header.version, has_entry ? material.version : 0u);

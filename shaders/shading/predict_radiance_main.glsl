@@ -7,10 +7,12 @@
 #include "lib/brdf/ward.glsl"
 #include "lib/camera/camera.glsl"
 #include "lib/camera/view_grid.glsl"
+#include "lib/math/mean.glsl"
 #include "lib/math/pi.glsl"
 #include "lib/records/blend_records.glsl"
 #include "lib/records/gathered_light.glsl"
 #include "shared/shading/predict_radiance.h"
+#include "shared/shading/reflect_surroundings.h"
 
 layout(local_size_x = kPredictGroupX, local_size_y = kPredictGroupY) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position_m;
@@ -32,7 +34,8 @@ layout(binding = 15, rgba16f) uniform writeonly image2D
     light;  // irradiance / pi; a: the part that shadows leave, kNotMarched where it is not known
 layout(std430, binding = 16) readonly buffer Status { RecordStatus status[]; };
 layout(std430, binding = 17) readonly buffer Gathered { RecordSurroundings gathered[]; };
-layout(binding = 18, rgba16f) uniform writeonly image2D picture_kd;  // what light multiplies in rgb
+layout(binding = 18, rgba16f) uniform writeonly image2D picture_kd;              // what light multiplies in rgb
+layout(std430, binding = 19) writeonly buffer Glossy { GlossyPixel glossy[]; };  // where gloss is apart
 layout(push_constant) uniform Push { PredictRadianceParams params; };
 
 layout(constant_id = 0) const uint kMostLights = kMaxPointLights;  // the buffer has no more
@@ -42,7 +45,11 @@ layout(constant_id = 1) const uint kGathers = 0u;  // 1: records know what arriv
 // 1: kd is the one that rgb is made with, without regard to the albedo of the surface around records
 layout(constant_id = 2) const uint kOfPicture = 0u;
 
+// 1: what gloss mirrors of the light from all around is not in rgb, and added later
+layout(constant_id = 3) const uint kGlossApart = 0u;
+
 const float kLeastAlpha = 0.01;
+const float kMetalKd = 0.03, kDiffuseKd = 0.12;
 const float kKnownWeight = 0.1;  // of a channel, from which on the records' own kd is shown
 
 // Copies from the uniform buffer, whose loads software devices do not hoist out of loops.
@@ -194,7 +201,7 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss, vec3 indirect
         for (uint i = 0u; i < count; ++i) add_lamp(sums, i, true, point, point_m, alpha);
     }
     const vec3 light = indirect + sums.received * (1.0 / kPi);
-    const vec3 reflected = kGathers != 0u ? gloss.rgb * indirect : vec3(0.0);
+    const vec3 reflected = kGathers != 0u && kGlossApart == 0u ? gloss.rgb * indirect : vec3(0.0);
     return Shade(kd * light + gloss.rgb * sums.glossy + reflected, light,
                  sums.all > 0.0 ? sums.arriving / sums.all : 0.0);
 }
@@ -206,6 +213,14 @@ vec3 shaded_kd(Reflectance own, Reflectance with_segment) {
     return mix(with_segment.kd, own.kd, clamp(own.weights / kKnownWeight, 0.0, 1.0));
 }
 
+// A metal or a mirror has no diffuse part. What has one is something else in the same segment, such as a frame.
+float metal_share(Reflectance own, float mirror) {
+    const vec3 known_kd = own.known ? own.kd * clamp(own.weights / kKnownWeight, 0.0, 1.0) : vec3(0.0);
+    return 1.0 - mirror * smoothstep(kMetalKd, kDiffuseKd, mean_of(known_kd));
+}
+
+uvec2 pack_halves(vec4 values) { return uvec2(packHalf2x16(values.rg), packHalf2x16(values.ba)); }
+
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(position_m)))) return;
@@ -214,6 +229,7 @@ void main() {
     const vec4 hit = imageLoad(position_m, pixel);
     vec4 known_kd = vec4(0.0), shaded_with = vec4(0.0), gloss = vec4(0.0), shaded = vec4(0.0), received = vec4(0.0);
     uint segment = 0u;
+    GlossyPixel apart = GlossyPixel(uvec2(0u), uvec2(0u));
     if (hit.w > 0.0) {
         const SurfacePoint point = SurfacePoint(hit.xyz / params.voxel_m - 0.5, imageLoad(normal, pixel).xyz,
                                                 normalize(camera_center_m(view.camera) - hit.xyz));
@@ -223,6 +239,7 @@ void main() {
         const bool has_entry = segment != 0u && segment < params.materials;
         const SegmentMaterial material = materials[has_entry ? segment : 0u];
         gloss = has_entry ? material.ks_alpha : vec4(0.0);
+        if (has_entry) gloss.rgb *= metal_share(found, material.mirror);
         // What is a guess was not taken from kd either.
         const vec4 shown_gloss = vec4(gloss.rgb * (1.0 - material.unobserved), gloss.w);
         const Reflectance own = found;
@@ -232,8 +249,10 @@ void main() {
         const vec3 facing = normalize(point.normal != vec3(0.0) ? point.normal : found.normal);
         const vec3 of_picture = shaded_kd(own, found);
         shaded_with = found.known ? vec4(of_picture, 1.0) : vec4(0.0);
-        const Shade seen = shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, shown_gloss,
-                                 indirect_light(marched));
+        const vec3 indirect = indirect_light(marched);
+        const Shade seen =
+            shade(SurfacePoint(point.at_vox, facing, point.to_viewer), hit.xyz, of_picture, shown_gloss, indirect);
+        apart = GlossyPixel(pack_halves(shown_gloss), pack_halves(vec4(indirect, 0.0)));
         known_kd = kOfPicture != 0u ? shaded_with : found.known ? vec4(found.kd, 1.0) : vec4(0.0);
         shaded = found.known ? vec4(seen.rgb, 1.0) : vec4(0.0);
         received = vec4(seen.light, marched ? seen.arrives : kNotMarched);
@@ -244,4 +263,5 @@ void main() {
     imageStore(ks_alpha, pixel, gloss);
     imageStore(rgb, pixel, shaded);
     imageStore(light, pixel, received);
+    if (kGlossApart != 0u) glossy[pixel.y * imageSize(position_m).x + pixel.x] = apart;
 }

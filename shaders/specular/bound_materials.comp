@@ -33,15 +33,17 @@ const float kKsMore = 0.035;        // above it,
 const float kKsBlurError = 0.6;     // there more by the share of blur, because peaks are cut,
 const float kKsUnseen = 0.47;       // and above kKsBefore where nobody saw any; below it more, as there may be none
 const float kKsUnseenLess = 1.0;
-const float kGlossDoubt = 0.15;   // of the doubt, as a deviation of alpha in octaves, and of log(ks)
-const float kKdOffset = 0.0005;   // as kKsOffset
-const float kKdError = 0.01;      // relative: of the light
-const float kKdDoubt = 1.5;       // of the doubt, as a deviation of log(kd)
-const float kKdOfKs = 0.15;       // what kd has of the error of ks where alpha is 1
-const float kDoubtOffset = 0.01;  // of kd: the steps of colours
-const float kUnknownDoubt = 1.0;  // without a second estimate
-const float kHalfKnown = 0.4;     // deviation of log(ks), and of alpha in octaves: of a material that is known half
-const float kDullKs = 0.02;       // whose roughness does not matter
+const float kGlossDoubt = 0.15;    // of the doubt, as a deviation of alpha in octaves, and of log(ks)
+const float kKdOffset = 0.0005;    // as kKsOffset
+const float kKdError = 0.01;       // relative: of the light
+const float kKdDoubt = 1.5;        // of the doubt, as a deviation of log(kd)
+const float kKdOfKs = 0.15;        // what kd has of the error of ks where alpha is 1
+const float kDoubtOffset = 0.01;   // of kd: the steps of colours
+const float kUnknownDoubt = 1.0;   // without a second estimate
+const float kHalfKnown = 0.4;      // deviation of log(ks), and of alpha in octaves: of a material that is known half
+const float kDullKs = 0.02;        // whose roughness does not matter
+const float kMirroredKs = 0.2;     // deviation of log(ks) that mirrored surroundings tell,
+const float kMirroredAlpha = 1.0;  // and of their roughness, in octaves: it is assumed
 
 const float kLevels[kBoundsLevels] = float[](0.5, 0.8, 0.9, 0.95);
 const uint kEighty = 1u, kNinety = 2u;  // of these
@@ -147,33 +149,42 @@ float quantile(uint parameter, float p) {
     return is_alpha ? exp2(x) : max(exp(x) - kKsOffset, 0.0);
 }
 
+// Deviations from the middle of Student's distribution.
+float deviations(float level) { return level * sqrt(2.0 / (1.0 - level * level)); }
+
+// Of what mirrored surroundings tell.
+float mirrored_end(uint parameter, float value, float level) {
+    const float away = deviations(level);
+    return min(value * (parameter == kAlpha ? exp2(kMirroredAlpha * away) : exp(kMirroredKs * away)), 1.0);
+}
+
 // Intervals hold what was estimated.
-void find_end(uint lane, vec4 ks_alpha) {
+void find_end(uint lane, WardFit fit) {
     const uint level = lane / kEnds, parameter = lane % kEnds / 2u;
     if (level >= kBoundsLevels) return;
-    const bool is_high = lane % 2u == 1u;
-    const float end = quantile(parameter, 0.5 + (is_high ? 0.5 : -0.5) * kLevels[level]);
+    const bool is_high = lane % 2u == 1u, is_mirrored = fit.mirrored.w > 0.0;
+    const float share = (is_high ? 0.5 : -0.5) * kLevels[level];
+    const float value = is_mirrored ? fit.mirrored[parameter] : fit.ks_alpha[parameter];
+    const float end = is_mirrored ? mirrored_end(parameter, value, 2.0 * share) : quantile(parameter, 0.5 + share);
     if (is_high) {
-        high[level][parameter] = max(end, ks_alpha[parameter]);
+        high[level][parameter] = max(end, value);
     } else {
-        low[level][parameter] = min(end, ks_alpha[parameter]);
+        low[level][parameter] = min(end, value);
     }
 }
 
 vec4 low_of(uint level) { return vec4(low[level][0], low[level][1], low[level][2], low[level][kAlpha]); }
 vec4 high_of(uint level) { return vec4(high[level][0], high[level][1], high[level][2], high[level][kAlpha]); }
 
-// Deviations from the middle of Student's distribution.
-float deviations(float level) { return level * sqrt(2.0 / (1.0 - level * level)); }
-
 // How sure ks is, and alpha where there is a highlight: never more than the fit is.
-float confidence_of(float of_fit) {
+float confidence_of(WardFit fit) {
     const vec4 least = low_of(kNinety), most = high_of(kNinety);
     const float scale = 0.5 / deviations(kLevels[kNinety]);
     const vec3 ks = scale * log((most.rgb + kKsOffset) / (least.rgb + kKsOffset)) / kHalfKnown;
     const float alpha = scale * log2(most.w / least.w) / kHalfKnown;
     const bool dull = max(max(most.r, most.g), most.b) < kDullKs;
-    return min(of_fit, 1.0 / ((1.0 + dot(ks, ks) / 3.0) * (dull ? 1.0 : 1.0 + alpha * alpha)));
+    if (fit.mirrored.w > 0.0) return 1.0 / (1.0 + dot(ks, ks) / 3.0);
+    return min(fit.confidence, 1.0 / ((1.0 + dot(ks, ks) / 3.0) * (dull ? 1.0 : 1.0 + alpha * alpha)));
 }
 
 // Of log(kd + kKdOffset): light errs in proportion, and kd has what ks has too little of, the more the broader
@@ -192,7 +203,7 @@ void write_level(uint label, uint level, WardFit fit) {
     const vec3 kd_low = known ? max((kd + kKdOffset) / factor - kKdOffset, 0.0) : vec3(0.0);
     const vec3 kd_high = known ? min((kd + kKdOffset) * factor - kKdOffset, 1.0) : vec3(1.0);
     bounds[label * kBoundsLevels + level] =
-        MaterialBounds(vec4(kd_low, confidence_of(fit.confidence)), vec4(kd_high, 0.0), low_of(level), high_of(level));
+        MaterialBounds(vec4(kd_low, confidence_of(fit)), vec4(kd_high, 0.0), low_of(level), high_of(level));
 }
 
 void main() {
@@ -208,7 +219,7 @@ void main() {
     barrier();
     if (lane < kFitAlphas) scale_weights(lane);
     barrier();
-    find_end(lane, fit.ks_alpha);
+    find_end(lane, fit);
     barrier();
     if (lane < kBoundsLevels) write_level(label, lane, fit);
 }

@@ -3,7 +3,6 @@
 #extension GL_EXT_control_flow_attributes : require
 // One invocation per voxel that a segment of the batch keeps: two of its views, one of them at random, and the one
 // farthest from it. Only unclipped ones that are not flat, where dielectrics reflect like mirrors, too.
-#include "lib/math/mean.glsl"
 #include "lib/records/observations.glsl"
 #include "lib/segments/segment_samples.glsl"
 #include "shared/specular/mirror_fit.h"
@@ -35,8 +34,8 @@ MirrorPair choose(uint record) {
     const VoxelRecord known = records[record];
     const vec3 normal = surface_normal(known);
     const uint count = observation_count(known);
-    const MirrorPair none = MirrorPair(kNoRecord, 0u, 0u, 0.0);
-    if (count < kFitLeastObservations) return MirrorPair(kNoRecord, kFewViews, 0u, 0.0);
+    const MirrorPair none = MirrorPair(kNoRecord, 0u, 0u, 0u, vec4(0.0));
+    if (count < kFitLeastObservations) return MirrorPair(kNoRecord, kFewViews, 0u, 0u, vec4(0.0));
     const uint first = sample_hash(known, params.stamp) % count;
     const uint word = load_direction(params.records.chunk_shift, record, first);
     const uint color = load_color(params.records.chunk_shift, record, first);
@@ -59,7 +58,7 @@ MirrorPair choose(uint record) {
     if (second == first) return none;
     const vec3 a = unpack_shared_exponent(color);
     const vec3 b = unpack_shared_exponent(load_color(params.records.chunk_shift, record, second));
-    return MirrorPair(record, word, other, mean_of(a) - mean_of(b));
+    return MirrorPair(record, word, other, 0u, vec4(a - b, 0.0));
 }
 
 void main() {
@@ -67,7 +66,7 @@ void main() {
     const uint label = batch[1u + segment];
     const bool have = label < params.labels && slot < counts[min(label, params.labels - 1u)].kept;
     const uint record = have ? kept[label * kSegmentSamples + slot] : kNoRecord;
-    MirrorPair pair = MirrorPair(kNoRecord, 0u, 0u, 0.0);
+    MirrorPair pair = MirrorPair(kNoRecord, 0u, 0u, 0u, vec4(0.0));
     if (record != kNoRecord && record_label(records[record]) == label) pair = choose(record);
     pairs[gl_GlobalInvocationID.x] = pair;
 }

@@ -26,8 +26,8 @@ const uint kGroup = kChooseSegmentsGroup;
 shared uvec2 candidates[kGroup];  // how urgent, label
 
 void forget(uint label) {
-    fits[label] = WardFit(vec4(0.0), vec4(0.0), 0.0, 0.0, 0u, 0u, vec4(0.0), vec4(0.0));
-    mirrors[label] = MirrorFit(0.0, 0.0, 0.0, 0.0);
+    fits[label] = WardFit(vec4(0.0), vec4(0.0), 0.0, 0.0, 0u, 0u, vec4(0.0), vec4(0.0), vec4(0.0));
+    mirrors[label] = MirrorFit(vec4(0.0), vec4(0.0), 0.0, 0.0, 0u, 0u);
     means[label] = PerceptualMaterial(vec4(0.0), vec4(0.0));
     estimates[label] = WardMaterial(vec4(0.0), vec4(0.0));
     if (label >= params.materials) return;

@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One workgroup per segment of the batch: how much of a change in what mirrored rays meet shows in the colours.
+#include "lib/math/mean.glsl"
 #include "shared/specular/mirror_fit.h"
 
 layout(local_size_x = kMirrorGroup) in;
-layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };         // count, then labels
-layout(std430, binding = 1) readonly buffer Pairs { MirrorPair pairs[]; };   // kSegmentSamples per segment
-layout(std430, binding = 2) readonly buffer Mirrored { float mirrored[]; };  // kMirrorSets per pair
+layout(std430, binding = 0) readonly buffer Batch { uint batch[]; };        // count, then labels
+layout(std430, binding = 1) readonly buffer Pairs { MirrorPair pairs[]; };  // kSegmentSamples per segment
+layout(std430, binding = 2) readonly buffer Mirrored { vec4 mirrored[]; };  // kMirrorSets per pair
 layout(std430, binding = 3) buffer Mirrors { MirrorFit mirrors[]; };
 layout(std430, binding = 4) buffer Materials { SegmentMaterial materials[]; };
 layout(push_constant) uniform Push { MirrorParams params; };
@@ -20,42 +21,50 @@ const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat vi
 const float kMetalKs = 0.25;     // and no metal less
 const float kMirrorStep = 0.04;  // a change that is worth another look at the albedo
 
-shared int sum_product;
-shared int sum_square;
+shared int sum_product[4];  // channels, brightness
+shared int sum_square[4];
 shared int sum_product2;
 shared uint sum_pairs;
 shared uint sum_views;  // pairs, whether or not their rays meet anything
 shared uint sum_few;    // voxels that were seen too seldom
 
+// Colour and brightness.
+vec4 with_mean(vec3 color) { return vec4(color, mean_of(color)); }
+
 void add_pair(MirrorPair pair, uint at) {
-    vec2 differs = vec2(0.0);
+    vec4 differs[2];
     bool all_met = true;
     for (uint set = 0u; set < 2u; ++set) {
-        const float first = mirrored[at * kMirrorSets + 2u * set], second = mirrored[at * kMirrorSets + 2u * set + 1u];
-        differs[set] = first - second;
-        all_met = all_met && first >= 0.0 && second >= 0.0;
+        const vec4 first = mirrored[at * kMirrorSets + 2u * set], second = mirrored[at * kMirrorSets + 2u * set + 1u];
+        differs[set] = with_mean(first.rgb - second.rgb);
+        all_met = all_met && first.a > 0.0 && second.a > 0.0;
     }
     if (!all_met) return;
-    const float brighter = clamp(pair.brighter, -kMost, kMost);
-    const float product = brighter * 0.5 * (differs.x + differs.y);
-    atomicAdd(sum_product, int(round(product * kSteps)));
-    atomicAdd(sum_square, int(round(differs.x * differs.y * kSteps)));
-    atomicAdd(sum_product2, int(round(min(product * product, kMost) * kSteps)));
+    const vec4 brighter = clamp(with_mean(pair.brighter.rgb), -kMost, kMost);
+    const vec4 product = brighter * 0.5 * (differs[0] + differs[1]), square = differs[0] * differs[1];
+    for (uint i = 0u; i < 4u; ++i) {
+        atomicAdd(sum_product[i], int(round(product[i] * kSteps)));
+        atomicAdd(sum_square[i], int(round(square[i] * kSteps)));
+    }
+    atomicAdd(sum_product2, int(round(min(product.w * product.w, kMost) * kSteps)));
     atomicAdd(sum_pairs, 1u);
 }
+
+vec4 sum_of(int sums[4]) { return vec4(sums[0], sums[1], sums[2], sums[3]) / kSteps; }
 
 // 0: what the segment shows is its own colour; 1: it is sure to be a metal or a mirror, which have no diffuse part.
 // The same voxels come again in each look: `looks` times as many pairs make the error no smaller.
 float mirror_of(MirrorFit fit, float looks) {
-    const float sure = fit.product - kErrors * sqrt(fit.product2 * looks);
-    return fit.square > 0.0 ? smoothstep(kGlassKs, kMetalKs, sure / fit.square) : 0.0;
+    const float sure = fit.product.w - kErrors * sqrt(fit.product2 * looks);
+    return fit.square.w > 0.0 ? smoothstep(kGlassKs, kMetalKs, sure / fit.square.w) : 0.0;
 }
 
 void main() {
     const uint segment = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
     const uint label = batch[1u + segment];
+    if (lane < 4u) sum_product[lane] = sum_square[lane] = 0;
     if (lane == 0u) {
-        sum_product = sum_square = sum_product2 = 0;
+        sum_product2 = 0;
         sum_pairs = sum_views = sum_few = 0u;
     }
     barrier();
@@ -76,10 +85,10 @@ void main() {
     if (lane != 0u || label >= params.labels || sum_pairs < max(kLeastPairs, sum_views / kMostMissed)) return;
     if (sum_views < sum_few) return;
     const MirrorFit before = mirrors[label];
-    const MirrorFit fit = MirrorFit(params.memory * before.product + float(sum_product) / kSteps,
-                                    params.memory * before.square + float(sum_square) / kSteps,
+    const MirrorFit fit = MirrorFit(params.memory * before.product + sum_of(sum_product),
+                                    params.memory * before.square + sum_of(sum_square),
                                     params.memory * before.product2 + float(sum_product2) / kSteps,
-                                    params.memory * before.pairs + float(sum_pairs));
+                                    params.memory * before.pairs + float(sum_pairs), 0u, 0u);
     mirrors[label] = fit;
     if (label >= params.materials) return;
     const float mirror = mirror_of(fit, fit.pairs / float(sum_pairs));

@@ -17,7 +17,7 @@ void main() {
     const bool known = label < params.materials;
     const SegmentMaterial material = materials[known ? label : 0u];
     if (known && material.mirror >= kSure) return;
-    mirrors[label] = MirrorFit(0.0, 0.0, 0.0, 0.0);
+    mirrors[label] = MirrorFit(vec4(0.0), vec4(0.0), 0.0, 0.0, 0u, 0u);
     if (known && material.version != 0u)
         materials[label] = SegmentMaterial(vec4(0.0, 0.0, 0.0, 1.0), material.version % 0xffffu + 1u, 0.0, 0.0, 0u);
 }

@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // One invocation per set of rays: what they meet that one view of a pair shows mirrored.
 #include "lib/brdf/ward.glsl"
-#include "lib/math/mean.glsl"
 #include "lib/math/random.glsl"
 #include "lib/records/record_hash.glsl"
 #include "lib/records/reflectance.glsl"
@@ -13,22 +12,21 @@ layout(local_size_x = kMirrorGroup) in;
 layout(std430, binding = 0) readonly buffer Records { VoxelRecord records[]; };
 layout(std430, binding = 1) readonly buffer Pairs { MirrorPair pairs[]; };  // kSegmentSamples per segment
 layout(std430, binding = 2) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
-layout(std430, binding = 3) writeonly buffer Mirrored { float mirrored[]; };  // kMirrorSets per pair
+layout(std430, binding = 3) writeonly buffer Mirrored { vec4 mirrored[]; };  // kMirrorSets per pair
 layout(push_constant) uniform Push { MirrorParams params; };
 #include "lib/lighting/march_surroundings.glsl"
 
-const float kLobeAlpha = 0.06;  // of the mirrors that are looked for
 const uint kRaysOfSet = 2u;
 
-// The mean brightness that the rays of a set meet on the way to the viewer; a negative one where they meet nothing.
+// The mean colour that the rays of a set meet on the way to the viewer; a is 0 where they meet nothing.
 // What is brighter than pixels can be counts as that bright: views of it are clipped, and left out.
-float mean_met(vec3 point_m, vec3 normal, vec3 to_viewer, uvec2 stream, uint set) {
+vec4 mean_met(vec3 point_m, vec3 normal, vec3 to_viewer, uvec2 stream, uint set) {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < kRaysOfSet; ++i) {
-        const vec3 direction = sample_ward(kLobeAlpha, normal, to_viewer, random_numbers(stream, set, i).xy);
+        const vec3 direction = sample_ward(kMirrorAlpha, normal, to_viewer, random_numbers(stream, set, i).xy);
         if (dot(direction, normal) > 0.0) sum += min(march_surroundings(point_m, normal, direction).color, 1.0);
     }
-    return sum.a > 0.0 ? mean_of(sum.rgb) / sum.a : -1.0;
+    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
 
 void main() {

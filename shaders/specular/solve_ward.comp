@@ -8,6 +8,8 @@
 #include "lib/brdf/fit_prior.glsl"
 #include "lib/brdf/ward.glsl"
 #include "lib/lighting/set_material.glsl"
+#include "lib/math/mean.glsl"
+#include "shared/specular/mirror_fit.h"
 #include "shared/specular/specular_estimates.h"
 #include "shared/specular/ward_fit.h"
 
@@ -18,6 +20,7 @@ layout(std430, binding = 2) readonly buffer Network { WardMaterial network[]; };
 layout(std430, binding = 3) buffer Curves { FitCurve curves[]; };  // kFitAlphas per label
 layout(std430, binding = 4) buffer Fits { WardFit fits[]; };
 layout(std430, binding = 5) buffer Materials { SegmentMaterial materials[]; };
+layout(std430, binding = 6) readonly buffer Mirrors { MirrorFit mirrors[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
 const float kAlphaDeviation = 1.3;  // octaves, of alpha from kAlphaBefore, where no network has said anything
@@ -27,6 +30,11 @@ const float kDullKs = 0.01;                // whose roughness does not matter
 const float kIgnoredVoxels = 2.0;          // seen near the peak: so few may be there for wrong normals,
 const float kSeenVoxels = 6.0;             // and with so many all are believed
 const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known half
+
+const float kSureMirror = 0.9;
+const float kObservedConfidence = 0.5;   // from which on highlights tell of gloss
+const float kAgreeingShare = 0.5;        // of the ks that surroundings tell
+const float kLeastShareOfSquare = 0.25;  // of what is mirrored, of a channel: with less it tells nothing of its own
 
 struct Prior {
     float alpha;
@@ -111,6 +119,17 @@ Estimate averaged(uint best, float unit) {
                     share / sum * (dull ? 1.0 : 1.0 / (1.0 + octaves2 / (kSharpAlpha * kSharpAlpha))));
 }
 
+// Of a segment that is sure to be a metal or a mirror: what the surroundings that it mirrors tell, where highlights
+// tell too little, or far less, as they do when they are sharp and clipped. Else 0.
+vec4 mirrored_material(uint label, float mirror, Estimate highlights) {
+    const MirrorFit fit = mirrors[label];
+    if (mirror < kSureMirror || fit.square.w <= 0.0) return vec4(0.0);
+    const vec3 square = max(fit.square.rgb, kLeastShareOfSquare * fit.square.w);
+    const vec3 ks = clamp(fit.product.rgb / square, 0.0, 1.0);
+    const bool agree = mean_of(highlights.ks_alpha.rgb) > kAgreeingShare * mean_of(ks);
+    return agree && highlights.confidence >= kObservedConfidence ? vec4(0.0) : vec4(ks, kMirrorAlpha);
+}
+
 void main() {
     const uint segment = gl_WorkGroupID.x, a = gl_LocalInvocationIndex;
     const uint label = batch[1u + segment];
@@ -140,7 +159,11 @@ void main() {
     fit.confidence = estimate.confidence;
     fit.deviation = sqrt(max(ks_misfit[best].w, 0.0) / max(fit.color2_weight.w, 1.0));
     fit.estimates = fit.color2_weight.w > 0.0 ? min(fit.estimates + 1u, 0xffffu) : 0u;
+    const bool has_entry = label < params.materials;
+    const SegmentMaterial before = materials[has_entry ? label : 0u];
+    fit.mirrored = has_entry ? mirrored_material(label, before.mirror, estimate) : vec4(0.0);
     fits[label] = fit;
-    if (label < params.materials)
-        materials[label] = changed_material(materials[label], fit.ks_alpha, 1.0 - estimate.observed);
+    if (!has_entry) return;
+    materials[label] = fit.mirrored.w > 0.0 ? changed_material(before, fit.mirrored, 0.0)
+                                            : changed_material(before, fit.ks_alpha, 1.0 - estimate.observed);
 }

@@ -7,22 +7,27 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kMirrorGroup = 64u;
 INTEROP_CONST uint kFewViews = 1u;
-INTEROP_CONST uint kMirrorSets = 4u;  // of rays, of a pair: 0 and 2 of its first view, 1 and 3 of its second
+INTEROP_CONST float kMirrorAlpha = 0.06f;  // roughness of the mirrors that are looked for
+INTEROP_CONST uint kMirrorSets = 4u;       // of rays, of a pair: 0 and 2 of its first view, 1 and 3 of its second
 
 // Two views of one voxel that lie far apart.
 struct MirrorPair {
     uint record;  // kNoRecord: none
     uint first;   // direction words; of none, kFewViews where the voxel was seen too seldom
     uint second;
-    float brighter;  // by how much the first is, linear, mean of the channels
+    uint pad0;
+    vec4 brighter;  // rgb: by how much the first is, linear
 };
 
 // Sums over pairs, by label.
 struct MirrorFit {
-    float product;   // of the difference in brightness and the difference in what the mirrored rays meet
-    float square;    // of the latter, from two sets of rays
-    float product2;  // the square of the first, which tells its error
+    vec4 product;    // rgb: of the difference in colour and the difference in what the mirrored rays meet; w: of
+                     // brightness
+    vec4 square;     // of the latter, from two sets of rays
+    float product2;  // the square of product.w, which tells its error
     float pairs;
+    uint pad0;
+    uint pad1;
 };
 
 struct KeepMirrorsParams {

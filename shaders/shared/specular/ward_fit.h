@@ -54,6 +54,9 @@ struct WardFit {
     // The albedo of the whole segment, before refinement, is the one over the other.
     vec4 diffuse;  // rgb: weighted sum of light times what highlights leave of the colour it makes
     vec4 light2;   // rgb: of the light's square; 0: not known
+    // Of a metal or a mirror whose highlights tell too little: what mirrored surroundings tell. rgb: ks; w: roughness,
+    // 0: none of it.
+    vec4 mirrored;
 };
 
 // What of a segment changed since it was estimated last.

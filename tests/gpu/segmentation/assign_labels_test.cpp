@@ -184,7 +184,7 @@ TEST_F(AssignLabels, TheAlbedoDecidesOnMergingWhereItIsKnownOfBoth) {
 TEST_F(AssignLabels, SureSpecularFitsHaveToAgree) {
     const glm::vec3 grey(0.4f);
     const auto fit = [](float ks, float alpha, float confidence) {
-        return gpu::WardFit{{ks, ks, ks, alpha}, {}, confidence, 0, 1, 0, {}, {}};
+        return gpu::WardFit{{ks, ks, ks, alpha}, {}, confidence, 0, 1, 0, {}, {}, {}};
     };
     const auto with = [&](const gpu::WardFit& one, const gpu::WardFit& two) {
         return merges(true, {grey, grey}, 20, {{}, one, two});

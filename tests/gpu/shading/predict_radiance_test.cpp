@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <numbers>
 #include <random>
+#include <utility>
+
+#include <glm/gtc/packing.hpp>
 
 #include "shared/shading/predict_radiance.h"
 #include "tests/gpu/gpu_test.h"
@@ -390,6 +393,46 @@ TEST_F(PredictRadiance, SegmentsMeetBetweenTheirVoxels) {
         ASSERT_EQ(view.label.at(x, y), left ? 1u : 2u) << x << ' ' << y;
         ASSERT_EQ(view.ks_alpha.at(x, y), left ? glm::vec4(0.25f, 0.25f, 0.25f, 0.5f) : glm::vec4(0));
     });
+}
+
+// A frame in a mirror's segment is no mirror.
+TEST_F(PredictRadiance, WhatHasADiffusePartIsNoMetalThoughItsSegmentIs) {
+    ShadingRig rig = this->rig(wall_);
+    rig.materials.set(3, glm::vec3(0.8f), 0.25f);
+    for (const float mirror : {1.0f, 0.0f}) {
+        rig.mirrors[3] = mirror;
+        for (const auto& [kd, ks] : {std::pair{0.0, 0.8}, {0.03, 0.8}, {0.075, 0.4}, {0.12, 0.0}, {0.5, 0.0}}) {
+            rig.paint([&](const RecordPlace&) { return painted(glm::dvec3(kd), 3); });
+            const ShadedView view = rig.predict(ShadingRig::camera(), kPose);
+            const double expected = mirror == 1 ? ks : 0.8;
+            const size_t hits = for_each_hit(view, 4, [&](uint32_t x, uint32_t y) {
+                ASSERT_NEAR(view.ks_alpha.at(x, y).r, expected, 0.03) << mirror << ' ' << kd;
+                ASSERT_EQ(view.ks_alpha.at(x, y).a, 0.25f);
+            });
+            EXPECT_GT(hits, 1000u);
+        }
+    }
+}
+
+TEST_F(PredictRadiance, GlossThatIsApartIsWhatThePictureLacks) {
+    ShadingRig rig = this->rig(wall_);
+    const glm::dvec3 ks(0.5, 0.25, 0.125), around(0.25, 0.5, 0.125);
+    rig.materials.set(3, glm::vec3(ks), 0.25f);
+    rig.incident = reference::GatheredRays{around, 64, 0};
+    rig.paint([&](const RecordPlace&) { return painted(glm::dvec3(0.3), 3); });
+    const ShadedView whole = rig.predict(ShadingRig::camera(), kPose);
+    rig.gloss_apart = true;
+    const ShadedView apart = rig.predict(ShadingRig::camera(), kPose);
+    ASSERT_EQ(apart.glossy.size(), apart.rgb.extent().area());
+    const size_t hits = for_each_hit(apart, 0, [&](uint32_t x, uint32_t y) {
+        const gpu::GlossyPixel& pixel = apart.glossy[y * apart.rgb.extent().width + x];
+        const glm::vec4 gloss(glm::unpackHalf2x16(pixel.ks_alpha.x), glm::unpackHalf2x16(pixel.ks_alpha.y));
+        ASSERT_EQ(gloss, glm::vec4(glm::vec3(ks), 0.25f));
+        const glm::dvec2 first(glm::unpackHalf2x16(pixel.indirect.x)), last(glm::unpackHalf2x16(pixel.indirect.y));
+        ASSERT_LT(max_of(glm::abs(glm::dvec3(first, last.x) - around)), kHalf);
+        ASSERT_LT(off(whole.rgb.at(x, y) - apart.rgb.at(x, y), ks * around), 2 * kHalf);
+    });
+    EXPECT_GT(hits, 1000u);
 }
 
 TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {

@@ -136,7 +136,19 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
     write(stored);
 }
 
+void ShadingRig::set_mirror(uint32_t label, float mirror) {
+    graph::FrameGraph upload = runner_.begin();
+    materials.import(upload);
+    runner_.submit(std::move(upload));
+    graph::FrameGraph frame = runner_.begin();
+    const uint64_t at = label * sizeof(gpu::SegmentMaterial) + offsetof(gpu::SegmentMaterial, mirror);
+    frame.keep(frame.upload_bytes(materials.import(frame), at, std::as_bytes(std::span(&mirror, 1)), false));
+    runner_.submit(std::move(frame));
+    runner_.wait();
+}
+
 ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& world_from_camera, bool shadows) {
+    for (const auto& [label, mirror] : mirrors) set_mirror(label, mirror);
     graph::FrameGraph frame = runner_.begin();
     const VoxelMap& map = observations_.fusion().map();
     const VoxelMapIds voxels = map.import(frame);
@@ -156,7 +168,8 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
         shadows,
         preferred_map_access(runner_.device().caps(), map),
         incident.has_value(),
-        of_picture};
+        of_picture,
+        gloss_apart};
     const PredictedImages predicted = add_predict_radiance(
         frame, map, voxels, observations_.map(), observations_.map().import(frame), state_.import(frame), inputs);
     const graph::Readback position = frame.read_back(model.position_m), normal = frame.read_back(model.normal),
@@ -166,11 +179,13 @@ ShadedView ShadingRig::predict(const Intrinsics& camera, const RigidTransform& w
                           coverage = frame.read_back(
                               add_sample_coverage(frame, observations_.map(), observations_.map().import(frame),
                                                   {model.position_m, visible.view, visible.grid, predicted.packed}));
+    const graph::Readback glossy = frame.read_back(predicted.glossy);
     runner_.submit(std::move(frame));
     runner_.wait();
     return {position.image<glm::vec4>(),       widen(normal.image<uint64_t>()), widen(kd.image<uint64_t>()),
             widen(gloss.image<uint64_t>()),    widen(rgb.image<uint64_t>()),    widen(light.image<uint64_t>()),
-            widen(coverage.image<uint64_t>()), label.image<uint32_t>(),         widen(picture_kd.image<uint64_t>())};
+            widen(coverage.image<uint64_t>()), label.image<uint32_t>(),         widen(picture_kd.image<uint64_t>()),
+            glossy.as<gpu::GlossyPixel>()};
 }
 
 std::vector<gpu::SampledReflectance> ShadingRig::sample(const std::vector<glm::vec3>& points_m,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "passes/state/reflectance_state.h"
 #include "passes/state/segment_materials.h"
 #include "shared/reflectance/reflectance.h"
+#include "shared/shading/reflect_surroundings.h"
 #include "shared/shading/sample_reflectance.h"
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/reference/reflectance/smooth_irradiance.h"
@@ -28,6 +30,7 @@ struct ShadedView {
     Image<glm::vec4> position_m, normal, kd, ks_alpha, rgb, light, coverage;
     Image<uint32_t> label;
     Image<glm::vec4> picture_kd;
+    std::vector<gpu::GlossyPixel> glossy;  ///< where gloss is apart
 };
 
 /// A model whose geometry and records come from the passes, and whose albedo, visibility and labels are painted on, for
@@ -60,7 +63,9 @@ class ShadingRig {
     SegmentMaterials materials;
     std::optional<reference::GatheredRays> incident;  ///< light from all around of every record that is painted
 
-    bool of_picture = false;  ///< views have the kd that their pictures are made with
+    bool of_picture = false;            ///< views have the kd that their pictures are made with
+    bool gloss_apart = false;           ///< PredictRadianceInputs::gloss_apart
+    std::map<uint32_t, float> mirrors;  ///< SegmentMaterial::mirror by label, of materials that are set
 
   private:
     struct Stored {
@@ -70,6 +75,7 @@ class ShadingRig {
         std::vector<gpu::RecordSurroundings> gathered;
     };
     Stored read();
+    void set_mirror(uint32_t label, float mirror);
     void write(const Stored& stored);
 
     double voxel_m_;

@@ -69,7 +69,8 @@ class ChooseSegmentsTest : public GpuTest {
     /// Something to be forgotten.
     void estimate(uint32_t label, float confidence = 1) {
         graph::FrameGraph frame = runner().begin();
-        const gpu::WardFit fit{glm::vec4(1), glm::vec4(1), confidence, 1, 5, 0, glm::vec4(1), glm::vec4(1)};
+        const gpu::WardFit fit{glm::vec4(1), glm::vec4(1), confidence,  1, 5, 0,
+                               glm::vec4(1), glm::vec4(1), glm::vec4(0)};
         const gpu::PerceptualMaterial mean{glm::vec4(1), glm::vec4(1)};
         frame.keep(frame.upload_bytes(table_.import(frame).fits, label * sizeof(fit), std::as_bytes(std::span(&fit, 1)),
                                       false));

@@ -30,6 +30,7 @@ double wall(double x, double y) {
 struct Surface {
     double ks = 0;
     double least_kd = 0.3, most_kd = 0.3;  ///< voxels have different ones
+    glm::dvec3 tint{1};                    ///< of ks
 };
 
 class FitMirrorsTest : public FitWardTest {
@@ -37,7 +38,7 @@ class FitMirrorsTest : public FitWardTest {
     struct Found {
         gpu::MirrorFit fit;
         gpu::SegmentMaterial material;
-        double ks() const { return double{fit.product} / double{fit.square}; }
+        double ks() const { return double{fit.product.w} / double{fit.square.w}; }
     };
 
     /// What a viewer sees mirrored: the mean over Ward's lobe, by plain Monte Carlo.
@@ -67,8 +68,8 @@ class FitMirrorsTest : public FitWardTest {
             const double own = level(random_) * kIrradiance;
             while (record.observations.size() < 12) {
                 const glm::dvec3 direction = direction_about({0, 0, 1}, 0.72);
-                const double seen = own + surface.ks * mirrored(glm::dvec3(kept_point_m(map_, record)), direction);
-                record.observations.push_back({glm::vec3(direction), glm::vec3(static_cast<float>(seen)), {}});
+                const double shown = surface.ks * mirrored(glm::dvec3(kept_point_m(map_, record)), direction);
+                record.observations.push_back({glm::vec3(direction), glm::vec3(own + shown * surface.tint), {}});
             }
             records.push_back(record);
         }
@@ -136,6 +137,17 @@ TEST_F(FitMirrorsTest, AMirrorIsFoundWithItsKs) {
     EXPECT_NEAR(found.ks(), 0.8, 0.2);
     EXPECT_GT(found.material.mirror, 0.95f);
     EXPECT_GT(found.material.version, 0u);
+}
+
+TEST_F(FitMirrorsTest, AGoldenMirrorHasItsColour) {
+    const glm::dvec3 tint(1, 0.7, 0.3);
+    fill(plane(1, {.ks = 0.9, .least_kd = 0.02, .most_kd = 0.02, .tint = tint}, 0));
+    const Found found = find(6);
+    EXPECT_GT(found.material.mirror, 0.95f);
+    // The wall is grey, so that all channels have the same error.
+    const glm::dvec3 ks = glm::dvec3(found.fit.product) / glm::dvec3(found.fit.square);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ks[c] / ks[0], tint[c], 0.02) << c;
+    EXPECT_NEAR(ks[0], 0.9, 0.22);
 }
 
 TEST_F(FitMirrorsTest, PrintIsNoMirror) {

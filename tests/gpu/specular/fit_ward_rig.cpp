@@ -96,6 +96,14 @@ void FitWardTest::shadow_all() {
     run(std::move(frame));
 }
 
+void FitWardTest::set_mirror(uint32_t label, const gpu::MirrorFit& fit, float mirror) {
+    graph::FrameGraph frame = runner().begin();
+    frame.keep(frame.upload_bytes(table_.import(frame).mirrors, label * sizeof(fit), std::as_bytes(std::span(&fit, 1)),
+                                  false));
+    run(std::move(frame));
+    rig_.set_mirror(label, mirror);
+}
+
 void FitWardTest::set_network(uint32_t label, glm::vec4 ks_alpha) {
     graph::FrameGraph frame = runner().begin();
     const gpu::WardMaterial said{glm::vec4(0.2f, 0.2f, 0.2f, 5), ks_alpha};

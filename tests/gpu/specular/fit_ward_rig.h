@@ -8,6 +8,7 @@
 
 #include "passes/specular/fit_ward.h"
 #include "shared/reflectance/reflectance.h"
+#include "shared/specular/mirror_fit.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
 #include "tests/reference/specular/fit_ward.h"
@@ -40,6 +41,9 @@ class FitWardTest : public GpuTest {
 
     /// What no light reaches.
     void shadow_all();
+
+    /// What mirrored surroundings are taken to have told of a label, and how sure it is to be a mirror.
+    void set_mirror(uint32_t label, const gpu::MirrorFit& fit, float mirror);
 
     /// What the network is taken to have said.
     void set_network(uint32_t label, glm::vec4 ks_alpha);

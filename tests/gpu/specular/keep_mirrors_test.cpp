@@ -11,7 +11,7 @@ constexpr uint32_t kLabels = 70, kMaterials = 69;  // no multiples of a group
 class KeepMirrorsTest : public GpuTest {};
 
 TEST_F(KeepMirrorsTest, OnlySureMirrorsStay) {
-    std::vector<gpu::MirrorFit> mirrors(kLabels, {1, 2, 3, 4});
+    std::vector<gpu::MirrorFit> mirrors(kLabels, {{1, 1, 1, 1}, {2, 2, 2, 2}, 3, 4, 0, 0});
     std::vector<gpu::SegmentMaterial> materials(kMaterials);
     for (uint32_t label = 0; label < kMaterials; ++label)
         materials[label] = {glm::vec4(0.2f, 0.3f, 0.4f, 0.1f), label == 3 ? 0 : label + 1, float(label) / 70, 0, 0};

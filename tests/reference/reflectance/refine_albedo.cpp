@@ -121,7 +121,8 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
             unreflected = std::clamp(1 - spreads * std::max(middle.spread - noise, 0.0) / middle.mean, 0.0, 1.0) *
                           (1 - mirror * seen_from_one_side(observations));
     }
-    const glm::dvec3 gloss_of_all = rays > 0 ? material.ks * around : glm::dvec3(0);
+    const double mirrors = 1 - mirror + mirror * std::min((1 - unreflected) / 0.25, 1.0);
+    const glm::dvec3 gloss_of_all = rays > 0 ? mirrors * material.ks * around : glm::dvec3(0);
     const glm::dvec3 irradiance = shade(white, point, lights, around, point.normal);
     std::vector<ReceivedLight> doubtful;
     for (ReceivedLight light : lights) {
