@@ -14,7 +14,7 @@ layout(push_constant) uniform Push { MirrorParams params; };
 
 const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
-const uint kLeastPairs = 8u;     // of a look, of kSegmentSamples
+const uint kLeastPairs = 24u;    // of a look, of kSegmentSamples: fewer agree by chance
 const uint kMostMissed = 4u;     // of so many pairs of views, at least one shows what surroundings are known of
 const float kErrors = 2.0;       // from the estimate down to what is sure
 const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat views,
