@@ -152,6 +152,35 @@ TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     EXPECT_LT(rgb_errors[rgb_errors.size() * 8 / 10], 0.08);
 }
 
+TEST_F(PipelineTest, GlossInPicturesMirrorsTheRoom) {
+    constexpr uint32_t kFrames = 4;
+    const LabelledCubes cubes(device(), kFrames);
+    std::array<ModelView, 2> views;
+    for (size_t mirrors = 0; mirrors < 2; ++mirrors) {
+        ReconstructionSettings settings = small_settings_with_reflectance();
+        settings.reflectance->refine.gathered_rays = 4;
+        settings.reflectance->mirrored_rays = mirrors == 1 ? 16 : 0;
+        Pipeline pipeline(device(), settings);
+        cubes.prepare(pipeline);
+        for (const sensor::Material& m : cubes.materials) pipeline.set_material(m.id, glm::vec3(0.5f), 0.05f);
+        for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
+        const ViewReadback pending = pipeline.view(cubes.info.color, *cubes.frames.back().world_from_camera);
+        expect_sound(pipeline, mirrors ? "a view with mirrors" : "a view with means");
+        pipeline.wait();
+        views[mirrors] = pending.get();
+        ASSERT_TRUE(views[mirrors].reflectance);
+    }
+    EXPECT_EQ(views[0].reflectance->kd.pixels(), views[1].reflectance->kd.pixels());
+    const auto &means = views[0].reflectance->model_rgb, &mirrored = views[1].reflectance->model_rgb;
+    size_t differ = 0, known = 0;
+    for (size_t i = 0; i < means.pixels().size(); ++i) {
+        known += means.pixels()[i].a > 0;
+        differ += glm::length(means.pixels()[i] - mirrored.pixels()[i]) > 0.02f;
+    }
+    EXPECT_GT(known, 20000u);
+    EXPECT_GT(differ, known / 4);
+}
+
 // A simplified surface: two triangles of a floor, with a wrong albedo at their corners.
 TEST_F(PipelineTest, TexturesHoldWhatRecordsKnowBetweenVertices) {
     constexpr uint32_t kFrames = 4;
