@@ -28,15 +28,6 @@ const float kLeastAlpha = 0.01;
 
 vec4 unpack_halves(uvec2 packed) { return vec4(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y)); }
 
-// The Ward lobe times cos_i over the density of sample_ward(): what a ray counts. 0 at or below the horizon.
-float ray_weight(vec3 facing, vec3 to_light, vec3 to_viewer) {
-    const float cos_i = dot(facing, to_light), cos_o = dot(facing, to_viewer);
-    if (min(cos_i, cos_o) <= 0.0) return 0.0;
-    const vec3 sum = to_light + to_viewer;
-    const float reach = length(sum), cos_h = dot(facing, sum) / reach;
-    return cos_h * cos_h * cos_h * 0.5 * reach * sqrt(cos_i / cos_o);
-}
-
 // The radiance that a gloss of 1 sends to the viewer. Rays that meet nothing known bring the light from all around.
 vec3 mirrored(uvec2 pixel, vec3 point_m, vec3 facing, float alpha, vec3 indirect, uint rays) {
     grid = params.voxels;
@@ -46,8 +37,9 @@ vec3 mirrored(uvec2 pixel, vec3 point_m, vec3 facing, float alpha, vec3 indirect
     for (uint i = 0u; i < rays; ++i) {
         const vec2 u = unit_interval(stratified_words(stream, i, 0u)).xy;
         const vec3 direction = sample_ward(alpha, facing, to_viewer, u);
-        const float weight = ray_weight(facing, direction, to_viewer);
-        if (weight == 0.0) continue;
+        const float density = ward_density(alpha, facing, direction, to_viewer);
+        if (density == 0.0) continue;
+        const float weight = ward_lobe(alpha, facing, direction, to_viewer) * dot(facing, direction) / density;
         const Incident light = incident_light(point_m / grid.voxel_m, facing, direction, params.ball_m);
         sum += weight * (light.known ? light.radiance : indirect);
     }

@@ -31,7 +31,6 @@ const float kIgnoredVoxels = 2.0;          // seen near the peak: so few may be 
 const float kSeenVoxels = 6.0;             // and with so many all are believed
 const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known half
 
-const float kSureMirror = 0.9;
 const float kObservedConfidence = 0.5;   // from which on highlights tell of gloss
 const float kAgreeingShare = 0.5;        // of the ks that surroundings tell
 const float kLeastShareOfSquare = 0.25;  // of what is mirrored, of a channel: with less it tells nothing of its own

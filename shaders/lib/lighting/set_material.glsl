@@ -6,6 +6,7 @@
 const float kSeenKsStep = 0.002;    // a change of ks that is worth another look at the albedo, and
 const float kSeenShareStep = 0.02;  // of ks and alpha, relative,
 const float kObservedStep = 0.05;   // or of how much of ks is a guess
+const float kSureMirror = 0.9;      // SegmentMaterial::mirror of what is taken for a metal or a mirror
 
 // Albedos depend on the version, and are computed again when it changes. `unobserved`: the share of ks that is a guess.
 SegmentMaterial changed_material(SegmentMaterial known, vec4 ks_alpha, float unobserved) {
