@@ -5,22 +5,14 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/core/latitude_longitude.h"
+
 namespace patina {
 
 namespace {
 
 constexpr double kNearest_m = 0.1;  // a lamp in the point itself counts as if it were so far away
 constexpr double kPi = std::numbers::pi;
-
-glm::dvec3 direction_of(uint32_t x, uint32_t y, Extent2D extent) {
-    const double turn = 2 * kPi * ((x + 0.5) / extent.width - 0.5), tilt = kPi * (0.5 - (y + 0.5) / extent.height);
-    return {std::cos(tilt) * std::cos(turn), std::sin(tilt), std::cos(tilt) * std::sin(turn)};
-}
-
-double solid_angle(uint32_t y, Extent2D extent) {
-    const double top = kPi * (0.5 - static_cast<double>(y) / extent.height), step = kPi / extent.height;
-    return 2 * kPi / extent.width * (std::sin(top) - std::sin(top - step));
-}
 
 /// A pixel that a lamp covers.
 struct Covered {
@@ -39,8 +31,8 @@ void add(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
     double sum = 0;
     for (uint32_t y = 0; y < extent.height; ++y) {
         for (uint32_t x = 0; x < extent.width; ++x) {
-            if (glm::dot(direction_of(x, y, extent), towards) < std::cos(radius)) continue;
-            covered.push_back({size_t{y} * extent.width + x, solid_angle(y, extent)});
+            if (glm::dot(direction_of_place({x + 0.5, y + 0.5}, extent), towards) < std::cos(radius)) continue;
+            covered.push_back({size_t{y} * extent.width + x, solid_angle_of_row(y, extent)});
             sum += covered.back().solid_angle;
         }
     }

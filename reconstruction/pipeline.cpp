@@ -157,27 +157,48 @@ TextureLayout Pipeline::sampled_between_vertices(const TextureLayout& layout) {
     return fine;
 }
 
-void Pipeline::refine_all() {
-    if (!stages_.reflectance || fusion_.frames() == 0) return;
-    fuse_waiting();
+void Pipeline::for_each_tile(const UseTile& use) {
     const double block_m = double{stages_.reflectance->observations().settings().block_m};
-    // Asking twice gives the same: more rays of the same map would change all a little.
-    const bool gathers = gathered_after_ != fusion_.frames();
-    gathered_after_ = fusion_.frames();
     for (const MapTile& tile : tiles_of_records(streaming_.observed_blocks(), block_m, settings().around_m)) {
         streaming_.require_blocks(tile.around);
         streaming_.require_records(tile.cube);
         graph::FrameGraph graph = runner_.begin();
-        stages_.reflectance->refine_all(graph, map().import(graph), gathers, tile.part);
+        use(graph, tile.part);
         runner_.submit(std::move(graph));
     }
 }
 
-void Pipeline::relight(std::span<const Light> lights, glm::dvec3 ambient) {
+void Pipeline::refine_all() {
+    if (!stages_.reflectance || fusion_.frames() == 0) return;
+    fuse_waiting();
+    // Asking twice gives the same: more rays of the same map would change all a little.
+    const bool gathers = gathered_after_ != fusion_.frames();
+    gathered_after_ = fusion_.frames();
+    for_each_tile([&](graph::FrameGraph& graph, const RefinedPart& part) {
+        stages_.reflectance->refine_all(graph, map().import(graph), gathers, part);
+    });
+}
+
+void Pipeline::relight(const Relighting& relighting) {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     refine_all();
-    stages_.reflectance->relight(lights, ambient);
-    refine_all();
+    const std::vector<RelightTurn> turns = stages_.reflectance->relight(relighting);
+    if (turns.empty()) return refine_all();
+    const auto change_voxels = [&](graph::FrameGraph& graph, const std::function<void(VoxelMapIds&)>& change) {
+        VoxelMapIds voxels = map().import(graph);
+        change(voxels);
+        VoxelMap::keep(graph, voxels);
+    };
+    graph::FrameGraph forgets = runner_.begin();
+    change_voxels(forgets,
+                  [&](VoxelMapIds& voxels) { stages_.reflectance->add_forget_light(forgets, voxels, relighting); });
+    runner_.submit(std::move(forgets));
+    for (const RelightTurn& turn : turns) {
+        for_each_tile([&](graph::FrameGraph& graph, const RefinedPart& part) {
+            change_voxels(graph,
+                          [&](VoxelMapIds& voxels) { stages_.reflectance->add_relight(graph, voxels, turn, part); });
+        });
+    }
 }
 
 std::vector<SegmentReflectance> Pipeline::segments() {

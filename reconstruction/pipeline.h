@@ -116,9 +116,10 @@ class Pipeline {
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
-    /// Puts the model under other lights than those of its frames, for views alone: no frame may be added after that.
-    /// Brings the reflectance up to date first. Without reflectance nothing changes. Throws Error as Lights::set does.
-    void relight(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
+    /// Puts the model under other light than that of its frames, for views alone: no frame may be added after that.
+    /// Brings the reflectance up to date first. Where light is gathered, surfaces light each other, and mirrors show
+    /// what is around them under it. Without reflectance nothing changes. Throws Error as Lights::set does.
+    void relight(const Relighting& relighting);
 
     /// Counters as of at most two frames ago; exact after wait(). Does not wait. With tracking, the last frame is
     /// counted only after wait(); runner().wait() does not fuse it.
@@ -150,7 +151,11 @@ class Pipeline {
     const KeyframeStage* keyframes() const { return pointer_to(stages_.keyframes); }
 
   private:
+    using UseTile = std::function<void(graph::FrameGraph&, const RefinedPart&)>;
+
     void fuse_waiting();
+    /// A frame for each part of the records, with all on the device that shades it.
+    void for_each_tile(const UseTile& use);
     MeshReflectance sample_part_by_part(const Mesh& mesh);
     TextureLayout sampled_between_vertices(const TextureLayout& layout);
 

@@ -9,6 +9,7 @@ void add_find_visibility(graph::FrameGraph& frame, ReflectanceFrame& reflectance
     auto pass =
         frame.compute("reflectance.find_visibility", texel ? spirv::find_visibility_texel : spirv::find_visibility);
     pass.read("Lights", reflectance.lights).read("Records", reflectance.records.records);
+    pass.read("Surroundings", reflectance.state.surroundings);
     pass.read("March", due.march.list).push(reflectance.params);
     const VoxelMapIds& voxels = reflectance.voxels;
     pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);

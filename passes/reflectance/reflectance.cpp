@@ -5,6 +5,8 @@
 #include "engine/core/error.h"
 #include "passes/reflectance/find_visibility.h"
 #include "passes/reflectance/gather_irradiance.h"
+#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/recolor_surfaces.h"
 #include "passes/reflectance/refine_albedo.h"
 #include "passes/reflectance/smooth_irradiance.h"
 #include "passes/reflectance/surface_albedo.h"
@@ -39,22 +41,34 @@ gpu::ReflectanceParams make_params(const ReflectanceModels& models, const Reflec
     return params;
 }
 
+ReflectanceSettings of_everything(ReflectanceSettings settings) {
+    settings.first_marched_records = settings.marched_records = settings.refreshed_records = kEverything;
+    return settings;
+}
+
+ReflectanceFrame make_frame(graph::FrameGraph& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
+                            ObservationMapIds& records, ReflectanceStateIds& state, const ReflectanceAccess& access,
+                            const gpu::ReflectanceParams& params, const ReflectanceSettings& settings) {
+    return {models.voxel_map,
+            voxels,
+            access,
+            models.observation_map,
+            records,
+            state,
+            models.lights.upload(frame),
+            models.materials.import(frame),
+            params,
+            {settings.first_marched_records, settings.marched_records},
+            settings.gathered_rays};
+}
+
 RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels& models, const VoxelMapIds& voxels,
                               ObservationMapIds& records, const RecordList& changed, const ReflectanceAccess& access,
                               const gpu::ReflectanceParams& params, const ReflectanceSettings& settings) {
     ReflectanceStateIds state = models.state.import(frame);
-    ReflectanceFrame reflectance{models.voxel_map,
-                                 voxels,
-                                 access,
-                                 models.observation_map,
-                                 records,
-                                 state,
-                                 models.lights.upload(frame),
-                                 models.materials.import(frame),
-                                 params,
-                                 {settings.first_marched_records, settings.marched_records},
-                                 settings.gathered_rays};
+    ReflectanceFrame reflectance = make_frame(frame, models, voxels, records, state, access, params, settings);
     DueRecords due = add_find_due_records(frame, reflectance, changed);
+    add_mark_regions(frame, state, models.voxel_map, voxels);
     if (settings.albedo && settings.gathered_rays > 0) {
         add_gather_irradiance(frame, reflectance, due.march);
         add_smooth_irradiance(frame, reflectance, due.march);
@@ -88,12 +102,31 @@ RefinedReflectance add_refine_reflectance(graph::FrameGraph& frame, const Reflec
 RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models,
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings) {
-    ReflectanceSettings all = settings;
-    all.first_marched_records = all.marched_records = all.refreshed_records = kEverything;
+    ReflectanceSettings all = of_everything(settings);
     all.gathered_rays *= kRaysAtTheEnd;
     const RecordList none = create_record_list(frame, "reflectance.none", 1);
     return add_update(frame, models, voxels, records, none, access, make_params(models, all, gpu::kWindowSteps, 1),
                       all);
+}
+
+void add_relight_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models, VoxelMapIds& voxels,
+                             ObservationMapIds& records, graph::BufferId segments, const ReflectanceAccess& access,
+                             const ReflectanceSettings& settings, const RelightTurn& turn) {
+    ReflectanceSettings all = of_everything(settings);
+    all.gathered_rays = turn.gathered_rays;
+    ReflectanceStateIds state = models.state.import(frame);
+    const VoxelMapIds before = voxels;
+    ReflectanceFrame reflectance =
+        make_frame(frame, models, before, records, state, access, make_params(models, all, gpu::kWindowSteps, 1), all);
+    DueRecords due = add_find_due_records(frame, reflectance, create_record_list(frame, "reflectance.none", 1));
+    add_mark_regions(frame, state, models.voxel_map, voxels);
+    if (turn.finds_visibility) add_find_visibility(frame, reflectance, due);
+    if (turn.gathered_rays > 0) {
+        add_gather_irradiance(frame, reflectance, due.march, true);
+        add_smooth_irradiance(frame, reflectance, due.march);
+    }
+    add_recolor_surfaces(frame, reflectance, voxels, {due.march, segments, turn.gathered_rays > 0});
+    ReflectanceState::keep(frame, state);
 }
 
 }  // namespace patina

@@ -62,4 +62,19 @@ RefinedReflectance add_refine_all_reflectance(graph::FrameGraph& frame, const Re
                                               const VoxelMapIds& voxels, ObservationMapIds& records,
                                               const ReflectanceAccess& access, const ReflectanceSettings& settings);
 
+/// One turn of putting records under other lights, those of the models.
+struct RelightTurn {
+    bool finds_visibility = false;  ///< of the lamps; the first turn does
+    /// Rays of each record, by which it gathers light from what is around it, as it was coloured in the turn before; 0:
+    /// the ambient term arrives.
+    uint32_t gathered_rays = 0;
+};
+
+/// Gives the voxels of all records of the models' part the colours that they have under lights that no frame showed
+/// (recolor_surfaces.h): a turn without rays for what lamps light at once, and one with rays for each bounce. Albedo
+/// stays. `segments`: gpu::SegmentAlbedo per label. `voxels.color`, and the visibility in `records`, are replaced.
+void add_relight_reflectance(graph::FrameGraph& frame, const ReflectanceModels& models, VoxelMapIds& voxels,
+                             ObservationMapIds& records, graph::BufferId segments, const ReflectanceAccess& access,
+                             const ReflectanceSettings& settings, const RelightTurn& turn);
+
 }  // namespace patina

@@ -45,6 +45,7 @@ PredictedImages add_predict_radiance(graph::FrameGraph& frame, const VoxelMap& v
                                                                                : gpu::kMaxPointLights;
     pass.specialise("kMostLights", most_lights).specialise("kGathers", inputs.gathers ? 1u : 0u);
     pass.specialise("kOfPicture", inputs.of_picture ? 1u : 0u).specialise("kGlossApart", inputs.gloss_apart ? 1u : 0u);
+    pass.specialise("kOtherLight", inputs.other_light ? 1u : 0u);
     pass.read("Status", state.status).read("Gathered", state.gathered);
     PredictedImages out;
     out.packed = packed;

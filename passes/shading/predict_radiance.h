@@ -29,6 +29,9 @@ struct PredictRadianceInputs {
     bool of_picture = false;
     /// rgb lacks what gloss mirrors of the light that records gathered; add_reflect_surroundings() adds it.
     bool gloss_apart = false;
+    /// The lights are others than those that records were observed under. So their errors do not cancel out against
+    /// those of kd, and rgb is made with kd as it is.
+    bool other_light = false;
 };
 
 /// The records, with those that a view can show by voxel.
@@ -40,8 +43,8 @@ struct PackedRecords {
 /// What the model looks like. All zero where nothing was hit.
 struct PredictedImages {
     graph::ImageId kd;  ///< W x H rgba16f: diffuse albedo; a is 1 where it is known, else all is 0
-    /// W x H rgba16f: the one that rgb is made with, as `kd`; it may be above 1. Where records gathered light, what
-    /// they reflect over that, so that errors of the light cancel out; else `kd`.
+    /// W x H rgba16f: the one that rgb is made with, as `kd`; it may be above 1. Where records gathered light that they
+    /// were observed under, what they reflect over that, so that errors of the light cancel out; else `kd`.
     graph::ImageId picture_kd;
     graph::ImageId label;  ///< W x H r32ui: segment, 0 where none is known
     graph::ImageId

@@ -1,8 +1,22 @@
 #include "passes/state/reflectance_state.h"
 
 #include <utility>
+#include <vector>
+
+#include "engine/core/error.h"
 
 namespace patina {
+
+namespace {
+
+/// As if one pixel had looked into its direction.
+gpu::FarFieldTexel texel_of(glm::vec3 radiance) {
+    constexpr float kMost = 4e9f / gpu::kFarFieldSteps;
+    const glm::vec3 steps = glm::clamp(radiance, 0.0f, kMost) * gpu::kFarFieldSteps + 0.5f;
+    return {{glm::uvec3(steps), 1}};
+}
+
+}  // namespace
 
 ReflectanceState::ReflectanceState(vulkan::Device& device, const ObservationMap& map)
     : status_(device.create_buffer(
@@ -27,6 +41,18 @@ graph::BufferId ReflectanceState::import_surroundings(graph::FrameGraph& frame) 
     const graph::BufferId surroundings = frame.import(surroundings_);
     if (std::exchange(has_low_exposure_, true)) return surroundings;
     return frame.fill(surroundings, 0);
+}
+
+void ReflectanceState::replace_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& ids,
+                                            std::span<const glm::vec3> far_field) {
+    ids.surroundings = frame.fill(ids.surroundings, 0);
+    if (far_field.empty()) return;
+    if (far_field.size() != gpu::kFarFieldTexels)
+        throw Error("light from far away has ", far_field.size(), " directions instead of ", gpu::kFarFieldTexels);
+    std::vector<gpu::FarFieldTexel> texels;
+    texels.reserve(far_field.size());
+    for (const glm::vec3& radiance : far_field) texels.push_back(texel_of(radiance));
+    ids.surroundings = frame.upload_bytes(ids.surroundings, 0, std::as_bytes(std::span(texels)), false);
 }
 
 void ReflectanceState::enlarge(graph::Enlargement& enlargement, uint32_t records) {

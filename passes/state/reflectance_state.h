@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+
+#include <glm/glm.hpp>
 
 #include "engine/graph/frame_graph.h"
 #include "engine/graph/state_visitor.h"
@@ -14,16 +17,17 @@ namespace patina {
 
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
-    graph::BufferId status;        ///< gpu::RecordStatus per record
-    graph::BufferId gathered;      ///< gpu::RecordSurroundings per record
-    graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
-    graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], gpu::SurroundingsCounts, u32 of
-                                   ///< blocks, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
+    graph::BufferId status;    ///< gpu::RecordStatus per record
+    graph::BufferId gathered;  ///< gpu::RecordSurroundings per record
+    graph::BufferId windows;   ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId
+        surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], gpu::SurroundingsCounts, u32 of
+                       ///< blocks and of the map's regions, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };
 
 constexpr uint64_t kSurroundingsCellsAt =
     gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel) + sizeof(gpu::SurroundingsCounts) +
-    gpu::kSurroundingsBlockWords * sizeof(uint32_t);  ///< where the cells begin, bytes
+    (gpu::kSurroundingsBlockWords + gpu::kMapRegionWords) * sizeof(uint32_t);  ///< where the cells begin, bytes
 constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
@@ -40,6 +44,11 @@ class ReflectanceState {
 
     /// The surroundings, empty before the first frame of low exposure; they outlive the frame.
     graph::BufferId import_surroundings(graph::FrameGraph& frame);
+
+    /// Replaces what is around by what arrives from far away alone: radiance per gpu::FarFieldTexel, or nothing, with
+    /// which no direction is known. Keep it.
+    static void replace_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& ids,
+                                     std::span<const glm::vec3> far_field);
 
     /// Announces that the map's pool grows to `records`; nothing is up to date of the new ones.
     void enlarge(graph::Enlargement& enlargement, uint32_t records);

@@ -5,6 +5,7 @@
 #include "passes/observation/reclaim_records.h"
 #include "passes/reflectance/collect_far_field.h"
 #include "passes/reflectance/collect_surroundings.h"
+#include "passes/reflectance/mark_regions.h"
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
 #include "passes/shading/reflect_surroundings.h"
@@ -15,6 +16,7 @@ namespace patina {
 namespace {
 
 constexpr float kUsualRecord_m = 0.02f;
+constexpr uint32_t kRelitRays = 16, kRelitRaysAtTheEnd = 64;  // of a record, under lights that no frame showed
 
 /// With the records' size, where it was left open.
 ReflectanceStageSettings whole(const VoxelMap& map, ReflectanceStageSettings settings) {
@@ -178,14 +180,38 @@ void ReflectanceStage::refine_all(graph::FrameGraph& graph, const VoxelMapIds& v
     ObservationMap::keep(graph, records);
 }
 
-void ReflectanceStage::relight(std::span<const Light> lights, glm::dvec3 ambient) {
-    lights_.set(lights, ambient);
+std::vector<RelightTurn> ReflectanceStage::relight(const Relighting& relighting) {
+    lights_.set(relighting.lights, relighting.ambient);
+    relit_ = true;
+    const bool from_afar = !relighting.far_field.empty(),
+               gathers = from_afar || (this->gathers() && relighting.bounces > 0);
     settings_.refine.albedo = false;
-    settings_.refine.gathered_rays = 0;
+    settings_.refine.gathered_rays = gathers ? kRelitRays : 0;
+    if (!gathers) return {};
+    std::vector<RelightTurn> turns{{.finds_visibility = true}};
+    turns.resize(1 + relighting.bounces + (from_afar ? 1 : 0), {.gathered_rays = kRelitRays});
+    turns.back().gathered_rays = kRelitRaysAtTheEnd;
+    return turns;
+}
+
+void ReflectanceStage::add_forget_light(graph::FrameGraph& graph, VoxelMapIds& voxels,
+                                        const Relighting& relighting) const {
+    voxels.color = graph.fill(voxels.color, 0);
+    ReflectanceStateIds state = state_.import(graph);
+    ReflectanceState::replace_surroundings(graph, state, relighting.far_field);
+    graph.keep(state.surroundings);
+}
+
+void ReflectanceStage::add_relight(graph::FrameGraph& graph, VoxelMapIds& voxels, const RelightTurn& turn,
+                                   const RefinedPart& part) {
+    ObservationMapIds records = observations_.import(graph);
+    const graph::BufferId segments = add_average(graph, records);
+    add_relight_reflectance(graph, models(part), voxels, records, segments, access_, settings_.refine, turn);
+    ObservationMap::keep(graph, records);
 }
 
 void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
-    if (!gathers() || shared_) return;
+    if (!gathers() || shared_ || relit_) return;
     shared_ = true;
     ReflectanceStateIds state = state_.import(graph);
     add_surface_albedo(graph, observations_, observations_.import(graph), state, lights_.upload(graph),
@@ -211,7 +237,10 @@ PredictedView ReflectanceStage::add_predict_mirrors(graph::FrameGraph& graph, co
     mirrored.normal = cast.normal;
     mirrored.rgb = view.images.rgb;
     mirrored.glossy = view.images.glossy;
-    mirrored.surroundings = state_.import(graph).surroundings;
+    ReflectanceStateIds state = state_.import(graph);
+    add_mark_regions(graph, state, map_, voxels);
+    graph.keep(state.surroundings);
+    mirrored.surroundings = state.surroundings;
     mirrored.lights = lights_.upload(graph);
     mirrored.ball_m = ball_m;
     mirrored.rays = settings_.mirrored_rays;
@@ -245,6 +274,7 @@ PredictedView ReflectanceStage::predict(graph::FrameGraph& graph, const VoxelMap
     inputs.segments = add_average(graph, records);
     inputs.shadows = settings_.refine.shadows && (!other || other->shadows);
     inputs.gathers = gathers() && !other;
+    inputs.other_light = relit_;
     inputs.access = access_.voxels;
     return {add_predict_radiance(graph, map_, voxels, observations_, records, state_.import(graph), inputs),
             inputs.segments};

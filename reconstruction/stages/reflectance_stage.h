@@ -57,6 +57,17 @@ struct OtherLights {
     bool operator==(const OtherLights&) const = default;
 };
 
+/// Light that the model is put under in place of that of the reconstruction.
+struct Relighting {
+    std::vector<Light> lights;
+    glm::dvec3 ambient{0};  ///< Lights::set
+    /// Radiance that arrives from far away, by texel of gpu::FarFieldTexel in the map's world; empty: nothing is known.
+    std::vector<glm::vec3> far_field;
+    /// How often light that surfaces send on is gathered again; 0: the lamps' own light and the ambient term are all,
+    /// as where the reconstruction gathers none. Light from far away is gathered once more in any case.
+    uint32_t bounces = 2;
+};
+
 /// Whether glossy surfaces of a view mirror what is around them, which takes longer than all else of it, or send the
 /// mean of it.
 enum class Gloss : uint8_t { kMean, kMirrors };
@@ -132,10 +143,13 @@ class ReflectanceStage {
     /// Brings every record of a part up to date. `gathers`: they gather light once more, too, where settings say so.
     void refine_all(graph::FrameGraph& graph, const VoxelMapIds& voxels, bool gathers, const RefinedPart& part = {});
 
-    /// Puts the model under other lights than those it was observed under: refine_all() finds their visibility, and kd
-    /// stays. The light that records gathered is that of the former lamps, and counts no longer. Nothing may be added
-    /// after that.
-    void relight(std::span<const Light> lights, glm::dvec3 ambient);
+    /// Puts the model under other light than it was observed under; kd stays. Nothing may be added after that. Returns
+    /// the turns by which add_relight() then brings light and colours up to date, each of them for all parts of the
+    /// model before the next; none where no light is gathered: refine_all() finds what the lamps light.
+    std::vector<RelightTurn> relight(const Relighting& relighting);
+    void add_relight(graph::FrameGraph& graph, VoxelMapIds& voxels, const RelightTurn& turn, const RefinedPart& part);
+    /// Before the first of the turns: all colours are unknown, and what is around is what arrives from far away.
+    void add_forget_light(graph::FrameGraph& graph, VoxelMapIds& voxels, const Relighting& relighting) const;
 
     /// Lets records tell each other of their albedo before a view is predicted, where any changed since they did so
     /// last, here or in refine_all(). The frame adds nothing else to the model.
@@ -191,6 +205,7 @@ class ReflectanceStage {
     bool any_left_ = false;    ///< records, since the map was reset
     uint64_t reclaim_at_ = 0;  ///< the frame from which on that is due
     uint32_t reclaim_turn_ = 0;
+    bool relit_ = false;   ///< under lights that no frame showed
     bool shared_ = false;  ///< no record changed since they told each other of their albedo
     ReflectanceAccess access_;
 };

@@ -1,8 +1,9 @@
 // Body of the shaders that find which lights reach a voxel. The includer declares the map's table and distances and how
 // to load them, as lib/map/march_map.glsl says.
-#include "lib/map/march_map.glsl"
 #include "lib/records/record_list.glsl"
 #include "lib/records/reflectance.glsl"
+#include "shared/reflectance/far_field.h"
+#include "shared/reflectance/surroundings.h"
 
 layout(local_size_x = kRecordGroup) in;
 layout(std140, binding = 0) uniform Lights {
@@ -15,7 +16,10 @@ layout(std430, binding = 3) buffer Status { RecordStatus status[]; };
 layout(std430, binding = 4) buffer Visibility { uvec2 visibility[]; };
 layout(std430, binding = 5) buffer Refine { uint refine[]; };
 layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
+layout(std430, binding = 14) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { ReflectanceParams params; };
+#define MAP_REGIONS(i) map_regions[i]
+#include "lib/map/march_map.glsl"
 
 layout(constant_id = 1) const uint kGathers = 0u;  // 1: light is gathered for the same records, which changes albedos
 

@@ -13,7 +13,8 @@
 const uint kLanes = 4u;  // of a record, each of which marches every kLanes-th of its rays
 
 layout(local_size_x = kLanes * kRecordGroup) in;
-layout(constant_id = 1) const uint kRays = 8u;  // of a record in one update
+layout(constant_id = 1) const uint kRays = 8u;     // of a record in one update
+layout(constant_id = 2) const uint kForgets = 0u;  // 1: what was gathered before counts no longer
 layout(std140, binding = 0) uniform Lights {
     LightHeader header;
     PointLight lights[kMaxPointLights];
@@ -67,6 +68,6 @@ void main() {
         sum += sums[place][i];
         met += mets[place][i];
     }
-    const GatheredLight light = unpack_gathered(gathered[record].rays);
+    const GatheredLight light = unpack_gathered(kForgets != 0u ? uvec2(0u) : gathered[record].rays);
     gathered[record].rays = pack_gathered(with_rays(light, sum, met, float(kRays) - met));
 }

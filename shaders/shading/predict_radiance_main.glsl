@@ -48,6 +48,13 @@ layout(constant_id = 2) const uint kOfPicture = 0u;
 // 1: what gloss mirrors of the light from all around is not in rgb, and added later
 layout(constant_id = 3) const uint kGlossApart = 0u;
 
+// 1: records were observed under other lights
+layout(constant_id = 4) const uint kOtherLight = 0u;
+
+// How far around a point a record fills in, voxels. Under lights that frames showed, what no record knows is the fused
+// colour (restore_detail.comp); under others there is none.
+const int kFillVox = kOtherLight != 0u ? 5 : 1, kFillEdge = 2 * kFillVox + 2;
+
 const float kLeastAlpha = 0.01;
 const float kMetalKd = 0.03, kDiffuseKd = 0.12;
 const float kKnownWeight = 0.1;  // of a channel, from which on the records' own kd is shown
@@ -100,14 +107,14 @@ Reflectance interpolate(SurfacePoint point) {
     return mean_of(sums);
 }
 
-// Where none of the eight is known: what the nearest known record within one voxel more has; one of the same surface if
-// there is any. Rims, which no frame saw but grazing, have normals too far off to tell.
+// Where none of the eight is known: what the nearest known record around has; one of the same surface if there is any.
+// Rims, which no frame saw but grazing, have normals too far off to tell.
 Reflectance fill(SurfacePoint point, Reflectance found) {
-    const ivec3 low = ivec3(floor(point.at_vox)) - 1;
+    const ivec3 low = ivec3(floor(point.at_vox)) - kFillVox;
     NearestRecords nearest = nearest_after(found);
-    for (int row = 0; row < 16; ++row) {
-        [[unroll]] for (int x = 0; x < 4; ++x) {
-            const ivec3 voxel = low + ivec3(x, row & 3, row >> 2);
+    for (int row = 0; row < kFillEdge * kFillEdge; ++row) {
+        [[unroll]] for (int x = 0; x < kFillEdge; ++x) {
+            const ivec3 voxel = low + ivec3(x, row % kFillEdge, row / kFillEdge);
             const uint cell = view_grid_cell(grid_low, grid_size, voxel >> int(params.edge_shift));
             const uint record = find_record(cell, voxel_number(voxel, params.edge_shift));
             const uvec4 content = PACKED(record == kNoRecord ? 0u : record);
@@ -209,7 +216,7 @@ Shade shade(SurfacePoint point, vec3 point_m, vec3 kd, vec4 gloss, vec3 indirect
 // Under the light that records gathered its errors cancel out against those of their own kd. So pictures are made from
 // that, where it is known at all, though the segment tells more of the albedo.
 vec3 shaded_kd(Reflectance own, Reflectance with_segment) {
-    if (kGathers == 0u || !own.known) return with_segment.kd;
+    if (kGathers == 0u || kOtherLight != 0u || !own.known) return with_segment.kd;
     return mix(with_segment.kd, own.kd, clamp(own.weights / kKnownWeight, 0.0, 1.0));
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "export/write_exr.h"
 #include "sensor/files/picture_file.h"
 #include "sensor/truth.h"
 #include "tests/cli/run_folder.h"
@@ -59,6 +60,21 @@ class Render : public RunFolderTest {
         sensor::write_lights(file, std::vector<Light>{{{0, -1.5, 0}, glm::dvec3(strength)}});
         return file;
     }
+
+    /// Of one radiance, from all sides or from those of the picture's right half.
+    std::string environment(const char* name, float radiance, bool half = false) const {
+        const fs::path file = beside(name);
+        constexpr Extent2D kExtent{64, 32};
+        Image<glm::vec3> picture(kExtent, glm::vec3(radiance));
+        for (uint32_t y = 0; half && y < kExtent.height; ++y) {
+            for (uint32_t x = 0; x < kExtent.width / 2; ++x) picture.at(x, y) = glm::vec3(0);
+        }
+        std::vector<ExrChannel> channels;
+        for (int c = 0; c < 3; ++c)
+            channels.push_back({std::string(1, "RGB"[c]), kExtent, &picture.pixels().front()[c], 3});
+        write_exr(file, channels);
+        return file.string();
+    }
 };
 
 TEST_F(Render, RecordedPosesOrbitAndVideo) {
@@ -101,6 +117,20 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
     EXPECT_EQ(picture("kd").pixels(), picture("kd_dim").pixels()) << "albedo does not change with the lights of a view";
 }
 
+TEST_F(Render, AnEnvironmentLightsWhatNothingIsInFrontOf) {
+    const fs::path own = lights(8);
+    const std::string whole = environment("whole.exr", 0.3f), half = environment("half.exr", 0.3f, true);
+    render_cubes(beside("both"), {"--lights", own, "--relight", whole, "--relight", own});
+    render_cubes(beside("whole"), {"--lights", own, "--relight", whole});
+    render_cubes(beside("half"), {"--lights", own, "--relight", half});
+    render_cubes(beside("turned"), {"--lights", own, "--relight", half, "--relight-turn", "180"});
+    const auto picture = [&](const char* name) { return read(beside(name) / "000000.png"); };
+    EXPECT_GT(brightness(picture("both")), brightness(picture("whole")) + 10);
+    EXPECT_GT(brightness(picture("whole")), brightness(picture("half")) + 10);
+    EXPECT_GT(brightness(picture("whole")), brightness(picture("turned")) + 10);
+    EXPECT_NE(picture("half").pixels(), picture("turned").pixels());
+}
+
 TEST_F(Render, ShowsWhatARunWouldHaveHad) {
     // The scene has a lighting sequence of its own, in which run finds the lights.
     render_cubes(beside("kd"), {"--show", "kd"});
@@ -134,6 +164,12 @@ TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
         << "not that lights are missing";
     EXPECT_THAT(complaint({"--out", views, "--relight", lights(1), "--lighting", "none"}),
                 HasSubstr("--relight needs lights: give"));
+    const std::string sky = environment("sky.exr", 1), wrong = environment("wrong.exr", -1);
+    EXPECT_THAT(complaint({"--out", views, "--lights", lights(1), "--relight", sky, "--relight", sky}),
+                HasSubstr("a second environment"));
+    EXPECT_THAT(complaint({"--out", views, "--lights", lights(1), "--relight", wrong}),
+                AllOf(HasSubstr("wrong.exr"), HasSubstr("-1")));
+    EXPECT_THAT(complaint({"--out", views, "--relight-turn", "5"}, 2), HasSubstr("--relight"));
     EXPECT_THAT(complaint({"--out", views, "--show", "labels", "--labels", "off"}), HasSubstr("--labels is off"));
     EXPECT_THAT(complaint({"--out", views, "--poses", beside("none.txt")}), HasSubstr("none.txt"));
     write_text(beside("poses.txt"), "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n");

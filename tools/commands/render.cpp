@@ -29,7 +29,15 @@ void add_render(CLI::App& app, int& exit_code) {
     command->add_option_function<std::string>(
         "--extent", [&options](const std::string& text) { options.extent = parse_extent(text); },
         "Size of the pictures, WIDTHxHEIGHT; the vertical field of view stays");
-    command->add_option("--relight", options.relight, "lights.json to show the model under, instead of its own lights");
+    CLI::Option* relight =
+        command->add_option("--relight", options.relight,
+                            "lights.json, or an environment map (.hdr, .exr), to show the model under, instead of its "
+                            "own light; twice: both");
+    relight->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command
+        ->add_option("--relight-turn", options.relight_turn_deg,
+                     "Turns the environment about up, degrees, anticlockwise seen from above")
+        ->needs(relight);
     command->add_option("--show", options.show, "rgb (re-rendering), kd (diffuse albedo), normals or labels")
         ->transform(one_of<Show>(
             {{"rgb", Show::kRgb}, {"kd", Show::kKd}, {"normals", Show::kNormals}, {"labels", Show::kLabels}}))

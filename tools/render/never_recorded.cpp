@@ -64,7 +64,7 @@ void render_never_recorded(const SequenceOptions& run, const fs::path& truth, co
 
     std::vector<Light> lights = sensor::read_lights(truth / "relit" / "truth" / "lights.json");
     for (Light& light : lights) light.position_m = glm::dvec3(session_from_truth * glm::dvec4(light.position_m, 1));
-    session.pipeline().relight(lights, glm::dvec3(0));
+    session.pipeline().relight({.lights = lights, .far_field = {}});
     write_views(session, poses_of(truth / "relit", session_from_truth, session.info()), "relit", out);
 }
 

@@ -8,7 +8,6 @@
 
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/session_core.h"
-#include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/shortfalls.h"
 #include "sensor/files/picture_file.h"
 #include "sensor/files/text_file.h"
@@ -20,6 +19,7 @@
 #include "tools/program/progress.h"
 #include "tools/program/standard_streams.h"
 #include "tools/render/orbit.h"
+#include "tools/render/other_light.h"
 #include "tools/report/drawing.h"
 #include "tools/report/video.h"
 #include "tools/run/frame_dumps.h"
@@ -68,9 +68,8 @@ class PictureSink {
   public:
     /// A folder that cannot be written to is told at once; a video needs to know its pictures first.
     explicit PictureSink(const RenderOptions& options) : inputs_(inputs_of(options)) {
-        for (const std::filesystem::path& file : {options.poses, options.relight}) {
-            if (!file.empty()) inputs_.push_back(file);
-        }
+        if (!options.poses.empty()) inputs_.push_back(options.poses);
+        inputs_.insert(inputs_.end(), options.relight.begin(), options.relight.end());
         if (!options.video.empty()) sensor::expect_apart(options.video, inputs_);
         if (!options.out.empty()) folder_.emplace(options.out, inputs_);
     }
@@ -160,12 +159,10 @@ Outcome render(const RenderOptions& given_options) {
         for (const sensor::StampedPose& pose : sensor::read_trajectory(options.poses))
             given.push_back(pose.world_from_camera);
     }
-    if (!options.relight.empty()) illumination_from_file(options.relight);  // a wrong one is told at once
+    const OtherLight other = read_other_light(options.relight, options.relight_turn_deg);
     Device device(options.device);
     SessionCore session(Access::vulkan(device), options);
     for (RigidTransform& pose : given) pose[3] -= glm::dvec4(session.world_offset_m(), 0);
-    const Illumination other =
-        options.relight.empty() ? Illumination{} : illumination_from_file(options.relight, session.world_offset_m());
     const Intrinsics& recorded = session.info().color;
     const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
     const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : session.info().fps;
@@ -177,7 +174,7 @@ Outcome render(const RenderOptions& given_options) {
     if (options.relight.empty())
         session.pipeline().refine_all();
     else
-        session.pipeline().relight(lights_of(other), other.ambient);
+        session.pipeline().relight(relighting_of(other, session));
     render_views(options, session, camera, poses, sink);
     sink.finish();
     Outcome outcome;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "patina/image.h"
 #include "tools/program/outcome.h"
@@ -26,7 +27,9 @@ struct RenderOptions : SequenceOptions {
     double orbit_seconds = 0;        ///< how long the video takes for them; 0: at the sequence's rate
     std::filesystem::path poses;     ///< trajectory.txt of the views, like a sequence's; empty: the recorded poses
     std::optional<Extent2D> extent;  ///< of the pictures; empty: the colour camera's
-    std::filesystem::path relight;   ///< lights.json of the views; empty: the lights of the reconstruction
+    /// lights.json, or an environment as .hdr or .exr, of the views; empty: the light of the reconstruction
+    std::vector<std::filesystem::path> relight{};
+    double relight_turn_deg = 0;  ///< of that environment about up
     Show show = Show::kRgb;
     float exposure = 1;  ///< what radiance is multiplied with
 };

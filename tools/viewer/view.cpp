@@ -114,7 +114,8 @@ class MapView {
         ViewerState& state = viewer_.state();
         if (std::exchange(state.export_asked, false)) export_now();
         if (std::exchange(state.shadows_asked, false) && state.other) {
-            map_.pipeline().relight(state.other->lights, state.other->ambient);
+            map_.pipeline().relight(
+                {.lights = state.other->lights, .ambient = state.other->ambient, .far_field = {}, .bounces = 0});
             scenery_.lighting.lights = state.other->lights;
             scenery_.lighting.ambient = state.other->ambient;
             state.other.reset();

@@ -44,9 +44,10 @@ MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction) {
     const ivec3 stride = ivec3(sign(way));
     const vec3 ahead = max(vec3(stride), 0.0);
     ivec3 cell = ivec3(floor(start));
+    const float reach = surroundings_counts.total + surroundings_counts.fresh > 0u ? kReachCells : 0.0;
     float along = 0.0;  // the ray, cells
     vec4 met = vec4(0.0);
-    for (uint i = 0u; i < kMostSteps && along < kReachCells && met.a == 0.0; ++i) {
+    for (uint i = 0u; i < kMostSteps && along < reach && met.a == 0.0; ++i) {
         const ivec3 block = surroundings_block(cell);
         const bool empty = is_empty_block(block);
         const float edge = empty ? float(kSurroundingsBlock) : 1.0;

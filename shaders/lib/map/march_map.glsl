@@ -3,10 +3,13 @@
 //   KEYS(bucket)    uvec4, the keys of a bucket
 //   BLOCK(slot)     uint, the block id of a table slot
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
+// and, so that rays cross what is empty fast, where passes/reflectance/mark_regions.h has marked what is not,
+//   MAP_REGIONS(i)  uint, word i of map_regions (shared/reflectance/surroundings.h)
 // and sets `grid` before it marches.
 #ifndef PATINA_LIB_MARCH_MAP_GLSL
 #define PATINA_LIB_MARCH_MAP_GLSL
 #include "lib/map/block_lookup.glsl"
+#include "lib/map/map_regions.glsl"
 #include "lib/map/voxel_chunks.glsl"
 
 const uint kMaxSteps = 1024u;
@@ -41,10 +44,21 @@ float to_ball_end(vec3 start, vec3 direction, vec4 ball_m) {
     return max(sqrt(max(rest, 0.0)) - along, 0.0);
 }
 
-// How far a ray goes on within the block that it is in.
-float to_block_end(ivec3 block, vec3 at, vec3 inverse_direction) {
-    const vec3 ends = (vec3(block * 8) + 8.0 * step(vec3(0.0), inverse_direction) - at) * inverse_direction;
+// How far a ray goes on within the cube that it is in, of `edge` voxels.
+float to_cube_end(ivec3 cube, float edge, vec3 at, vec3 inverse_direction) {
+    const vec3 ends = (vec3(cube) * edge + edge * step(vec3(0.0), inverse_direction) - at) * inverse_direction;
     return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
+}
+
+// The same where there is no block: within the region, where that has none either.
+float to_gap_end(ivec3 block, vec3 at, vec3 inverse_direction) {
+#ifdef MAP_REGIONS
+    const ivec3 region = region_of_block(block);
+    const uint bit = bit_of_region(region);
+    if ((MAP_REGIONS(bit >> 5u) & 1u << (bit & 31u)) == 0u)
+        return to_cube_end(region, float(kBlockEdge * kMapRegionBlocks), at, inverse_direction);
+#endif
+    return to_cube_end(block, float(kBlockEdge), at, inverse_direction);
 }
 
 vec3 inverse_of(vec3 direction) { return 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))); }
@@ -64,7 +78,7 @@ Look look_at(vec3 at, vec3 inverse_direction) {
     const bool seen = voxel_weight(found) > 0u;
     const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
     const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
-    return Look(here, have ? inside_block : to_block_end(voxel >> 3, at, inverse_direction));
+    return Look(here, have ? inside_block : to_gap_end(voxel >> 3, at, inverse_direction));
 }
 
 struct Passage {

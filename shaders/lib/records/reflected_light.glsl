@@ -7,8 +7,8 @@
 //   layout(push_constant) uniform Push { SurfaceAlbedoParams params; };
 #ifndef PATINA_LIB_REFLECTED_LIGHT_GLSL
 #define PATINA_LIB_REFLECTED_LIGHT_GLSL
-#include "lib/math/pi.glsl"
 #include "lib/records/gathered_light.glsl"
+#include "lib/records/lamp_light.glsl"
 #include "lib/records/surface_cells.glsl"
 
 const float kMostReflected = 0.95;    // of a pixel value: what is above may be clipped
@@ -38,10 +38,7 @@ Reflected reflected_by(uint record) {
     const GatheredLight gathered = unpack_gathered(status[record].incident);
     vec3 light = gathered_irradiance(gathered, header.ambient.rgb), doubted = vec3(0.0);
     for (uint i = 0u; i < header.count; ++i) {
-        const vec3 offset_m = lights[i].position_m.xyz - point_m;
-        const float distance2 = max(dot(offset_m, offset_m), 1e-6);
-        const float cosine = max(dot(normal, offset_m * inversesqrt(distance2)), 0.0);
-        const vec3 sent = lights[i].intensity.rgb * (cosine / (distance2 * kPi));
+        const vec3 sent = lamp_light(i, point_m, normal);
         light += bit_is_set(visibility[record], i) ? sent : vec3(0.0);
         doubted += bit_is_set(status[record].uncertain, i) ? sent : vec3(0.0);
     }

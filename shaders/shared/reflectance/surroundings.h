@@ -12,10 +12,15 @@ INTEROP_CONST uint kMostSurroundings = 0x20000u;
 // Cells along the side of a block, of which a bit says whether any cell is in use.
 INTEROP_CONST uint kSurroundingsBlock = 8u;
 INTEROP_CONST uint kSurroundingsBlockWords = 0x10000u;  // 128^3 bits: the same 51 m as the keys of cells
-INTEROP_CONST uint kSurroundingsProbes = 32u;           // places looked at, from the key's own on
-INTEROP_CONST float kSurroundingsSteps = 256.0f;        // of a linear pixel value, in whole numbers
-INTEROP_CONST float kSurroundingsRange = 16.0f;         // the largest of them
-INTEROP_CONST uint kLeastSurroundingsSamples = 3u;      // pixels that make a cell a surface
+// A bit says whether the voxel map has any block in a region, of so many blocks along each side; regions 128 apart
+// share one. Rays cross an empty one in one step.
+INTEROP_CONST uint kMapRegionBlocks = 8u;
+INTEROP_CONST uint kMapRegionWords = 0x10000u;  // 128^3 bits
+INTEROP_CONST uint kMarkRegionsGroup = 64u;
+INTEROP_CONST uint kSurroundingsProbes = 32u;       // places looked at, from the key's own on
+INTEROP_CONST float kSurroundingsSteps = 256.0f;    // of a linear pixel value, in whole numbers
+INTEROP_CONST float kSurroundingsRange = 16.0f;     // the largest of them
+INTEROP_CONST uint kLeastSurroundingsSamples = 3u;  // pixels that make a cell a surface
 INTEROP_CONST uint kSurroundingsGroup = 8u;
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
@@ -54,12 +59,14 @@ struct SurroundingsParams {
 
 INTEROP_END
 
-// The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h).
+// The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h), with what says where
+// the map is empty.
 #ifndef __cplusplus
 #define SURROUNDINGS_MEMBERS                           \
     FarFieldTexel far_field[kFarFieldTexels];          \
     SurroundingsCounts surroundings_counts;            \
     uint surroundings_blocks[kSurroundingsBlockWords]; \
+    uint map_regions[kMapRegionWords];                 \
     SurroundingsCell surroundings[];
 #endif
 #endif

@@ -2,99 +2,21 @@
 
 #include "tests/reference/reflectance/gather_irradiance.h"
 
-#include <array>
 #include <cmath>
-#include <functional>
-#include <span>
 #include <utility>
 
-#include <glm/gtc/packing.hpp>
-
-#include "engine/core/shader_camera.h"
-#include "passes/reflectance/collect_surroundings.h"
-#include "tests/gpu/gpu_test.h"
-#include "tests/gpu/observation/observation_rig.h"
-#include "tests/gpu/reflectance/reflectance_rig.h"
+#include "tests/gpu/reflectance/radiant_room.h"
 
 namespace patina {
 namespace {
 
-const Intrinsics kCamera{{160, 160}, 72, 72, 79.5, 79.5, {}};  // 96 degrees: six views see all around
-constexpr double kHalf_m = 0.4;
 constexpr uint32_t kRaysAtTheEnd = 8, kRays = 8 * kRaysAtTheEnd;
-constexpr double kColorStep = 0.004;  // of a fused colour around 0.4: 10 bits of its square root, rounded by chance
 
-/// A cube seen from inside.
-double room(glm::dvec3 p) { return -reference::box({0, 0, 0}, glm::dvec3(kHalf_m))(p); }
-
-using Radiance = std::function<glm::dvec3(glm::dvec3)>;
-glm::dvec3 grey(glm::dvec3) { return glm::dvec3(0.4); }
 /// One wall is red, the rest is dim.
 glm::dvec3 one_red_wall(glm::dvec3 p) { return p.x < -0.98 * kHalf_m ? glm::dvec3(0.6, 0.1, 0.05) : glm::dvec3(0.1); }
 
-class GatherIrradianceTest : public GpuTest {
+class GatherIrradianceTest : public RadiantRoomTest {
   protected:
-    struct Model {
-        Model(vulkan::Device& device, graph::Runner& runner)
-            : observations(device, runner, {.voxel_m = 0.02f, .capacity_records = 131072}),
-              reflectance(device, runner, observations.fusion().map(), observations.map()) {}
-        ObservationRig observations;
-        ReflectanceRig reflectance;
-    };
-
-    /// The room from its middle, in the given directions.
-    std::unique_ptr<Model> fused(const Radiance& radiance, std::span<const glm::dvec3> directions) {
-        auto model = std::make_unique<Model>(device(), runner());
-        std::vector<RigFrame> frames;
-        for (const glm::dvec3 direction : directions) frames.push_back(view(radiance, direction));
-        for (const RigFrame& frame : frames) {
-            for (int i = 0; i < 4; ++i) {
-                model->observations.fusion().fuse(frame.camera, frame.world_from_camera, frame.depth_m, frame.color);
-            }
-        }
-        for (const RigFrame& frame : frames) model->observations.collect(frame);
-        return model;
-    }
-
-    static RigFrame view(const Radiance& radiance, glm::dvec3 direction) {
-        RigFrame frame;
-        frame.camera = kCamera;
-        // Never along the axis that look_at() takes for up.
-        frame.world_from_camera = reference::look_at({0, 0, 0}, direction + glm::dvec3(0.03, 0.02, 0.03));
-        frame.depth_m = reference::render_depth(room, kCamera, frame.world_from_camera, 4);
-        frame.color = {kCamera, frame.world_from_camera, Image<glm::vec4>(kCamera.extent, glm::vec4(0))};
-        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
-            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
-                const double depth_m = double{frame.depth_m.at(x, y)};
-                const glm::dvec3 in_camera((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
-                const glm::dvec3 point_m(frame.world_from_camera * glm::dvec4(in_camera * depth_m, 1));
-                frame.color.linear.at(x, y) = glm::vec4(glm::vec3(radiance(point_m)), 1);
-            }
-        }
-        return frame;
-    }
-
-    /// What a camera in the middle sees of the room all around, at the usual exposure or at a low one.
-    static void collect_surroundings(Model& model, const Radiance& radiance, float radiance_scale = 0) {
-        for (const glm::dvec3 direction : kAll) {
-            const RigFrame seen = view(radiance, direction);
-            model.reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
-                SurroundingsInputs inputs;
-                inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
-                                              std::as_bytes(std::span(seen.depth_m.pixels())));
-                std::vector<uint64_t> halves;
-                for (const glm::vec4& pixel : seen.color.linear.pixels()) halves.push_back(glm::packHalf4x16(pixel));
-                inputs.color_linear =
-                    frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
-                inputs.depth_camera = inputs.color_camera = make_camera(kCamera, seen.world_from_camera);
-                inputs.radiance_scale = radiance_scale;
-                inputs.lamp_luminance = 1e6f;
-                for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
-                    add_collect_surroundings(frame, state, inputs);
-            });
-        }
-    }
-
     /// What records in the middle of the wall z = kHalf_m gathered: the mean of all rays that met something, and the
     /// share of those that met nothing.
     static std::pair<double, double> gathered_by_far_wall(Model& model) {
@@ -111,19 +33,7 @@ class GatherIrradianceTest : public GpuTest {
         EXPECT_GT(met + missed, 20.0 * kRays);
         return {sum / std::max(met, 1.0), missed / (met + missed)};
     }
-
-    static constexpr std::array<glm::dvec3, 6> kAll{glm::dvec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
-                                                    {0, -1, 0},          {0, 0, 1},  {0, 0, -1}};
 };
-
-/// In the middle of a wall, and looking away from it.
-bool on_wall(const RefinedRecord& record) {
-    const glm::dvec3 apart = glm::abs(glm::abs(record.point_m) - kHalf_m);
-    const int axis = apart.x < 0.01 ? 0 : apart.y < 0.01 ? 1 : 2;
-    const glm::dvec3 inwards = -glm::sign(record.point_m[axis]) * glm::dvec3(axis == 0, axis == 1, axis == 2);
-    return record.observations > 0 && apart[axis] < 0.01 && glm::dot(record.normal, inwards) > 0.98 &&
-           apart[(axis + 1) % 3] > 0.06 && apart[(axis + 2) % 3] > 0.06;
-}
 
 /// What records in the middle of the wall x = kHalf_m gathered, on average.
 double red_opposite(const std::vector<RefinedRecord>& records) {

@@ -6,6 +6,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "passes/reflectance/average_segments.h"
 #include "passes/reflectance/surface_albedo.h"
 
 namespace patina {
@@ -142,6 +143,19 @@ ReflectanceRig::Counts ReflectanceRig::update_all(const ReflectanceSettings& set
     const RefinedReflectance refined =
         add_refine_all_reflectance(frame, models(), voxel_map_.import(frame), ids, access, settings);
     return submit(std::move(frame), ids, refined);
+}
+
+void ReflectanceRig::relight(const RelightTurn& turn) {
+    graph::FrameGraph frame = runner_.begin();
+    ObservationMapIds ids = observation_map_.import(frame);
+    VoxelMapIds voxels = voxel_map_.import(frame);
+    if (turn.finds_visibility) voxels.color = frame.fill(voxels.color, 0);
+    const graph::BufferId segments = add_average_segments(frame, observation_map_, ids, materials.capacity());
+    add_relight_reflectance(frame, models(), voxels, ids, segments, access, {}, turn);
+    VoxelMap::keep(frame, voxels);
+    ObservationMap::keep(frame, ids);
+    runner_.submit(std::move(frame));
+    runner_.wait();
 }
 
 std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {

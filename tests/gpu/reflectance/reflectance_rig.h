@@ -57,6 +57,8 @@ class ReflectanceRig {
     /// One frame's update; `fill` makes the list of changed records, none without it.
     Counts update(const ReflectanceSettings& settings, const Fill& fill = {});
     Counts update_all(const ReflectanceSettings& settings);
+    /// One turn of putting all records under other lights; the first forgets all colours.
+    void relight(const RelightTurn& turn);
 
     /// The first `count` records; without it all of the table, by voxel.
     std::vector<RefinedRecord> records(uint32_t count);

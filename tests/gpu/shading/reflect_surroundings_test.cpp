@@ -11,6 +11,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/shader_camera.h"
+#include "passes/reflectance/mark_regions.h"
 #include "passes/state/lights.h"
 #include "passes/state/reflectance_state.h"
 #include "shared/shading/reflect_surroundings.h"
@@ -91,7 +92,10 @@ class ReflectSurroundings : public GpuTest {
         inputs.rgb = upload("rgb", vulkan::Format::kRgba16f, filled(kSeen, 1));
         const std::vector<gpu::GlossyPixel> glossy(kExtent.area(), {halves(ks, alpha), halves(kIndirect, 0)});
         inputs.glossy = frame.upload<gpu::GlossyPixel>("glossy", glossy);
-        inputs.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        ReflectanceStateIds state;
+        state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        add_mark_regions(frame, state, rig_.map(), rig_.map().import(frame));
+        inputs.surroundings = state.surroundings;
         inputs.lights = lights.upload(frame);
         inputs.ball_m = glm::vec4(glm::vec3(kEye), 8);
         inputs.rays = kRays;
