@@ -119,12 +119,12 @@ std::pair<Cluster, Cluster> divided(const Cluster& cluster) {
     return {cluster_of(cluster.pixels.first(first)), cluster_of(cluster.pixels.subspan(first))};
 }
 
-std::vector<Cluster> clusters_of(std::span<Bright> pixels) {
+std::vector<Cluster> clusters_of(std::span<Bright> pixels, size_t most) {
     if (pixels.empty()) return {};
     std::vector<Cluster> clusters{cluster_of(pixels)};
     const double least = kDividedShare * kNarrow_rad * kNarrow_rad * clusters.front().weight;
     const auto by_error = [](const Cluster& a, const Cluster& b) { return a.error() < b.error(); };
-    while (clusters.size() < kMostEnvironmentLamps) {
+    while (clusters.size() < most) {
         const auto worst = std::max_element(clusters.begin(), clusters.end(), by_error);
         if (worst->error() <= least) break;
         auto [first, second] = divided(*worst);
@@ -160,13 +160,15 @@ std::vector<glm::vec3> far_field_of(const Image<glm::vec3>& picture, const glm::
 
 }  // namespace
 
-SplitEnvironment split_environment(const Image<glm::vec3>& picture, const glm::dmat3& picture_from_world) {
+SplitEnvironment split_environment(const Image<glm::vec3>& picture, const glm::dmat3& picture_from_world,
+                                   size_t most_lamps) {
     if (picture.pixels().empty()) throw Error("an environment has no pixels");
     Image<glm::vec3> rest = made_small(picture);
-    std::vector<Bright> bright = take_bright(rest, kBright * mean_luminance(rest));
+    std::vector<Bright> bright;
+    if (most_lamps > 0) bright = take_bright(rest, kBright * mean_luminance(rest));
     const glm::dmat3 world_from_picture = glm::transpose(picture_from_world);
     SplitEnvironment split;
-    for (const Cluster& cluster : clusters_of(bright)) {
+    for (const Cluster& cluster : clusters_of(bright, most_lamps)) {
         if (cluster.spread2() > kWide_rad * kWide_rad) {
             for (const Bright& each : cluster.pixels) rest.pixels()[each.pixel] += glm::vec3(each.excess);
             continue;

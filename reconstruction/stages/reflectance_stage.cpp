@@ -211,7 +211,7 @@ void ReflectanceStage::add_relight(graph::FrameGraph& graph, VoxelMapIds& voxels
 }
 
 void ReflectanceStage::share_albedo(graph::FrameGraph& graph) {
-    if (!gathers() || shared_ || relit_) return;
+    if (!gathers() || shared_) return;
     shared_ = true;
     ReflectanceStateIds state = state_.import(graph);
     add_surface_albedo(graph, observations_, observations_.import(graph), state, lights_.upload(graph),

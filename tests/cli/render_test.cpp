@@ -170,6 +170,11 @@ TEST_F(Render, BadInputIsOneSentenceAndLeavesNothing) {
     EXPECT_THAT(complaint({"--out", views, "--lights", lights(1), "--relight", wrong}),
                 AllOf(HasSubstr("wrong.exr"), HasSubstr("-1")));
     EXPECT_THAT(complaint({"--out", views, "--relight-turn", "5"}, 2), HasSubstr("--relight"));
+    EXPECT_THAT(complaint({"--out", views, "--relight", lights(1), "--relight-turn", "5"}),
+                HasSubstr("--relight names none"));
+    sensor::write_lights(beside("many.json"), std::vector<Light>(40, Light{{0, -1.5, 0}, glm::dvec3(1)}));
+    EXPECT_THAT(complaint({"--out", views, "--relight", beside("many.json"), "--relight", beside("many.json")}),
+                AllOf(HasSubstr("80 lamps"), HasSubstr("64")));
     EXPECT_THAT(complaint({"--out", views, "--show", "labels", "--labels", "off"}), HasSubstr("--labels is off"));
     EXPECT_THAT(complaint({"--out", views, "--poses", beside("none.txt")}), HasSubstr("none.txt"));
     write_text(beside("poses.txt"), "0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n");

@@ -95,6 +95,15 @@ TEST(SplitEnvironment, AllLightArrivesAsBefore) {
     }
 }
 
+TEST(SplitEnvironment, ThereAreNoMoreLampsThanAskedFor) {
+    const Image<glm::vec3> picture = drawn(sun_and_window);
+    EXPECT_LE(split_environment(picture, glm::dmat3(1), 3).lamps.size(), 3u);
+    const SplitEnvironment none = split_environment(picture, glm::dmat3(1), 0);
+    EXPECT_TRUE(none.lamps.empty());
+    const double expected = irradiance_of(picture, {0, 0, 1}).g;
+    EXPECT_NEAR(irradiance_of(none, {0, 0, 1}).g / expected, 1, 0.05) << "no light is lost";
+}
+
 TEST(SplitEnvironment, ASunIsOneLampWhereItStandsInTheWorld) {
     const glm::dvec3 towards = glm::normalize(glm::dvec3(-1, 1.5, 2));
     const Image<glm::vec3> picture =

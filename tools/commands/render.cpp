@@ -37,6 +37,7 @@ void add_render(CLI::App& app, int& exit_code) {
     command
         ->add_option("--relight-turn", options.relight_turn_deg,
                      "Turns the environment about up, degrees, anticlockwise seen from above")
+        ->check(CLI::Range(-360.0, 360.0))
         ->needs(relight);
     command->add_option("--show", options.show, "rgb (re-rendering), kd (diffuse albedo), normals or labels")
         ->transform(one_of<Show>(

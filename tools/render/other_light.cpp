@@ -1,5 +1,6 @@
 #include "tools/render/other_light.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
@@ -9,6 +10,7 @@
 #include "reconstruction/lights/split_environment.h"
 #include "reconstruction/session/session_lights.h"
 #include "scenes/render/environment.h"
+#include "shared/lighting/lights.h"
 
 namespace patina::tools {
 
@@ -47,6 +49,11 @@ OtherLight read_other_light(std::span<const std::filesystem::path> files, double
             light.environment = scenes::read_environment(file);
         }
     }
+    if (light.lighting.lights.size() > gpu::kMaxPointLights)
+        throw Error("--relight gives ", light.lighting.lights.size(), " lamps, views have at most ",
+                    gpu::kMaxPointLights);
+    if (turn_deg != 0 && !light.environment)
+        throw Error("--relight-turn turns an environment, but --relight names none: give a .hdr or .exr file");
     return light;
 }
 
@@ -55,7 +62,9 @@ Relighting relighting_of(const OtherLight& light, SessionCore& session) {
     Relighting relighting{.lights = lights_of(lamps), .ambient = lamps.ambient, .far_field = {}};
     if (!light.environment) return relighting;
     const glm::dquat turn = glm::angleAxis(glm::radians(-light.turn_deg), glm::dvec3(0, 1, 0));
-    SplitEnvironment split = split_environment(*light.environment, glm::mat3_cast(turn * y_up_from_world(session)));
+    SplitEnvironment split =
+        split_environment(*light.environment, glm::mat3_cast(turn * y_up_from_world(session)),
+                          std::min(kMostEnvironmentLamps, gpu::kMaxPointLights - relighting.lights.size()));
     relighting.lights.insert(relighting.lights.end(), split.lamps.begin(), split.lamps.end());
     relighting.far_field = std::move(split.far_field);
     return relighting;

@@ -19,7 +19,7 @@ struct OtherLight {
 };
 
 /// Reads it: a .hdr or .exr file is an environment, any other a lights.json. Throws Error where a file cannot be read,
-/// or for more than one environment.
+/// for more than one environment, for more lamps than a view can have, or for a turn of no environment.
 OtherLight read_other_light(std::span<const std::filesystem::path> files, double turn_deg);
 
 /// The same for a session that has come to its end. Its environment stands as upright as a scene.glb of the session

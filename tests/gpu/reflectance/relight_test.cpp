@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "tests/gpu/reflectance/radiant_room.h"
 #include "tests/reference/reflectance/recolor_surfaces.h"
@@ -132,30 +131,6 @@ TEST_F(RelightTest, ColoursAreThoseOfTheReference) {
     }
     EXPECT_GT(compared, 1500u);
     EXPECT_EQ(off, 0u);
-}
-
-TEST_F(RelightTest, RegionsWithBlocksAreMarked) {
-    const auto model = observed(std::array{glm::dvec3(0, 0, 1)});
-    constexpr uint64_t kAt = kSurroundingsCellsAt - gpu::kMapRegionWords * sizeof(uint32_t);
-    graph::Readback read;
-    model->reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
-        read = frame.read_back(state.surroundings, kAt, gpu::kMapRegionWords * sizeof(uint32_t));
-    });
-    std::set<uint32_t> expected, marked;
-    for (const reference::BlockCoordinates& block : model->observations.fusion().allocated()) {
-        uint32_t bit = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int region = static_cast<int>(std::floor(block[axis] / 8.0));
-            bit |= static_cast<uint32_t>((region % 128 + 128) % 128) << 7 * axis;
-        }
-        expected.insert(bit);
-    }
-    const auto words = read.as<uint32_t>();
-    for (uint32_t bit = 0; bit < 32 * gpu::kMapRegionWords; ++bit) {
-        if ((words[bit / 32] >> bit % 32 & 1) != 0) marked.insert(bit);
-    }
-    EXPECT_GT(expected.size(), 3u);
-    EXPECT_EQ(marked, expected);
 }
 
 }  // namespace
