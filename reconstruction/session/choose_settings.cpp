@@ -70,7 +70,9 @@ ReconstructionSettings choose_settings(const SessionOptions& options, const Sequ
     choose_poses(settings, options.poses, info);
     set_specular(settings, options, std::move(network));
     if (light.lights.empty() && options.materials == Materials::kAuto) {
-        settings.specular.reset();
+        // What mirrors show of the room tells them, without any lamp; other gloss shows lamps.
+        const bool gathers = settings.reflectance && settings.reflectance->refine.gathered_rays > 0;
+        if (!gathers) settings.specular.reset();
         settings.network.reset();
     }
     return settings;

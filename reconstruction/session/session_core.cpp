@@ -158,7 +158,8 @@ void SessionCore::take_light(SessionLight light) {
         materials_missing_ = "no materials, only geometry and colours: " + no_light_because_;
     } else if (illumination_.lights.empty()) {
         materials_missing_ =
-            "materials hold a diffuse albedo alone: no lamp is known to show gloss; " + give_lights(options_);
+            "materials hold a diffuse albedo, and gloss of mirrors at most: no lamp is known to show other gloss; " +
+            give_lights(options_);
     }
 }
 

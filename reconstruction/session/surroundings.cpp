@@ -9,7 +9,7 @@ namespace patina {
 
 namespace {
 
-constexpr uint32_t kMostFrames = 60;  // two seconds of video, which decode in less than one
+constexpr uint32_t kMostFrames = 240;  // eight seconds of video, which decode in three
 
 }  // namespace
 

@@ -57,12 +57,12 @@ class Endings : public RunFolderTest {
 TEST_F(Endings, WithoutLightsTheSummarySaysWhatToGive) {
     const Outcome outcome = run(sequence());
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("a diffuse albedo alone"), HasSubstr("(--lights FILE, ")));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("no lamp is known to show"), HasSubstr("(--lights FILE, ")));
     const nlohmann::json summary = summary_of(out());
     EXPECT_THAT(summary.value("materials_missing", ""), HasSubstr("--lighting self"));
     EXPECT_EQ(summary["lights"]["found_by"], "surroundings");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
-    EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("a diffuse albedo alone"));
+    EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no lamp is known to show"));
 }
 
 TEST_F(Endings, WithLightsSwitchedOffThereAreNoMaterials) {
@@ -76,11 +76,11 @@ TEST_F(Endings, WithLightsSwitchedOffThereAreNoMaterials) {
 TEST_F(Endings, WithoutALampThereIsAmbientLight) {
     const Outcome outcome = run(sequence(), {"--lighting", "self"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("materials hold a diffuse albedo alone"));
+    EXPECT_THAT(outcome.out, HasSubstr("materials hold a diffuse albedo, and gloss of mirrors at most"));
     const nlohmann::json summary = summary_of(out());
     EXPECT_TRUE(summary["lights"]["lamps"].empty());
     EXPECT_GT(summary["lights"]["ambient"][0], 0);
-    EXPECT_EQ(summary["settings"]["specular"], "off");
+    EXPECT_EQ(summary["settings"]["specular"], "fit") << "mirrors need no lamp";
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
     EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, summary["lights"]["ambient"][0], 1e-6);
     EXPECT_THAT(read_text(out() / "scene.glb"), HasSubstr("\"ward\""));
