@@ -37,6 +37,9 @@ endif()
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.SceneIsValidGltf:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
+# TESTs that take longest beside others of the same passes: all but the first driver run them with PATINA_TEST_FULL alone.
+set(PATINA_LONG_TESTS BoundMaterials.OfFittedSegmentsHoldTheTruth:ExampleFitTest.FindsTheMaterialsOfCleanScenes:FindLights.LampsOfTheOfficeWithTheNoiseOfAKinect:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.RaysAddUpToASlidingMean:GatherIrradianceTest.WhatIsClippedIsAsBrightAsLowExposureShowsIt:GatherIrradianceTest.WhatTheMapDoesNotShowComesFromTheSurroundings:MarkRegions.RaysFindTheSameAsWhereEveryRegionIsLookedAt:ReflectSurroundings.AGlossyWallMirrorsTheRoom:RelightTest.EachTurnWithRaysIsABounce:RelightTest.WhatRecordsGatheredBeforeCountsNoLonger:RunNetwork.HalvesAgreeWithTheReferenceOnAwkwardShapes:VisibleBlocksTest.WhatTheCameraSeesIsListedOnceAndItsDepthsAreBounded)
+
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.
 set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading)$")
@@ -51,6 +54,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     set(FOLDER tests/${NAME})
     set(ENVIRONMENT ${ARGN})
     set(LEFT_OUT "^$")
+    set(TESTS_LEFT_OUT "")
     set(FOLDERS ".")
     set(FOLDERS_LEFT_OUT "^$")
     if(ENVIRONMENT)  # ctest begins with what takes long
@@ -64,6 +68,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
         set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
+        set(TESTS_LEFT_OUT "-${PATINA_LONG_TESTS}")
     endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")

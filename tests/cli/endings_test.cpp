@@ -106,7 +106,7 @@ TEST_F(Endings, SceneStandsUprightAsTheUserSaysOrTheRecording) {
 TEST_F(Endings, OptionsOfTheSceneReachIt) {
     write_text(beside("ambient.json"), R"({"lights": [], "ambient": [0.5, 0.5, 0.5]})");
     const auto scene_with = [&](std::vector<std::string> more) {
-        more.insert(more.end(), {"--lights", beside("ambient.json")});
+        more.insert(more.end(), {"--lights", beside("ambient.json"), "--detail", "coarse"});
         EXPECT_EQ(run(sequence(), more).exit_code, 0);
         return read_text(out() / "scene.glb");
     };
@@ -212,7 +212,7 @@ TEST_F(Endings, TrackingThatIsLostForGood) {
         const fs::path picture = recording / "depth" / (std::string("00000") + frame + ".png");
         sensor::write_png(picture, Image<uint16_t>({256, 212}, 0));
     }
-    const Outcome outcome = run(recording);
+    const Outcome outcome = run(recording, {"--detail", "coarse", "--texture", "off"});
     expect_short(outcome, "tracking was lost at frame 4 and not found again");
     EXPECT_THAT(outcome.out, HasSubstr("the last 2 frames are left out"));
 }
@@ -257,8 +257,9 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
 
     for (const fs::path& recording : {near, far}) {
         const fs::path to = beside(recording.filename().string() + "-run");
-        const Outcome outcome = patina({"run", recording, "--out", to, "--lights", recording / "truth/lights.json",
-                                        "--dump-every", "2", "--checkpoint-every", "3", "--texture", "off", "--quiet"});
+        const Outcome outcome =
+            patina({"run", recording, "--out", to, "--lights", recording / "truth/lights.json", "--dump-every", "2",
+                    "--checkpoint-every", "3", "--texture", "off", "--detail", "coarse", "--quiet"});
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
         const Outcome eval = patina({"eval", recording, to, "--seen", "1", "--quiet"});
         ASSERT_EQ(eval.exit_code, 0) << eval.err;

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using sensor::testing::read_text;
 
-constexpr const char* kFrames = "12";
+constexpr const char* kFrames = "6";
 constexpr Extent2D kExtent{512, 424};
 
 /// A run whose numbers are stored in tests/golden/NAME.json.

@@ -42,7 +42,8 @@ class Interrupt : public RunFolderTest {
 
     /// With a texture where that is asked for: baking takes longer than all the rest.
     std::vector<std::string> endless(std::vector<std::string> more, bool texture = false) {
-        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out", out()};
+        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out",
+                                           out(), "--detail",        "coarse"};
         if (!texture) more.insert(more.end(), {"--texture", "off"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;

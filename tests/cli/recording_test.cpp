@@ -210,14 +210,15 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
 TEST_F(RecordingCommands, LiveFindsTheLightsThatTheRunOfItsFramesFinds) {
     expect_done(patina({"synth", "cubes", "--frames", "30", "--extent", "64x53", "--quiet", "--out", folder_}));
     // With the sequence of low exposure beside it.
-    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--quiet"}));
+    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--texture", "off", "--quiet"}));
     const nlohmann::json lights = summary_of(out())["lights"];
     EXPECT_EQ(lights["found_by"], "lighting sequence");
     std::set<int64_t> used_ms;
     for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt"))
         used_ms.insert(milliseconds(pose.timestamp_s));
     keep_frames(folder_, used_ms, file_);
-    expect_done(patina({"run", file_, "--lighting", folder_ / "lighting", "--out", beside("again"), "--quiet"}));
+    expect_done(patina(
+        {"run", file_, "--lighting", folder_ / "lighting", "--out", beside("again"), "--texture", "off", "--quiet"}));
     EXPECT_EQ(summary_of(beside("again"))["lights"], lights);
     expect_same(reconstructed(out()), reconstructed(beside("again")));
 }

@@ -38,8 +38,8 @@ class SameBytes : public RunFolderTest {
 
     /// Of a run with these lights: all files but those that hold times.
     std::map<std::string, std::string> files_of_run(std::vector<std::string> more) {
-        std::vector<std::string> arguments{"run", recording_, "--lights",     lights_, "--out",
-                                           out(), "--quiet",  "--dump-every", "2"};
+        std::vector<std::string> arguments{"run",     recording_,     "--lights", lights_,    "--out", out(),
+                                           "--quiet", "--dump-every", "2",        "--detail", "coarse"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = patina(arguments);
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

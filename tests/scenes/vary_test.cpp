@@ -116,7 +116,7 @@ TEST(Varied, TheSameSeedGivesTheSameSceneAndAnotherDoesNot) {
 
 TEST(Varied, EveryMaterialChangesAndStaysValid) {
     const SyntheticScene scene = small_scene();
-    for (uint64_t seed = 0; seed < 200; ++seed) {
+    for (uint64_t seed = 0; seed < 60; ++seed) {
         const SyntheticScene other = varied(scene, seed);
         for (size_t i = 0; i < scene.objects.size(); ++i) {
             const SceneObject &before = scene.objects[i], &after = other.objects[i];
@@ -153,7 +153,7 @@ TEST(Varied, MaterialsOfOneSceneDiffer) {
 
 TEST(Varied, LightsMoveAFewStepsAndKeepTheirTotal) {
     const SyntheticScene scene = load_scene("cubes");
-    for (uint64_t seed = 0; seed < 200; ++seed) {
+    for (uint64_t seed = 0; seed < 60; ++seed) {
         const SyntheticScene other = varied(scene, seed);
         EXPECT_NEAR(total_luminance(other), total_luminance(scene), 1e-9);
         for (size_t i = 0; i < scene.lights.size(); ++i) {
@@ -168,7 +168,7 @@ TEST(Varied, LightsMoveAFewStepsAndKeepTheirTotal) {
 
 TEST(Varied, PathsStayNearAndNeverSpeedUp) {
     const SyntheticScene scene = load_scene("cubes");
-    for (uint64_t seed = 0; seed < 200; ++seed) {
+    for (uint64_t seed = 0; seed < 60; ++seed) {
         const CameraPath path = varied(scene, seed).path;
         const auto orbit = std::get<OrbitPath>(path);
         EXPECT_LE(std::abs(orbit.distance_m - 4), 0.8);

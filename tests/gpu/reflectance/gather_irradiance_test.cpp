@@ -195,7 +195,7 @@ TEST_F(GatherIrradianceTest, RaysAddUpToASlidingMean) {
     const auto model = fused(grey, kAll);
     ReflectanceSettings settings;
     settings.gathered_rays = 1;
-    for (int i = 0; i < 40; ++i) model->reflectance.update_all(settings);
+    for (int i = 0; i < 26; ++i) model->reflectance.update_all(settings);
     uint32_t checked = 0;
     for (const RefinedRecord& record : model->reflectance.records()) {
         if (!on_wall(record)) continue;
