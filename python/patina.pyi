@@ -150,7 +150,8 @@ class Session:
                  lighting: LightingChoice = "", labels: str = "geometry", materials: str = "auto", poses: str = "auto",
                  gains: str = "auto", network: Path = "", seed: Optional[int] = None, hold_out: int = 0,
                  map: Path = "", checkpoint_every: int = 0, resume: bool = False, extends: Path = "",
-                 reflectance_for: str = "", detail: str = "auto", settings: Optional[Settings] = None,
+                 reflectance_for: str = "", detail: str = "auto", white_albedo: float = 0.8,
+                 settings: Optional[Settings] = None,
                  progress: Optional[Callable[[str, int, Optional[int], str], object]] = None,
                  message: Optional[Callable[[str], object]] = None,
                  stop: Optional[Callable[[], object]] = None) -> None: ...

@@ -25,8 +25,8 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
                               const std::filesystem::path& network, std::optional<uint64_t> seed, uint32_t hold_out,
                               const std::filesystem::path& map, uint32_t checkpoint_every, bool resume,
                               const std::filesystem::path& extends, const std::string& reflectance_for,
-                              const std::string& detail, const std::optional<Settings>& settings, py::object progress,
-                              py::object message, py::object stop) {
+                              const std::string& detail, float white_albedo, const std::optional<Settings>& settings,
+                              py::object progress, py::object message, py::object stop) {
     const auto callbacks = std::make_shared<Callbacks>(std::move(progress), std::move(message), std::move(stop));
     SessionOptions options;
     options.sequence = sequence.string();
@@ -36,6 +36,7 @@ std::unique_ptr<Running> make(Device& device, const std::filesystem::path& seque
     set_choices(options, labels, materials, poses, gains, network, seed, settings);
     options.hold_out = hold_out;
     options.detail = to_detail(detail);
+    options.white_albedo = white_albedo;
     options.map = map;
     options.checkpoint_every = checkpoint_every;
     options.resume = resume;
@@ -91,9 +92,9 @@ void bind_session(py::module_& m) {
              py::arg("materials") = "auto", py::arg("poses") = "auto", py::arg("gains") = "auto",
              py::arg("network") = "", py::arg("seed") = std::nullopt, py::arg("hold_out") = 0u, py::arg("map") = "",
              py::arg("checkpoint_every") = 0u, py::arg("resume") = false, py::arg("extends") = "",
-             py::arg("reflectance_for") = "", py::arg("detail") = "auto", py::arg("settings") = std::nullopt,
-             py::arg("progress") = std::nullopt, py::arg("message") = std::nullopt, py::arg("stop") = std::nullopt,
-             py::keep_alive<1, 2>())
+             py::arg("reflectance_for") = "", py::arg("detail") = "auto", py::arg("white_albedo") = 0.8f,
+             py::arg("settings") = std::nullopt, py::arg("progress") = std::nullopt, py::arg("message") = std::nullopt,
+             py::arg("stop") = std::nullopt, py::keep_alive<1, 2>())
         .def("step", &step)
         .def("checkpoint", &checkpoint)
         // A copy: the session's own changes with the next step.

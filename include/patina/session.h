@@ -82,6 +82,9 @@ struct SessionOptions {
     std::string format;    ///< of the recording; empty: recognised
     uint32_t frames = 0;   ///< at most so many frames; 0 takes all (120 of a synthetic scene)
     LightingChoice lighting = LightsBeside{};
+    /// Albedo of bright surfaces, above 0 and at most 1. It fixes how bright the light is where no lamp is known, or
+    /// lamps are found in what they light: the recording itself tells the product of both.
+    float white_albedo = 0.8f;
     Labels labels = Labels::kGeometry;
     Materials materials = Materials::kAuto;
     Poses poses = Poses::kAuto;

@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-constexpr float kBrightAlbedo = 0.8f, kBrightQuantile = 0.95f;
+constexpr float kBrightQuantile = 0.95f;
 constexpr float kExplained = 0.5f;  // a highlight, by a lamp
 
 /// The highlights as samples of a pass, which takes whole groups.
@@ -88,13 +88,13 @@ LightEvidence measure_highlights(const LitSurface& surface, std::span<const Tria
     return evidence;
 }
 
-FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lamps) {
+FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lamps, float white_albedo) {
     std::vector<ReceivedLight> received;
     for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
     std::array<FittedIntensities, 3> channels;
     for (int c = 0; c < 3; ++c)
         channels[c] = surface.fit(received, kIntensitySteps, surface.size(), static_cast<LightChannel>(c));
-    const double scale = brightest_albedo(channels) / kBrightAlbedo;
+    const double scale = brightest_albedo(channels) / double{white_albedo};
     FittedLights fitted;
     for (size_t l = 0; l < lamps.size(); ++l) {
         Light lamp{.position_m = glm::dvec3(lamps[l].place_m)};
@@ -116,7 +116,7 @@ FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, c
     const LitSurface surface(drawn, settings.cell_m);
     if (surface.size() == 0) return {};
     const TryInVolume try_lamps(pipeline, drawn, surface);
-    return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search));
+    return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search), settings.white_albedo);
 }
 
 }  // namespace patina

@@ -11,7 +11,8 @@ namespace patina {
 
 struct LightFittingSettings {
     LightSearchSettings search;
-    float cell_m = 1;  ///< surface of one chromaticity within a cube of this size has one albedo
+    float white_albedo = 0.8f;  ///< of the brightest surface, which fixes the intensities
+    float cell_m = 1;           ///< surface of one chromaticity within a cube of this size has one albedo
 };
 
 /// Lamps found in what they light.
@@ -27,8 +28,8 @@ struct FittedLights {
 /// ambient light, that explain how bright the surface is where its albedo is the same, shadows included, and whose
 /// mirrored rays meet in the highlights. One lamp after the other, from all places around what was seen and from
 /// `seen`; all are moved whenever there is a new one. Intensities and albedo are known up to one factor, and up to the
-/// mean colour of the light, which is taken for white: the brightest albedo becomes 0.8. Waits for the device. Throws
-/// Error when the reconstruction has no reflectance.
+/// mean colour of the light, which is taken for white: the brightest albedo becomes `white_albedo`. Waits for the
+/// device. Throws Error when the reconstruction has no reflectance.
 FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, const LightFittingSettings& settings);
 
 }  // namespace patina

@@ -30,25 +30,24 @@ class BrightSurfaces {
         if (const auto* encoded = std::get_if<Image<SrgbPixel>>(&color)) add(*encoded, linear_color, kClipped);
     }
 
-    /// The irradiance over pi under which bright surfaces have a usual albedo; 0 without any pixel. White: what colour
-    /// the light has cannot be told from that of the surfaces. Off by 1/128 at most.
-    glm::vec3 ambient() const {
-        if (count_ == 0 && clipped_) return glm::vec3(1 / kBrightAlbedo);
+    /// The irradiance over pi under which bright surfaces have this albedo; 0 without any pixel. White: what colour the
+    /// light has cannot be told from that of the surfaces. Off by 1/128 at most.
+    glm::vec3 ambient(float bright_albedo) const {
+        if (count_ == 0 && clipped_) return glm::vec3(1 / bright_albedo);
         const auto at = static_cast<uint64_t>(kBrightQuantile * static_cast<double>(std::max(count_, uint64_t{1}) - 1));
         uint64_t below = 0;
         for (const Bin& bin : bins_) {
             below += bin.count;
             if (below > at)
-                return glm::vec3(static_cast<float>(bin.sum / static_cast<double>(bin.count)) / kBrightAlbedo);
+                return glm::vec3(static_cast<float>(bin.sum / static_cast<double>(bin.count)) / bright_albedo);
         }
         return glm::vec3(0);
     }
 
   private:
     static constexpr double kBrightQuantile = 0.9;
-    static constexpr float kBrightAlbedo = 0.8f;  // as fit_lights has it
-    static constexpr float kClipped = 0.98f;      // 253 of 255: a compressed picture's 255
-    static constexpr size_t kStride = 61;         // pixels; shares no factor with widths
+    static constexpr float kClipped = 0.98f;  // 253 of 255: a compressed picture's 255
+    static constexpr size_t kStride = 61;     // pixels; shares no factor with widths
     /// A bin holds the values whose exponent and first 7 binary places are the same.
     static constexpr int kDroppedBits = 16;
     static constexpr size_t kBins = size_t{0x7f800000u >> kDroppedBits};  // up to infinity

@@ -193,7 +193,7 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device, glm::dvec
     FittedLights fitted = fit_lights(pipeline, seen_m, options.fitting);
     if (fitted.misfit > kMostMisfit) fitted.lamps.clear();  // what lights the surface is no lamp
     // Without a lamp all pixels tell the ambient light; the fit knows a part of the surface alone, if any.
-    const glm::vec3 ambient = fitted.lamps.empty() ? bright.ambient() : fitted.ambient;
+    const glm::vec3 ambient = fitted.lamps.empty() ? bright.ambient(options.fitting.white_albedo) : fitted.ambient;
     return {"main sequence", fitted.lamps, offset_m, glm::dvec3(ambient), fitted.misfit, fitted.unexplained};
 }
 

@@ -85,6 +85,8 @@ std::string full_pool_warning(const PoolState& pool) {
 SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source)
     : device_(device), options_(options) {
     if (options_.hold_out == 1) throw Error("every frame is held out, which leaves none for a model");
+    if (!(options_.white_albedo > 0 && options_.white_albedo <= 1))
+        throw Error("the albedo of white surfaces is ", options_.white_albedo, ", it must be above 0 and at most 1");
     if (!options_.map.empty()) open_map();
     const std::shared_ptr<MapFile> earlier = earlier_map();
     std::optional<DetailChoice> kept_detail;

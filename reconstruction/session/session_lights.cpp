@@ -27,6 +27,7 @@ LightsOptions search_of(const SessionOptions& options, glm::dvec3 world_offset_m
     find.hold_out = options.hold_out;
     find.track = options.poses == Poses::kTrack || options.poses == Poses::kPrior;
     find.seed = options.seed;
+    find.fitting.white_albedo = options.white_albedo;
     find.reconstruction = Access::values(options.settings);
     if (options.seed) find.reconstruction.seed = *options.seed;
     find.world_offset_m = world_offset_m;

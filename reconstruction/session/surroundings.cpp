@@ -26,7 +26,7 @@ Illumination light_of_surroundings(vulkan::Device& device, const SessionOptions&
     Illumination light;
     light.found_by = "surroundings";
     light.world_offset_m = world_offset_m;
-    light.ambient = glm::dvec3(bright.ambient());
+    light.ambient = glm::dvec3(bright.ambient(options.white_albedo));
     return light;
 }
 

@@ -63,6 +63,10 @@ TEST_F(Endings, WithoutLightsTheSummarySaysWhatToGive) {
     EXPECT_EQ(summary["lights"]["found_by"], "surroundings");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no lamp is known to show"));
+    const double usual = summary["lights"]["ambient"][0];
+    ASSERT_EQ(run(sequence(), {"--white", "0.4"}).exit_code, 0);
+    EXPECT_NEAR(summary_of(out())["lights"]["ambient"][0], 2 * usual, 1e-6 * usual);
+    EXPECT_NE(patina({"run", sequence(), "--out", beside("none"), "--white", "1.5"}).exit_code, 0);
 }
 
 TEST_F(Endings, WithLightsSwitchedOffThereAreNoMaterials) {

@@ -20,19 +20,19 @@ Image<glm::vec3> picture_of(const std::vector<float>& values) {
 
 TEST(BrightSurfaces, WithoutAPixelThereIsNoLight) {
     BrightSurfaces bright;
-    EXPECT_EQ(bright.ambient(), glm::vec3(0));
+    EXPECT_EQ(bright.ambient(kUsualAlbedo), glm::vec3(0));
     bright.add(picture_of({std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}));
-    EXPECT_EQ(bright.ambient(), glm::vec3(0));
+    EXPECT_EQ(bright.ambient(kUsualAlbedo), glm::vec3(0));
 }
 
 TEST(BrightSurfaces, AValueThatIsAloneComesOutAsItIs) {
     BrightSurfaces bright;
     bright.add(picture_of(std::vector<float>(30, 0.37f)));
-    EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo);
+    EXPECT_FLOAT_EQ(bright.ambient(kUsualAlbedo).g, 0.37f / kUsualAlbedo);
     bright.add(picture_of(std::vector<float>(30, 0)));
-    EXPECT_FLOAT_EQ(bright.ambient().g, 0.37f / kUsualAlbedo) << "half of the pixels are more than a tenth";
+    EXPECT_FLOAT_EQ(bright.ambient(kUsualAlbedo).g, 0.37f / kUsualAlbedo) << "half of the pixels are more than a tenth";
     bright.add(Image<SrgbPixel>({kTaken, 2000}, SrgbPixel(10, 200, 30)));
-    EXPECT_FLOAT_EQ(bright.ambient().r, linear_color(SrgbPixel(10, 200, 30)).g / kUsualAlbedo);
+    EXPECT_FLOAT_EQ(bright.ambient(kUsualAlbedo).r, linear_color(SrgbPixel(10, 200, 30)).g / kUsualAlbedo);
 }
 
 TEST(BrightSurfaces, ClippedPixelsAreNoSurfaces) {
@@ -41,15 +41,15 @@ TEST(BrightSurfaces, ClippedPixelsAreNoSurfaces) {
     alone.add(room);
     for (uint32_t y = 0; y < 300; ++y) room.at(0, y) = y % 2 == 0 ? SrgbPixel(255, 255, 255) : SrgbPixel(40, 254, 90);
     with_window.add(room);
-    EXPECT_EQ(with_window.ambient(), alone.ambient());
+    EXPECT_EQ(with_window.ambient(kUsualAlbedo), alone.ambient(kUsualAlbedo));
 
     BrightSurfaces clipped;
     clipped.add(Image<SrgbPixel>({kTaken, 100}, SrgbPixel(255, 255, 255)));
-    EXPECT_FLOAT_EQ(clipped.ambient().g, 1 / kUsualAlbedo) << "there is no light that is less";
+    EXPECT_FLOAT_EQ(clipped.ambient(kUsualAlbedo).g, 1 / kUsualAlbedo) << "there is no light that is less";
 
     BrightSurfaces linear;  // is not clipped
     linear.add(picture_of(std::vector<float>(30, 3)));
-    EXPECT_FLOAT_EQ(linear.ambient().g, 3 / kUsualAlbedo);
+    EXPECT_FLOAT_EQ(linear.ambient(kUsualAlbedo).g, 3 / kUsualAlbedo);
 }
 
 TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {
@@ -65,8 +65,8 @@ TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {
     }
     std::sort(all.begin(), all.end());
     const float quantile = all[static_cast<size_t>(0.9 * static_cast<double>(all.size() - 1))];
-    EXPECT_NEAR(bright.ambient().g * kUsualAlbedo, quantile, quantile / 128);
-    EXPECT_EQ(bright.ambient().r, bright.ambient().b);
+    EXPECT_NEAR(bright.ambient(kUsualAlbedo).g * kUsualAlbedo, quantile, quantile / 128);
+    EXPECT_EQ(bright.ambient(kUsualAlbedo).r, bright.ambient(kUsualAlbedo).b);
 }
 
 }  // namespace

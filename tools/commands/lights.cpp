@@ -45,6 +45,7 @@ void add_lights(CLI::App& app) {
         ->transform(
             one_of<LightsFrom>({{"lighting", LightsFrom::kLightingSequence}, {"self", LightsFrom::kMainSequence}}))
         ->option_text("lighting|self");
+    add_white_option(*command, options.fitting.white_albedo);
     command->add_option("--frames", options.frames, "Use at most so many frames; without it all")
         ->check(at_least_one());
     command

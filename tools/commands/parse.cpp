@@ -26,6 +26,15 @@ CLI::Validator at_least_one() {
             ""};
 }
 
+void add_white_option(CLI::App& command, float& albedo) {
+    command
+        .add_option("--white", albedo,
+                    "Albedo of bright surfaces, up to 1; it fixes how bright the light is where no lamp is known, or "
+                    "lamps are found in what they light")
+        ->check(CLI::Range(0.01f, 1.0f))
+        ->capture_default_str();
+}
+
 glm::dvec3 parse_up(const std::string& text) {
     glm::dvec3 up(0);
     const size_t comma = text.find(',');

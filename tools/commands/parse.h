@@ -51,6 +51,9 @@ CLI::Validator one_of(const std::vector<std::pair<std::string, Value>>& values) 
 /// Takes whole numbers from 1.
 CLI::Validator at_least_one();
 
+/// Adds --white: SessionOptions::white_albedo.
+void add_white_option(CLI::App& command, float& albedo);
+
 /// The value of --up, X,Y,Z. Throws CLI::ValidationError for anything else, and for 0,0,0.
 glm::dvec3 parse_up(const std::string& text);
 

@@ -43,6 +43,7 @@ void SequenceArguments::add_to(CLI::App& command, SequenceOptions& options) {
         "--lighting", lighting,
         "Where lights are found: a sequence of low exposure, or one that holds lighting/; self: in what they "
         "light; none: no reflectance; by default in the sequence's lighting/");
+    add_white_option(command, options.white_albedo);
     command
         .add_option("--labels", options.labels,
                     "Segments: geometry finds them, truth takes those of truth/labels, off does without")
