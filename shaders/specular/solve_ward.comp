@@ -33,6 +33,8 @@ const float kSharpAlpha = 0.3;             // octaves, of an alpha that is known
 
 const float kObservedConfidence = 0.5;   // from which on highlights tell of gloss
 const float kAgreeingShare = 0.5;        // of the ks that surroundings tell
+const float kMostMirrorAlpha = 0.25;     // a wider lobe blurs what is mirrored,
+const float kUnblurredShare = 0.66;      // and leaves less than this of its contrasts, and of the ks that they tell
 const float kLeastShareOfSquare = 0.25;  // of what is mirrored, of a channel: with less it tells nothing of its own
 
 struct Prior {
@@ -119,13 +121,16 @@ Estimate averaged(uint best, float unit) {
 }
 
 // Of a segment that is sure to be a metal or a mirror: what the surroundings that it mirrors tell, where highlights
-// tell too little, or far less, as they do when they are sharp and clipped. Else 0.
+// tell too little; or far less, as they do when they are sharp and clipped; or of a wide lobe, where it mirrors sharply
+// (what the room sends is then taken for light of the lamps). Else 0.
 vec4 mirrored_material(uint label, float mirror, Estimate highlights) {
     const MirrorFit fit = mirrors[label];
     if (mirror < kSureMirror || fit.square.w <= 0.0) return vec4(0.0);
     const vec3 square = max(fit.square.rgb, kLeastShareOfSquare * fit.square.w);
     const vec3 ks = clamp(fit.product.rgb / square, 0.0, 1.0);
-    const bool agree = mean_of(highlights.ks_alpha.rgb) > kAgreeingShare * mean_of(ks);
+    const float told = mean_of(highlights.ks_alpha.rgb);
+    const bool blurred = highlights.ks_alpha.a > kMostMirrorAlpha && mean_of(ks) > kUnblurredShare * told;
+    const bool agree = told > kAgreeingShare * mean_of(ks) && !blurred;
     return agree && highlights.confidence >= kObservedConfidence ? vec4(0.0) : vec4(ks, kMirrorAlpha);
 }
 

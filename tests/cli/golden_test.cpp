@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using sensor::testing::read_text;
 
-constexpr const char* kFrames = "6";
+constexpr const char* kFrames = "12";
 constexpr Extent2D kExtent{512, 424};
 
 /// A run whose numbers are stored in tests/golden/NAME.json.
@@ -37,9 +37,9 @@ const std::vector<Stored>& stored_runs() {
 
 class Golden : public RunFolderTest {
   protected:
-    static void run(const std::string& input, const fs::path& out) {
-        const Outcome outcome = patina(
-            {"run", input, "--out", out, "--quiet", "--frames", kFrames, "--dump-every", "4", "--lighting", "none"});
+    static void run(const std::string& input, const fs::path& out, const char* texture = "auto") {
+        const Outcome outcome = patina({"run", input, "--out", out, "--quiet", "--frames", kFrames, "--dump-every", "4",
+                                        "--lighting", "none", "--texture", texture});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_EQ(outcome.out + outcome.err, "");
     }
@@ -145,8 +145,8 @@ TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
     const fs::path recorded = beside("recorded");
     const Outcome synth = patina({"synth", "cubes", "--frames", kFrames, "--out", recorded});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
-    run(recorded, beside("from_files"));
-    run("synthetic:cubes", beside("live"));
+    run(recorded, beside("from_files"), "off");
+    run("synthetic:cubes", beside("live"), "off");
     const std::string scene = read_text(beside("live") / "scene.glb");
     EXPECT_TRUE(scene == read_text(beside("from_files") / "scene.glb"));
 

@@ -62,6 +62,18 @@ TEST_F(MirroredMaterial, HighlightsThatTellFarLessAreNotBelieved) {
     expect_mirrored(fit_after(sphere(kLabel, {glm::dvec3(0.02), glm::dvec3(0.1), 0.2}), 1));
 }
 
+// What the room sends is taken for a lobe of the lamps' light, far wider than one that mirrors sharply.
+TEST_F(MirroredMaterial, AWideLobeIsNotBelievedWhereTheSurroundingsAreMirroredSharply) {
+    expect_mirrored(fit_after(sphere(kLabel, {glm::dvec3(0.02), glm::dvec3(0.5), 0.4}), 1));
+}
+
+// A brushed metal blurs what it mirrors, so that contrasts tell less of its ks than highlights do.
+TEST_F(MirroredMaterial, AWideLobeIsBelievedWhereContrastsAreBlurred) {
+    const Got got = fit_after(sphere(kLabel, {glm::dvec3(0.02), glm::dvec3(0.95), 0.4}), 1);
+    EXPECT_EQ(got.fit.mirrored, glm::vec4(0));
+    EXPECT_NEAR(got.material.ks_alpha.a, 0.4, 0.02);
+}
+
 // What is mirrored has next to no blue: its quotient would be that of two errors.
 TEST_F(MirroredMaterial, AChannelThatIsHardlyMirroredHasNoMoreThanTheOthers) {
     fill(dull());
