@@ -88,13 +88,14 @@ LightEvidence measure_highlights(const LitSurface& surface, std::span<const Tria
     return evidence;
 }
 
-FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lamps, float white_albedo) {
+FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lamps,
+                       const LightFittingSettings& settings) {
     std::vector<ReceivedLight> received;
     for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
     std::array<FittedIntensities, 3> channels;
     for (int c = 0; c < 3; ++c)
         channels[c] = surface.fit(received, kIntensitySteps, surface.size(), static_cast<LightChannel>(c));
-    const double scale = brightest_albedo(channels) / double{white_albedo};
+    const double scale = brightest_albedo(channels) / double{settings.white_albedo};
     FittedLights fitted;
     for (size_t l = 0; l < lamps.size(); ++l) {
         Light lamp{.position_m = glm::dvec3(lamps[l].place_m)};
@@ -106,6 +107,7 @@ FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lam
     const FittedIntensities all = surface.fit(received, kIntensitySteps, surface.size());
     fitted.misfit = static_cast<float>(all.misfit);
     fitted.unexplained = static_cast<float>(unexplained_highlights(surface, lamps, all.intensities));
+    if (fitted.misfit > settings.most_misfit) fitted.lamps.clear();
     return fitted;
 }
 
@@ -116,7 +118,7 @@ FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, c
     const LitSurface surface(drawn, settings.cell_m);
     if (surface.size() == 0) return {};
     const TryInVolume try_lamps(pipeline, drawn, surface);
-    return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search), settings.white_albedo);
+    return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search), settings);
 }
 
 }  // namespace patina

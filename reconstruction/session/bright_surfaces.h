@@ -22,6 +22,8 @@ namespace patina {
 /// however many pixels it has seen.
 class BrightSurfaces {
   public:
+    static constexpr float kClipped = 0.98f;  ///< 253 of 255: a compressed picture's 255
+
     /// Takes some of the pixels, linear.
     void add(const ColorImage& color) {
         if (const auto* linear = std::get_if<Image<glm::vec3>>(&color))
@@ -46,8 +48,7 @@ class BrightSurfaces {
 
   private:
     static constexpr double kBrightQuantile = 0.9;
-    static constexpr float kClipped = 0.98f;  // 253 of 255: a compressed picture's 255
-    static constexpr size_t kStride = 61;     // pixels; shares no factor with widths
+    static constexpr size_t kStride = 61;  // pixels; shares no factor with widths
     /// A bin holds the values whose exponent and first 7 binary places are the same.
     static constexpr int kDroppedBits = 16;
     static constexpr size_t kBins = size_t{0x7f800000u >> kDroppedBits};  // up to infinity

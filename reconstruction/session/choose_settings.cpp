@@ -70,7 +70,7 @@ ReconstructionSettings choose_settings(const SessionOptions& options, const Sequ
     choose_poses(settings, options.poses, info);
     set_specular(settings, options, std::move(network));
     if (light.lights.empty() && options.materials == Materials::kAuto) {
-        // What mirrors show of the room tells them, without any lamp; other gloss shows lamps.
+        // A mirror is told by the room that it shows. Other gloss needs lamps.
         const bool gathers = settings.reflectance && settings.reflectance->refine.gathered_rays > 0;
         if (!gathers) settings.specular.reset();
         settings.network.reset();

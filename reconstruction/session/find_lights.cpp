@@ -29,9 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kClippedLuminance = 0.98f;
-constexpr float kMostMisfit = 0.15f;  // of rooms whose lamps were found: 0.03 to 0.08; where patches of sun are: 0.26
-
 // What a person is told while a lighting sequence is recorded is what is found in it.
 static_assert(FindLightsSettings{}.threshold == sensor::kLampThreshold);
 
@@ -146,7 +143,7 @@ std::unique_ptr<Source> open_main(const LightsOptions& options, vulkan::Device& 
 
 /// Lamps that the main sequence shows are clipped: where they are is known, how bright they are not.
 LightEstimationSettings clipped_lamps(LightEstimationSettings settings) {
-    settings.find.threshold = kClippedLuminance;
+    settings.find.threshold = BrightSurfaces::kClipped;
     return settings;
 }
 
@@ -190,8 +187,7 @@ Illumination fit(const LightsOptions& options, vulkan::Device& device, glm::dvec
     });
     std::vector<glm::vec3> seen_m;
     for (const FoundLight& lamp : estimation.found()) seen_m.emplace_back(lamp.light.position_m);
-    FittedLights fitted = fit_lights(pipeline, seen_m, options.fitting);
-    if (fitted.misfit > kMostMisfit) fitted.lamps.clear();  // what lights the surface is no lamp
+    const FittedLights fitted = fit_lights(pipeline, seen_m, options.fitting);
     // Without a lamp all pixels tell the ambient light; the fit knows a part of the surface alone, if any.
     const glm::vec3 ambient = fitted.lamps.empty() ? bright.ambient(options.fitting.white_albedo) : fitted.ambient;
     return {"main sequence", fitted.lamps, offset_m, glm::dvec3(ambient), fitted.misfit, fitted.unexplained};

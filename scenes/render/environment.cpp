@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
+#include "engine/core/latitude_longitude.h"
 #include "sensor/files/exr_file.h"
 #include "sensor/files/picture_container.h"
 
@@ -59,7 +60,7 @@ void add_sun(Image<glm::vec3>& picture, const SkyEnvironment& sky) {
     const std::vector<glm::uvec2> disc = disc_pixels(sky, picture.extent());
     float facing_sr = 0;  // solid angle weighted with the cosine to a surface that faces the sun
     for (const glm::uvec2 p : disc) {
-        facing_sr += pixel_solid_angle(p.y, picture.extent()) *
+        facing_sr += static_cast<float>(solid_angle_of_row(p.y, picture.extent())) *
                      glm::dot(direction_of(center_of(p.x, p.y), picture.extent()), sun);
     }
     for (const glm::uvec2 p : disc) picture.at(p.x, p.y) += sky.sun_irradiance / facing_sr;
@@ -112,20 +113,13 @@ glm::vec3 direction_of(glm::vec2 place_px, Extent2D extent) {
     return direction_at(azimuth, elevation);
 }
 
-float pixel_solid_angle(uint32_t row, Extent2D extent) {
-    const double step = std::numbers::pi / extent.height;
-    const double zone =
-        std::cos(row * step) - std::cos((row + 1) * step);  // sphere's area between two latitudes / 2 pi
-    return static_cast<float>(2 * std::numbers::pi * zone / extent.width);
-}
-
 glm::vec3 mean_radiance(const Image<glm::vec3>& environment) {
     const Extent2D extent = environment.extent();
     glm::dvec3 sum(0);
     for (uint32_t y = 0; y < extent.height; ++y) {
         glm::dvec3 row(0);
         for (uint32_t x = 0; x < extent.width; ++x) row += environment.at(x, y);
-        sum += row * static_cast<double>(pixel_solid_angle(y, extent));
+        sum += row * solid_angle_of_row(y, extent);
     }
     return glm::vec3(sum / (4 * std::numbers::pi));
 }

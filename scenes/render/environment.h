@@ -45,9 +45,6 @@ struct StudioEnvironment {
 /// The unit direction in the world of a place in an environment's picture, in pixels from its top left corner.
 glm::vec3 direction_of(glm::vec2 place_px, Extent2D extent);
 
-/// The solid angle of each pixel of a row, sr.
-float pixel_solid_angle(uint32_t row, Extent2D extent);
-
 /// The mean radiance over all directions.
 glm::vec3 mean_radiance(const Image<glm::vec3>& environment);
 

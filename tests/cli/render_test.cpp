@@ -119,17 +119,19 @@ TEST_F(Render, OtherLightsLightTheSameAlbedo) {
 
 TEST_F(Render, AnEnvironmentLightsWhatNothingIsInFrontOf) {
     const fs::path own = lights(8);
-    const std::string half = environment("half.exr", 0.3f, true);
+    const std::string whole = environment("whole.exr", 0.3f), half = environment("half.exr", 0.3f, true);
     const auto picture = [&](const char* name, std::vector<std::string> more) {
-        more.insert(more.end(), {"--lights", own, "--detail", "coarse", "--relight", half});
+        more.insert(more.end(), {"--lights", own, "--detail", "coarse"});
         render_cubes(beside(name), more);
         return read(beside(name) / "000000.png");
     };
-    const Image<SrgbPixel> from_afar = picture("half", {}), turned = picture("turned", {"--relight-turn", "180"});
-    EXPECT_GT(brightness(picture("both", {"--relight", own})), brightness(from_afar) + 10);
-    EXPECT_GT(brightness(from_afar), 10);
-    EXPECT_GT(brightness(turned), 10);
-    EXPECT_NE(from_afar.pixels(), turned.pixels());
+    const Image<SrgbPixel> all_around = picture("whole", {"--relight", whole});
+    const Image<SrgbPixel> one_half = picture("half", {"--relight", half});
+    const Image<SrgbPixel> turned = picture("turned", {"--relight", half, "--relight-turn", "180"});
+    EXPECT_GT(brightness(picture("both", {"--relight", whole, "--relight", own})), brightness(all_around) + 10);
+    EXPECT_GT(brightness(all_around), brightness(one_half) + 10);
+    EXPECT_GT(brightness(all_around), brightness(turned) + 10);
+    EXPECT_NE(one_half.pixels(), turned.pixels());
 }
 
 TEST_F(Render, ShowsWhatARunWouldHaveHad) {

@@ -94,10 +94,8 @@ TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
         const Outcome outcome = view(file, {"--layer", layer, "--no-panels"});
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
         EXPECT_THAT(outcome.out, HasSubstr(std::string("1 frames; layer ") + layer));
-        if (pictures.size() % 3 == 1) {
-            ASSERT_EQ(view(again, {"--layer", layer, "--no-panels", "--quiet"}).exit_code, 0);
-            EXPECT_EQ(read(file).pixels(), read(again).pixels()) << layer;
-        }
+        ASSERT_EQ(view(again, {"--layer", layer, "--no-panels", "--quiet"}).exit_code, 0);
+        EXPECT_EQ(read(file).pixels(), read(again).pixels()) << layer;
         EXPECT_GT(distinct(read(file)), 3u) << layer << " is not blank";
         pictures.push_back(read(file).pixels());
         for (size_t i = 0; i + 1 < pictures.size(); ++i)

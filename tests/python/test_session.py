@@ -83,6 +83,8 @@ def test_held_out_frames_are_not_fused(device):
     assert np.array_equal(held_out.positions, alone.positions) and np.array_equal(held_out.colors, alone.colors)
     with pytest.raises(patina.Error, match="every frame is held out"):
         patina.Session(device, CUBES, frames=2, lighting="none", hold_out=1)
+    with pytest.raises(patina.Error, match="the albedo of white surfaces is 2, it must be above 0 and at most 1"):
+        patina.Session(device, CUBES, frames=2, white_albedo=2)
 
 
 def test_wrong_choices_are_sentences(device):

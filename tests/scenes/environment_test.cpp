@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include "engine/core/latitude_longitude.h"
 #include "tests/data_folder.h"
 
 namespace patina::scenes {
@@ -36,7 +37,7 @@ TEST(Environment, CentreIsAheadTopIsUpAndRightIsRight) {
 
 TEST(Environment, PixelsCoverTheWholeSphere) {
     double sum = 0;
-    for (uint32_t y = 0; y < kExtent.height; ++y) sum += double{pixel_solid_angle(y, kExtent)} * kExtent.width;
+    for (uint32_t y = 0; y < kExtent.height; ++y) sum += solid_angle_of_row(y, kExtent) * kExtent.width;
     EXPECT_NEAR(sum, 4 * std::numbers::pi, 1e-5);
 }
 
@@ -55,7 +56,7 @@ glm::vec3 irradiance(const Image<glm::vec3>& environment, glm::vec3 normal) {
     for (uint32_t y = 0; y < extent.height; ++y) {
         for (uint32_t x = 0; x < extent.width; ++x) {
             const float facing = glm::dot(direction_of(glm::vec2(x, y) + 0.5f, extent), normal);
-            sum += glm::dvec3(environment.at(x, y)) * double{std::max(0.0f, facing) * pixel_solid_angle(y, extent)};
+            sum += glm::dvec3(environment.at(x, y)) * double{std::max(0.0f, facing)} * solid_angle_of_row(y, extent);
         }
     }
     return glm::vec3(sum);

@@ -8,11 +8,9 @@
 #include <map>
 #include <tuple>
 
-#include <glm/gtc/packing.hpp>
-
-#include "engine/core/shader_camera.h"
 #include "shared/fusion/voxel_map.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/gpu/reflectance/surroundings_inputs.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
 namespace patina {
@@ -75,14 +73,8 @@ class CollectSurroundingsTest : public GpuTest {
         state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
         state.surroundings =
             frame.upload_bytes(state.surroundings, kCountsAt, std::as_bytes(std::span(&before, 1)), false);
-        SurroundingsInputs inputs;
-        inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
-                                      std::as_bytes(std::span(room.depth_m.pixels())));
-        std::vector<uint64_t> halves;
-        for (const glm::vec4& pixel : room.color.pixels()) halves.push_back(glm::packHalf4x16(pixel));
-        inputs.color_linear =
-            frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
-        inputs.depth_camera = inputs.color_camera = make_camera(kCamera, room.world_from_camera);
+        SurroundingsInputs inputs =
+            upload_surroundings(frame, kCamera, room.world_from_camera, room.depth_m, room.color);
         inputs.radiance_scale = radiance_scale;
         inputs.lamp_luminance = 0.5f;
         for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)

@@ -7,13 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include <glm/gtc/packing.hpp>
-
-#include "engine/core/shader_camera.h"
 #include "passes/reflectance/collect_surroundings.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
+#include "tests/gpu/reflectance/surroundings_inputs.h"
 
 namespace patina {
 
@@ -76,14 +74,8 @@ class RadiantRoomTest : public GpuTest {
         for (const glm::dvec3 direction : kAll) {
             const RigFrame seen = view(radiance, direction);
             model.reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
-                SurroundingsInputs inputs;
-                inputs.depth_m = frame.upload("depth", {kCamera.extent, vulkan::Format::kR32f},
-                                              std::as_bytes(std::span(seen.depth_m.pixels())));
-                std::vector<uint64_t> halves;
-                for (const glm::vec4& pixel : seen.color.linear.pixels()) halves.push_back(glm::packHalf4x16(pixel));
-                inputs.color_linear =
-                    frame.upload("color", {kCamera.extent, vulkan::Format::kRgba16f}, std::as_bytes(std::span(halves)));
-                inputs.depth_camera = inputs.color_camera = make_camera(kCamera, seen.world_from_camera);
+                SurroundingsInputs inputs =
+                    upload_surroundings(frame, kCamera, seen.world_from_camera, seen.depth_m, seen.color.linear);
                 inputs.radiance_scale = radiance_scale;
                 inputs.lamp_luminance = 1e6f;
                 for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
