@@ -2,6 +2,7 @@
 
 #include "passes/fusion/shade_color.h"
 #include "passes/shading/restore_detail.h"
+#include "reconstruction/texture/shown_pictures.h"
 
 namespace patina {
 
@@ -9,8 +10,9 @@ namespace {
 
 ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds& voxels,
                                          const VisibleBlocks& visible, const RaycastImages& model,
-                                         const RestoreDetailInputs& inputs, std::optional<glm::vec4> mirrored_ball_m,
-                                         const OtherLights* other) {
+                                         const RestoreDetailInputs& inputs, const PosedCamera& camera,
+                                         std::optional<glm::vec4> mirrored_ball_m, const OtherLights* other,
+                                         ShownPictures* pictures) {
     ReflectanceStage& stage = *stages.reflectance;
     stage.share_albedo(graph);
     const auto [predicted, segments] = mirrored_ball_m
@@ -18,15 +20,18 @@ ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stage
                                            : stage.add_predict(graph, voxels, visible, model, other);
     // Under other lights than those of the frames, their colours would bring back the shadows of these.
     const ReflectanceStageSettings& settings = stage.settings();
-    const bool detailed = stages.settings.fusion.color && settings.refine.albedo && settings.detail && !other;
-    return {detailed ? add_restore_detail(graph, predicted, inputs) : predicted, predicted,
-            stage.add_coverage(graph, visible, predicted, model.position_m), segments};
+    const bool detailed = settings.refine.albedo && settings.detail;
+    const bool fused = detailed && stages.settings.fusion.color && !other;
+    PredictedImages seen = fused ? add_restore_detail(graph, predicted, inputs) : predicted;
+    if (detailed && pictures)
+        seen = pictures->add_to_view(graph, camera, inputs.position_m, inputs.normal, predicted, seen);
+    return {seen, predicted, stage.add_coverage(graph, visible, predicted, model.position_m), segments};
 }
 
 }  // namespace
 
 ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera, Gloss gloss,
-                           const OtherLights* other) {
+                           const OtherLights* other, ShownPictures* pictures) {
     const GeometryStage& geometry = stages.geometry;
     const VoxelMapIds voxels = geometry.map().import(graph);
     const VisibleBlocks visible = geometry.add_visible_to_view(graph, voxels, camera);
@@ -44,7 +49,8 @@ ModelImages add_model_view(graph::FrameGraph& graph, Stages& stages, const Posed
         std::optional<glm::vec4> mirrored_ball_m;
         if (gloss == Gloss::kMirrors && !other)
             mirrored_ball_m.emplace(glm::vec3(camera.world_from_camera[3]), stages.settings.around_m);
-        view.reflectance = add_reflectance(graph, stages, voxels, visible, model, inputs, mirrored_ball_m, other);
+        view.reflectance =
+            add_reflectance(graph, stages, voxels, visible, model, inputs, camera, mirrored_ball_m, other, pictures);
     }
     return view;
 }

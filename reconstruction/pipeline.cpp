@@ -83,7 +83,8 @@ ViewReadback Pipeline::view(const Intrinsics& camera, const RigidTransform& worl
     fuse_waiting();
     fusion_.require(camera, world_from_camera);
     graph::FrameGraph graph = runner_.begin();
-    ViewReadback view = wire_view(graph, stages_, make_posed_camera(camera, world_from_camera));
+    ViewReadback view =
+        wire_view(graph, stages_, make_posed_camera(camera, world_from_camera), pictures_ ? &*pictures_ : nullptr);
     runner_.submit(std::move(graph));
     return view;
 }
@@ -157,6 +158,21 @@ TextureLayout Pipeline::sampled_between_vertices(const TextureLayout& layout) {
     return fine;
 }
 
+void Pipeline::show_pictures(const Intrinsics& camera, size_t count,
+                             const std::function<void(const TakePicture&)>& give) {
+    pictures_.reset();
+    if (!stages_.reflectance || fusion_.frames() == 0 || count == 0) return;
+    refine_all();
+    pictures_.emplace(runner_, stages_);
+    const size_t most = ShownPictures::most_of(camera), every = (count + most - 1) / most;
+    size_t number = 0;
+    give([&](const TexturePicture& picture) {
+        if (number++ % every != 0) return;
+        fusion_.require(picture.color.camera, picture.world_from_camera);
+        pictures_->add(picture);
+    });
+}
+
 void Pipeline::for_each_tile(const UseTile& use) {
     const double block_m = double{stages_.reflectance->observations().settings().block_m};
     for (const MapTile& tile : tiles_of_records(streaming_.observed_blocks(), block_m, settings().around_m)) {
@@ -183,6 +199,7 @@ void Pipeline::relight(const Relighting& relighting) {
     if (!stages_.reflectance || fusion_.frames() == 0) return;
     refine_all();
     const std::vector<RelightTurn> turns = stages_.reflectance->relight(relighting);
+    if (pictures_) pictures_->relight();
     if (turns.empty()) return refine_all();
     const auto change_voxels = [&](graph::FrameGraph& graph, const std::function<void(VoxelMapIds&)>& change) {
         VoxelMapIds voxels = map().import(graph);

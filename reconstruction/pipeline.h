@@ -18,6 +18,7 @@
 #include "reconstruction/stages/stages.h"
 #include "reconstruction/streaming/streaming.h"
 #include "reconstruction/texture/bake_texture.h"
+#include "reconstruction/texture/shown_pictures.h"
 #include "reconstruction/tracked_fusion.h"
 #include "reconstruction/view_readback.h"
 
@@ -113,6 +114,12 @@ class Pipeline {
     std::vector<TexturePage> bake_texture(const TextureLayout& layout,
                                           const std::function<void(const TakePicture&)>& give);
 
+    /// What view() shows from now on has the detail of these pictures, where they show it (ShownPictures); of more than
+    /// fit, some. `count`: how many `give` gives, of a camera as `camera`. Of the frames that were fused so far: asked
+    /// for before relight(), as their light is divided out at once. Without reflectance nothing changes. Throws Error
+    /// as ShownPictures::add does.
+    void show_pictures(const Intrinsics& camera, size_t count, const std::function<void(const TakePicture&)>& give);
+
     /// Brings all of the reflectance up to date, where there is any; else that is spread over frames.
     void refine_all();
 
@@ -163,9 +170,10 @@ class Pipeline {
     Stages stages_;
     Streaming streaming_;
     PosedFusion fusion_;
-    std::optional<TrackedFusion> tracked_;  ///< empty where poses are given
-    uint32_t low_exposures_ = 0;            ///< frames of low exposure so far
-    uint32_t gathered_after_ = 0;           ///< frames, when refine_all() gathered light last
+    std::optional<TrackedFusion> tracked_;   ///< empty where poses are given
+    std::optional<ShownPictures> pictures_;  ///< of views; empty without
+    uint32_t low_exposures_ = 0;             ///< frames of low exposure so far
+    uint32_t gathered_after_ = 0;            ///< frames, when refine_all() gathered light last
 };
 
 }  // namespace patina

@@ -43,8 +43,8 @@ ModelView ViewReadback::get() const {
     return view;
 }
 
-ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera) {
-    const ModelImages model = add_model_view(graph, stages, camera, Gloss::kMirrors);
+ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera, ShownPictures* pictures) {
+    const ModelImages model = add_model_view(graph, stages, camera, Gloss::kMirrors, nullptr, pictures);
     ViewReadback view;
     view.position_m_ = graph.read_back(model.position_m);
     view.normal_ = graph.read_back(model.normal);

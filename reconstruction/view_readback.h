@@ -9,6 +9,8 @@
 
 namespace patina {
 
+class ShownPictures;
+
 /// A view on its way from the device.
 class ViewReadback {
   public:
@@ -17,7 +19,8 @@ class ViewReadback {
     ModelView get() const;
 
   private:
-    friend ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera);
+    friend ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera,
+                                  ShownPictures* pictures);
     struct Reflectance {
         graph::Readback kd, ks_alpha, label, rgb, light, model_kd, model_rgb;
         std::optional<graph::Readback> segments;  ///< gpu::SegmentAlbedo per label, where materials are given
@@ -28,7 +31,9 @@ class ViewReadback {
     std::optional<Reflectance> reflectance_;
 };
 
-/// Declares a view of the model: what a camera sees of its surface, colours, labels and reflectance.
-ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera);
+/// Declares a view of the model: what a camera sees of its surface, colours, labels and reflectance; with `pictures` as
+/// add_model_view() has them.
+ViewReadback wire_view(graph::FrameGraph& graph, Stages& stages, const PosedCamera& camera,
+                       ShownPictures* pictures = nullptr);
 
 }  // namespace patina

@@ -15,6 +15,12 @@ struct TextureBandIds {
     graph::BufferId known;   ///< u32 by texel: the albedo by records (lib/color/packed_albedo.glsl)
 };
 
+/// Of a view (passes/texture/show_texels.h).
+struct ViewTexelIds {
+    TextureBandIds texels;
+    graph::BufferId shown;  ///< vec4 by texel: as sums, of all that pictures show
+};
+
 /// Some rows of a texture's page while it is baked; small enough for each buffer to be bound whole.
 class TextureBand {
   public:

@@ -8,8 +8,8 @@ namespace patina {
 
 /// A picture, and the model as its camera sees it.
 struct BlendPictureInputs {
-    graph::ImageId color;       ///< rgba16f, linear (add_convert_color)
-    graph::ImageId position_m;  ///< rgba32f: the model cast into the same view, of any extent; w: depth, 0: nothing
+    graph::ImageId color;    ///< rgba16f, linear (add_convert_color)
+    graph::ImageId depth_m;  ///< r32f: the model cast into the same view, of any extent (add_cast_depth)
     /// What the model reflects there, of the cast image's extent (PredictedImages).
     struct Reflected {
         graph::ImageId kd, rgb, light;
@@ -26,5 +26,11 @@ struct BlendPictureInputs {
 /// cosine over squared distance, less towards the picture's border and under a highlight.
 TextureBandIds add_blend_picture(graph::FrameGraph& frame, const TextureBand& band, const TextureBandIds& ids,
                                  const BlendPictureInputs& inputs);
+
+/// The same for who looks at the texels from `eye_m` (world). Cosine over squared distance counts no more than for
+/// them, and pictures from about their direction, within 3 degrees, count most. What a picture shows without telling
+/// the albedo (add_albedo_picture) is in `shown` alone.
+ViewTexelIds add_blend_picture_for(graph::FrameGraph& frame, const TextureBand& band, const ViewTexelIds& ids,
+                                   const BlendPictureInputs& inputs, glm::vec3 eye_m);
 
 }  // namespace patina

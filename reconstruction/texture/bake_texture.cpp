@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "passes/input/convert_color.h"
 #include "passes/texture/balance_texels.h"
-#include "passes/texture/blend_picture.h"
 #include "passes/texture/detail_normals.h"
 #include "passes/texture/finish_texels.h"
 #include "passes/texture/place_texels.h"
@@ -13,20 +11,10 @@
 namespace patina {
 namespace {
 
-// Light, shadows and highlights change slowly: the model is cast into views of no more pixels than this along a side.
-constexpr uint32_t kMostCast_px = 640;
-
 // The gutter around a chart is three texels wide: of so large texels no two charts share one.
 constexpr uint32_t kMostShrunk = 4;
 // Root mean square of the sine between mesh and volume, about 2 degrees: below, there is noise.
 constexpr double kLeastDetail = 0.035;
-
-Extent2D cast_extent(Extent2D picture) {
-    const uint32_t longest = std::max(picture.width, picture.height);
-    if (longest <= kMostCast_px) return picture;
-    const auto scaled = [&](uint32_t px) { return std::max((px * kMostCast_px + longest / 2) / longest, 1u); };
-    return {scaled(picture.width), scaled(picture.height)};
-}
 
 void copy_rows(const TextureBand& band, std::span<const uint32_t> words, TexturePage& page) {
     const size_t first = size_t{band.first_row()} * band.extent().width;
@@ -83,23 +71,7 @@ void TextureBake::place(const TextureLayout& layout) {
 
 void TextureBake::add(const TexturePicture& picture) {
     graph::FrameGraph graph = runner_.begin();
-    BlendPictureInputs inputs;
-    inputs.color = add_convert_color(graph, picture.color);
-    inputs.gain = picture.gain;
-    inputs.voxel_m = stages_.settings.map.voxel_m;
-    const PosedCamera camera = make_posed_camera(picture.color.camera, picture.world_from_camera);
-    inputs.camera = camera.gpu;
-    const PosedCamera cast = resized(camera, cast_extent(picture.color.camera.extent));
-    const GeometryStage& geometry = stages_.geometry;
-    const VoxelMapIds voxels = geometry.map().import(graph);
-    const VisibleBlocks visible = geometry.add_visible_to_view(graph, voxels, cast);
-    const RaycastImages model =
-        geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), cast.intrinsics);
-    inputs.position_m = model.position_m;
-    if (stages_.reflectance) {
-        const PredictedImages seen = stages_.reflectance->add_predict_picture(graph, voxels, visible, model);
-        inputs.reflected = {seen.kd, seen.rgb, seen.light};
-    }
+    const BlendPictureInputs inputs = add_cast_picture(graph, stages_, picture, Gloss::kMean);
     for (const TextureBand& band : bands_)
         TextureBand::keep(graph, add_blend_picture(graph, band, band.import(graph), inputs));
     runner_.submit(std::move(graph));

@@ -5,19 +5,11 @@
 
 #include "engine/graph/runner.h"
 #include "passes/state/texture_band.h"
-#include "patina/frame.h"
 #include "patina/texture.h"
-#include "reconstruction/stages/stages.h"
+#include "reconstruction/texture/cast_picture.h"
 #include "reconstruction/texture/texture_triangles.h"
 
 namespace patina {
-
-/// A colour picture of what was reconstructed.
-struct TexturePicture {
-    ColorInput color;
-    RigidTransform world_from_camera{1.0};
-    glm::vec3 gain{1};  ///< of its colours over those of the first frame
-};
 
 /// Bakes a texture from pictures: each in turn is looked at by all texels that it shows.
 class TextureBake {

@@ -15,34 +15,7 @@ layout(std430, binding = 5) writeonly buffer Albedo {
     uint albedo[];
 };  // pack_albedo; state: 0 empty, 1 filled, 2 seen
 layout(push_constant) uniform Push { FinishTexelsParams params; };
-
-const float kFillReach_m = 0.03;
-
-// What the blocks around a place of the page agree on; a: 0 where none is of this surface.
-struct Around {
-    vec4 factor;  // rgb: of pictures
-    vec4 albedo;  // rgb: by pictures, balanced; of blocks nearer than kFillReach_m
-};
-
-Around around_of(vec2 place, vec3 position_m) {
-    const vec2 at = place / float(kTextureBlock) - 0.5;
-    const ivec2 low = ivec2(floor(at));
-    const vec2 t = at - vec2(low);
-    Around sums = Around(vec4(0.0), vec4(0.0));
-    for (int i = 0; i < 4; ++i) {
-        const ivec2 step = ivec2(i & 1, i >> 1);
-        const ivec2 block = clamp(low + step, ivec2(0), ivec2(params.blocks_x, params.blocks_y) - 1);
-        const uint index = uint(block.y) * params.blocks_x + uint(block.x);
-        const vec2 shares = mix(1.0 - t, t, vec2(step));
-        const float share = shares.x * shares.y + 1e-4, away_m = distance(blocks[index].position_m.xyz, position_m);
-        if (balance[index].a == 0.0 || away_m > params.reach_m) continue;
-        sums.factor += share * balance[index];
-        if (away_m <= kFillReach_m) sums.albedo += share * vec4(balance[index].rgb * blocks[index].seen.rgb, 1.0);
-    }
-    if (sums.factor.a > 0.0) sums.factor /= sums.factor.a;
-    if (sums.albedo.a > 0.0) sums.albedo /= sums.albedo.a;
-    return sums;
-}
+#include "texture/around.glsl"
 
 void main() {
     const uvec2 texel = gl_GlobalInvocationID.xy;
@@ -56,7 +29,8 @@ void main() {
     const vec4 sum = sums[index];
     const vec3 by_records = unpack_albedo(known[index]);
     const vec3 position_m = uintBitsToFloat(uvec3(own.x, own.y, own.z));
-    const Around around = around_of(vec2(texel) + vec2(0.5, float(params.first_row) + 0.5), position_m);
+    const Around around = around_of(vec2(texel) + vec2(0.5, float(params.first_row) + 0.5), position_m,
+                                    ivec2(params.blocks_x, params.blocks_y), params.reach_m);
     if (sum.a <= 0.0) {
         albedo[index] = pack_albedo(around.albedo.a > 0.0 ? around.albedo.rgb : by_records, 1u);
     } else {

@@ -9,6 +9,8 @@ INTEROP_CONST uint kTextureTile = 16u;        // texels along the side of a tile
 INTEROP_CONST uint kGutterTexels = 3u;        // around a triangle, that show its border
 INTEROP_CONST uint kNoSurface = 0x80008000u;  // SurfaceTexel::normal where no surface lies; no normal is packed to that
 
+INTEROP_CONST float kLeastShownLight = 0.02f;  // irradiance over pi below which a colour says little of the albedo
+
 INTEROP_CONST uint kBalanceTaps = 4u;   // on each side of a block, along each axis
 INTEROP_CONST uint kTextureBlock = 8u;  // texels along the side of a block, whose mean is balanced
 
@@ -46,13 +48,21 @@ struct DetailNormalsParams {
     uint pad0;
 };
 
-struct BlendPictureParams {
-    Camera camera;  // the colour camera, of the pictures' extent
+struct AlbedoPictureParams {
     vec4 gain;      // rgb: of the picture over the first one's; w unused
-    uint texels;    // of the band
     float voxel_m;  // of the surface
     uint pad0;
     uint pad1;
+    uint pad2;
+};
+
+struct BlendPictureParams {
+    Camera camera;      // the colour camera, of the pictures' extent
+    vec4 gain_voxel_m;  // rgb: gain of the picture over the first one's; w: edge of a voxel of the surface
+    float eye_x_m;      // world: who looks at the texels
+    float eye_y_m;
+    float eye_z_m;
+    uint texels;  // of the band
 };
 
 // What the texels of a block that a picture shows have in common.
@@ -86,6 +96,12 @@ struct FinishTexelsParams {
     float reach_m;  // a block whose mean is farther from a texel is of another surface
     uint pad0;
     uint pad1;
+};
+
+struct ViewTexelsParams {
+    uvec2 blocks;   // of the view
+    float reach_m;  // a block whose mean is farther from a texel is of another surface
+    uint pad0;
 };
 
 INTEROP_END

@@ -157,11 +157,13 @@ class BakeTest : public GpuTest {
             for (const glm::dvec4& v : image.pixels()) packed.push_back(glm::packHalf4x16(glm::vec4(v)));
             return frame.upload(name, {image.extent(), vulkan::Format::kRgba16f}, std::as_bytes(std::span(packed)));
         };
-        std::vector<glm::vec4> positions(picture.position_m.pixels().begin(), picture.position_m.pixels().end());
+        std::vector<float> depths_m;
+        for (const glm::dvec4& position : picture.position_m.pixels())
+            depths_m.push_back(static_cast<float>(position.w));
         BlendPictureInputs inputs;
         inputs.color = halves("color", picture.color);
-        inputs.position_m = frame.upload("position", {picture.position_m.extent(), vulkan::Format::kRgba32f},
-                                         std::as_bytes(std::span(positions)));
+        inputs.depth_m = frame.upload("depth", {picture.position_m.extent(), vulkan::Format::kR32f},
+                                      std::as_bytes(std::span(depths_m)));
         if (picture.reflects)
             inputs.reflected = {halves("kd", picture.kd), halves("rgb", picture.rgb), halves("light", picture.light)};
         inputs.camera = make_camera(picture.camera, picture.world_from_camera);

@@ -1,0 +1,57 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// What a picture says of the albedo of what it shows: its colour, less the highlight, over the light there (paper, Eq.
+// 7). One invocation per pixel.
+#include "shared/input/convert_color.h"
+#include "shared/texture/texture.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0, rgba16f) uniform readonly image2D color;
+layout(binding = 1, r32f) uniform readonly image2D depth_m;  // cast, of any extent; 0: nothing was hit
+layout(binding = 2, rgba16f) uniform readonly image2D kd;
+layout(binding = 3, rgba16f) uniform readonly image2D rgb;
+layout(binding = 4, rgba16f) uniform readonly image2D light;
+layout(binding = 5, rgba16f) uniform writeonly image2D albedo;
+layout(push_constant) uniform Push { AlbedoPictureParams params; };
+
+const float kOffVox = 3.0;      // along the view: farther from the surface of the nearest cast pixel is another one
+const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
+const float kLeastClear = 0.5;  // of what is seen is diffuse; below, the highlight's error is as large as the albedo
+
+vec4 albedo_at(ivec2 pixel) {
+    const vec4 seen = imageLoad(color, pixel);
+    const vec2 cast_at = (vec2(pixel) + 0.5) * vec2(imageSize(depth_m)) / vec2(imageSize(color)) - 0.5;
+    const float own_m = imageLoad(depth_m, ivec2(floor(cast_at + 0.5))).r;
+    if (seen.a == kColorInvalid || own_m <= 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
+    const ivec2 low = ivec2(floor(cast_at));
+    const vec2 t = cast_at - vec2(low);
+    vec3 shine = vec3(0.0), highlight = vec3(0.0);
+    float shares = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        const ivec2 step = ivec2(i & 1, i >> 1), at = low + step;
+        const vec2 weights = mix(1.0 - t, t, vec2(step));
+        const float share = weights.x * weights.y, there_m = imageLoad(depth_m, at).r;  // 0 outside the image
+        if (share == 0.0 || there_m <= 0.0 || abs(there_m - own_m) > kOffVox * params.voxel_m) continue;
+        const vec4 known = imageLoad(kd, at);
+        const vec3 arrives = imageLoad(light, at).rgb;
+        shine += share * arrives;
+        if (known.a > 0.0) highlight += share * max(imageLoad(rgb, at).rgb - known.rgb * arrives, 0.0);
+        shares += share;
+    }
+    if (shares == 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
+    shine /= shares;
+    highlight /= shares;
+    // Below 0 where the model's highlight is too bright: in a view from about here it is likewise, which cancels out.
+    const vec3 diffuse = seen.rgb / params.gain.rgb - highlight;
+    const vec3 own = diffuse / max(shine, vec3(kLeastShownLight));
+    const float clear = dot(diffuse, vec3(1.0)) / max(dot(seen.rgb / params.gain.rgb, vec3(1.0)), 1e-6);
+    const bool tells = seen.a == kColorValid && all(greaterThanEqual(shine, vec3(kLeastShownLight))) &&
+                       all(lessThanEqual(own, vec3(kMostAlbedo))) && clear >= kLeastClear;
+    return tells ? vec4(max(own, 0.0), kColorValid) : vec4(clamp(own, -1e4, 1e4), kColorClipped);
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(albedo)))) return;
+    imageStore(albedo, pixel, albedo_at(pixel));
+}
