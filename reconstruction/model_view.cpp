@@ -23,8 +23,12 @@ ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stage
     const bool detailed = settings.refine.albedo && settings.detail;
     const bool fused = detailed && stages.settings.fusion.color && !other;
     PredictedImages seen = fused ? add_restore_detail(graph, predicted, inputs) : predicted;
-    if (detailed && pictures)
-        seen = pictures->add_to_view(graph, camera, inputs.position_m, inputs.normal, predicted, seen);
+    if (detailed && pictures) {
+        // What pictures show holds what it mirrored; under the same light no other rays need to tell.
+        const bool again = mirrored_ball_m && !pictures->relit();
+        const PredictedImages mean = again ? stage.add_predict(graph, voxels, visible, model, other).images : predicted;
+        seen = pictures->add_to_view(graph, camera, inputs.position_m, inputs.normal, mean, seen);
+    }
     return {seen, predicted, stage.add_coverage(graph, visible, predicted, model.position_m), segments};
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/core/luminance.h"
+#include "reconstruction/pipeline.h"
 #include "sensor/recording/payload_codec.h"
 
 namespace patina {
@@ -141,6 +142,11 @@ void KeptPictures::give(const SequenceInfo& info, std::span<const gpu::ColorGain
     };
     for (const Kept& kept : kept_) give_one(kept.picture, unpack(kept));
     if (current_) give_one(current_->picture, current_->color);
+}
+
+void KeptPictures::show_in(Pipeline& pipeline, const SequenceInfo& info) {
+    pipeline.show_pictures(info.color, size(),
+                           [&](const Pipeline::TakePicture& take) { give(info, pipeline.gains(), take); });
 }
 
 double KeptPictures::finest_pixel_m() const {

@@ -9,10 +9,12 @@
 
 #include "engine/graph/state_visitor.h"
 #include "patina/frame.h"
-#include "reconstruction/texture/bake_texture.h"
+#include "reconstruction/texture/cast_picture.h"
 #include "shared/photometry/color_gains.h"
 
 namespace patina {
+
+class Pipeline;
 
 /// Colour pictures that a texture is baked from when all frames were fused: of each stretch of the camera's way the
 /// sharpest one, compressed without loss. Where they become too many or take too much memory, stretches become longer,
@@ -32,6 +34,9 @@ class KeptPictures {
     /// Gives all of them to `take`, in the order of frames. `gains`: by order (Pipeline::gains); empty: all are 1.
     void give(const SequenceInfo& info, std::span<const gpu::ColorGains> gains,
               const std::function<void(const TexturePicture&)>& take);
+
+    /// Views of the pipeline's model show them from now on (Pipeline::show_pictures). Throws Error as that does.
+    void show_in(Pipeline& pipeline, const SequenceInfo& info);
 
     /// Edge of a pixel on the surface, metres, of the finest tenth of the pixels with depth; 0 without any.
     double finest_pixel_m() const;

@@ -71,7 +71,7 @@ void TextureBake::place(const TextureLayout& layout) {
 
 void TextureBake::add(const TexturePicture& picture) {
     graph::FrameGraph graph = runner_.begin();
-    const BlendPictureInputs inputs = add_cast_picture(graph, stages_, picture, Gloss::kMean);
+    const BlendPictureInputs inputs = add_cast_picture(graph, stages_, picture);
     for (const TextureBand& band : bands_)
         TextureBand::keep(graph, add_blend_picture(graph, band, band.import(graph), inputs));
     runner_.submit(std::move(graph));

@@ -21,7 +21,7 @@ Extent2D cast_extent(Extent2D picture) {
 }
 
 BlendPictureInputs add_cast_picture(graph::FrameGraph& graph, Stages& stages, const TexturePicture& picture,
-                                    Gloss gloss, std::optional<graph::ImageId> depth_m) {
+                                    std::optional<graph::ImageId> depth_m) {
     BlendPictureInputs inputs;
     inputs.color = add_convert_color(graph, picture.color);
     inputs.gain = picture.gain;
@@ -35,12 +35,7 @@ BlendPictureInputs add_cast_picture(graph::FrameGraph& graph, Stages& stages, co
     const RaycastImages model =
         geometry.add_sharpened(graph, geometry.add_raycast(graph, voxels, visible), cast.intrinsics);
     inputs.depth_m = add_cast_depth(graph, model.position_m, depth_m);
-    if (stages.reflectance && gloss == Gloss::kMirrors) {
-        const glm::vec4 ball_m(glm::vec3(picture.world_from_camera[3]), stages.settings.around_m);
-        const PredictedImages seen =
-            stages.reflectance->add_predict_mirrors(graph, voxels, visible, model, ball_m).images;
-        inputs.reflected = {seen.picture_kd, seen.rgb, seen.light};
-    } else if (stages.reflectance) {
+    if (stages.reflectance) {
         const PredictedImages seen = stages.reflectance->add_predict_picture(graph, voxels, visible, model);
         inputs.reflected = {seen.kd, seen.rgb, seen.light};
     }

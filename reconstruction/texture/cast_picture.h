@@ -19,9 +19,9 @@ struct TexturePicture {
 Extent2D cast_extent(Extent2D picture);
 
 /// The picture on the device, and the model as its camera sees it, of cast_extent(). What the camera sees of the model
-/// must be on the device. `gloss`: whether glossy surfaces mirror what is around. `depth_m`: where the depth goes;
-/// empty: into a transient image. Throws Error as add_convert_color does.
+/// must be on the device. `depth_m`: where the depth goes; empty: into a transient image. Throws Error as
+/// add_convert_color does.
 BlendPictureInputs add_cast_picture(graph::FrameGraph& graph, Stages& stages, const TexturePicture& picture,
-                                    Gloss gloss, std::optional<graph::ImageId> depth_m = std::nullopt);
+                                    std::optional<graph::ImageId> depth_m = std::nullopt);
 
 }  // namespace patina

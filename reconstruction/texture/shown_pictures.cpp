@@ -30,8 +30,7 @@ void ShownPictures::add(const TexturePicture& picture) {
     kept.depth_m =
         device.create_image({.name = "depth of a picture", .extent = cast_extent(camera.extent), .format = kDepth});
     graph::FrameGraph graph = runner_.begin();
-    const BlendPictureInputs inputs =
-        add_cast_picture(graph, stages_, picture, Gloss::kMirrors, graph.import(kept.depth_m));
+    const BlendPictureInputs inputs = add_cast_picture(graph, stages_, picture, graph.import(kept.depth_m));
     graph.keep(inputs.depth_m);
     graph.keep(add_albedo_picture(graph, inputs, graph.import(kept.albedo)));
     runner_.submit(std::move(graph));

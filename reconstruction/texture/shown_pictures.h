@@ -33,6 +33,7 @@ class ShownPictures {
 
     /// The model is under another light from now on.
     void relight() { other_light_ = true; }
+    bool relit() const { return other_light_; }
 
   private:
     struct Picture {

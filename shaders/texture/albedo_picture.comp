@@ -16,6 +16,7 @@ layout(push_constant) uniform Push { AlbedoPictureParams params; };
 
 const float kOffVox = 3.0;      // along the view: farther from the surface of the nearest cast pixel is another one
 const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
+const float kClipped = 0.99;    // from here on a channel of a clipped pixel is at least as bright
 const float kLeastClear = 0.5;  // of what is seen is diffuse; below, the highlight's error is as large as the albedo
 
 vec4 albedo_at(ivec2 pixel) {
@@ -25,7 +26,7 @@ vec4 albedo_at(ivec2 pixel) {
     if (seen.a == kColorInvalid || own_m <= 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
     const ivec2 low = ivec2(floor(cast_at));
     const vec2 t = cast_at - vec2(low);
-    vec3 shine = vec3(0.0), highlight = vec3(0.0);
+    vec3 shine = vec3(0.0), highlight = vec3(0.0), modelled = vec3(0.0);
     float shares = 0.0;
     for (int i = 0; i < 4; ++i) {
         const ivec2 step = ivec2(i & 1, i >> 1), at = low + step;
@@ -33,18 +34,23 @@ vec4 albedo_at(ivec2 pixel) {
         const float share = weights.x * weights.y, there_m = imageLoad(depth_m, at).r;  // 0 outside the image
         if (share == 0.0 || there_m <= 0.0 || abs(there_m - own_m) > kOffVox * params.voxel_m) continue;
         const vec4 known = imageLoad(kd, at);
-        const vec3 arrives = imageLoad(light, at).rgb;
+        const vec3 arrives = imageLoad(light, at).rgb, leaves = imageLoad(rgb, at).rgb;
         shine += share * arrives;
-        if (known.a > 0.0) highlight += share * max(imageLoad(rgb, at).rgb - known.rgb * arrives, 0.0);
+        modelled += share * leaves;
+        if (known.a > 0.0) highlight += share * max(leaves - known.rgb * arrives, 0.0);
         shares += share;
     }
     if (shares == 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
     shine /= shares;
     highlight /= shares;
+    modelled /= shares;
+    vec3 leaving = seen.rgb / params.gain.rgb;
+    if (seen.a == kColorClipped)
+        leaving = mix(leaving, max(leaving, modelled), greaterThanEqual(seen.rgb, vec3(kClipped)));
     // Below 0 where the model's highlight is too bright: in a view from about here it is likewise, which cancels out.
-    const vec3 diffuse = seen.rgb / params.gain.rgb - highlight;
+    const vec3 diffuse = leaving - highlight;
     const vec3 own = diffuse / max(shine, vec3(kLeastShownLight));
-    const float clear = dot(diffuse, vec3(1.0)) / max(dot(seen.rgb / params.gain.rgb, vec3(1.0)), 1e-6);
+    const float clear = dot(diffuse, vec3(1.0)) / max(dot(leaving, vec3(1.0)), 1e-6);
     const bool tells = seen.a == kColorValid && all(greaterThanEqual(shine, vec3(kLeastShownLight))) &&
                        all(lessThanEqual(own, vec3(kMostAlbedo))) && clear >= kLeastClear;
     return tells ? vec4(max(own, 0.0), kColorValid) : vec4(clamp(own, -1e4, 1e4), kColorClipped);

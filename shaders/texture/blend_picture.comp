@@ -25,7 +25,7 @@ const float kLeastCosine = 0.2;
 const float kBorder = 0.06;     // of the picture's width, over which weights fall to 0
 const float kOffVox = 1.5;      // farther from the cast surface is another one
 const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
-const float kNear_rad = 0.05;   // about 3 degrees: between views that err alike
+const float kNear_rad = 0.02;   // about 3 degrees: between views that err alike
 const float kSharpness = 3.0;   // of the preference for views that see most of a texel
 
 struct Corner {

@@ -97,7 +97,12 @@ TEST(RunSummary, HowARunFellShortIsReportedWhereItDid) {
 TEST(RunSummary, GainsAndHeldOutPicturesAreReportedWhereThereAreAny) {
     RunSummary summary = test::full_summary();
     summary.color_gains = {{0.5, 1, 2}, {0.25, 1, 1.5}, {0.75, 1, 4}};
-    summary.held_out = {30, {0.9, 20, 22}, PictureScore{0.8, 24, 26}, {0.9, 21, 23}, PictureScore{0.8, 25, 27}};
+    summary.held_out = {30,
+                        {0.9, 20, 22},
+                        PictureScore{0.8, 24, 26},
+                        {0.9, 21, 23},
+                        PictureScore{0.8, 25, 27},
+                        PictureScore{0.8, 19, 18}};
     ordered_json run = ordered_json::parse(run_json(summary));
     EXPECT_EQ(run["color_gains"]["green"], ordered_json({{"min", 0.25}, {"median", 1.0}, {"max", 1.5}}));
     EXPECT_EQ(run["color_gains"]["blue"]["max"], 4.0);
@@ -106,6 +111,7 @@ TEST(RunSummary, GainsAndHeldOutPicturesAreReportedWhereThereAreAny) {
     EXPECT_EQ(run["held_out"]["reflectance"]["coverage"], 0.8);
     EXPECT_EQ(run["held_out"]["mean_color_own_gain"]["psnr_srgb_db"], 23.0);
     EXPECT_EQ(run["held_out"]["reflectance_own_gain"]["psnr_linear_db"], 25.0);
+    EXPECT_EQ(run["held_out"]["records"]["psnr_srgb_db"], 18.0);
     summary.held_out->reflectance.reset();
     EXPECT_TRUE(ordered_json::parse(run_json(summary))["held_out"]["reflectance"].is_null());
 }

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "export/write_exr.h"
 #include "reconstruction/api/access.h"
+#include "reconstruction/session/kept_pictures.h"
 #include "reconstruction/session/session_core.h"
 #include "reconstruction/session/session_lights.h"
 #include "sensor/truth.h"
@@ -57,8 +58,11 @@ void render_never_recorded(const SequenceOptions& run, const fs::path& truth, co
         throw Error("'", run.map.string(), "' holds a run that has not come to its end, after ",
                     session.ledger().read() - 1, " frames");
     session.end();
+    KeptPictures pictures;
+    session.bring_back([&](graph::StateVisitor& visitor, MapFile&) { pictures.visit(visitor); });
     RigidTransform session_from_truth = rigid_inverse(truth_from_run);
     session_from_truth[3] -= glm::dvec4(session.world_offset_m(), 0);
+    pictures.show_in(session.pipeline(), session.info());
     session.pipeline().refine_all();
     write_views(session, poses_of(truth / "novel", session_from_truth, session.info()), "novel", out);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "reconstruction/api/access.h"
+#include "reconstruction/session/kept_pictures.h"
 #include "reconstruction/session/session_core.h"
 #include "reconstruction/session/shortfalls.h"
 #include "sensor/files/picture_file.h"
@@ -167,10 +168,14 @@ Outcome render(const RenderOptions& given_options) {
     const Intrinsics camera = options.extent ? resized(recorded, *options.extent) : recorded;
     const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : session.info().fps;
     if (!options.video.empty()) sink.open_video(options.video, camera.extent, fps);
-    while (session.step()) continue;
+    KeptPictures pictures;
+    while (session.step()) {
+        if (const Frame* frame = session.fused()) pictures.add(session.info(), *frame, session.pipeline().frames() - 1);
+    }
     session.end();
     console.end();
     const std::vector<RigidTransform> poses = view_poses(options, session, given);
+    pictures.show_in(session.pipeline(), session.info());
     if (options.relight.empty())
         session.pipeline().refine_all();
     else

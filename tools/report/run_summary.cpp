@@ -66,7 +66,8 @@ Json held_out_json(const HeldOutSummary& held_out) {
         {"mean_color", score_json(held_out.mean_color)},
         {"reflectance", held_out.reflectance ? score_json(*held_out.reflectance) : Json()},
         {"mean_color_own_gain", score_json(held_out.mean_color_own_gain)},
-        {"reflectance_own_gain", held_out.reflectance_own_gain ? score_json(*held_out.reflectance_own_gain) : Json()}};
+        {"reflectance_own_gain", held_out.reflectance_own_gain ? score_json(*held_out.reflectance_own_gain) : Json()},
+        {"records", held_out.records ? score_json(*held_out.records) : Json()}};
 }
 
 template <class Value>

@@ -72,6 +72,7 @@ struct HeldOutSummary {
     /// The same after a gain per channel of each picture's own (gain_between()).
     PictureScore mean_color_own_gain{};
     std::optional<PictureScore> reflectance_own_gain{};
+    std::optional<PictureScore> records{};  ///< of the re-rendering by records alone, without detail of pictures
 };
 
 /// A segment that the run told apart.

@@ -106,10 +106,10 @@ void HeldOut::visit(graph::StateVisitor& visitor) {
 HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, OutputFolder& folder) const {
     pipeline.wait();
     const std::span<const gpu::ColorGains> gains = pipeline.gains();
-    Scores mean_color, reflectance;
+    Scores mean_color, reflectance, records;
     std::string lines =
         "# index; coverage, PSNR linear and PSNR sRGB in dB of the mean colour; the same with a gain of the picture's "
-        "own; then both of the re-rendering\n";
+        "own; then both of the re-rendering; then both of the re-rendering by records alone\n";
     for (const Kept& kept : kept_) {
         const ViewReadback pending =
             pipeline.view(info.color, kept.world_from_depth * rigid_inverse(info.color_from_depth));
@@ -123,6 +123,7 @@ HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, Ou
         if (view.reflectance) {
             view.reflectance->rgb = at_gain(std::move(view.reflectance->rgb), gain);
             lines += reflectance.add(seen, view.reflectance->rgb);
+            lines += records.add(seen, at_gain(std::move(view.reflectance->model_rgb), gain));
         }
         lines += '\n';
         folder.write(fmt::format("held_out/{:06}.png", kept.index),
@@ -133,6 +134,7 @@ HeldOutSummary HeldOut::compare(Pipeline& pipeline, const SequenceInfo& info, Ou
     if (!reflectance.plain.empty()) {
         summary.reflectance = median_of(reflectance.plain);
         summary.reflectance_own_gain = median_of(reflectance.own_gain);
+        summary.records = median_of(records.plain);
     }
     return summary;
 }

@@ -321,16 +321,9 @@ class Run {
         const auto start = Clock::now();
         console_.stage("Comparing with held-out pictures");
         pipeline_.refine_all();
-        show_pictures();
+        pictures_.show_in(pipeline_, session_.info());
         held_out_summary_ = held_out_.compare(pipeline_, session_.info(), folder_);
         times_s_.emplace_back("held_out", seconds_since(start));
-    }
-
-    /// What is rendered from now on has the detail of the pictures that were kept.
-    void show_pictures() {
-        pipeline_.show_pictures(session_.info().color, pictures_.size(), [this](const Pipeline::TakePicture& take) {
-            pictures_.give(session_.info(), pipeline_.gains(), take);
-        });
     }
 
     void check_validation() {
