@@ -20,6 +20,8 @@
 namespace patina {
 namespace {
 
+constexpr uint32_t kFrames = 60, kFarEnd = kFrames / 2;
+
 /// Along a wall with things before it, 12 m there and back, coarse and small.
 scenes::SyntheticScene street() {
     scenes::SyntheticScene scene;
@@ -43,14 +45,14 @@ scenes::SyntheticScene street() {
     for (int i = 0; i < 9; ++i) path.waypoints.push_back({{1.5 * i, 0, 0}, {1.5 * i + 0.2, 0.1, 1.3}});
     for (int i = 7; i > 0; --i) path.waypoints.push_back({{1.5 * i, -0.1, 0.1}, {1.5 * i - 0.2, 0.1, 1.3}});
     scene.path = path;
-    scene.fps = 3;
+    scene.fps = kFrames / path.period_s;
     scene.camera = scaled_to(scene.camera, {128, 106});
     return scene;
 }
 
 struct Tour {
     explicit Tour(vulkan::Device& device) {
-        scenes::SyntheticSource source(device, street(), {.frames = 120});
+        scenes::SyntheticSource source(device, street(), {.frames = kFrames});
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
         lights = source.scene().lights;
@@ -253,7 +255,7 @@ TEST_F(StreamingTest, ACameraThatJumpsFindsWhatItHadLeft) {
     const auto jump = [&](uint32_t resident_blocks) {
         Pipeline pipeline(device(), settings(resident_blocks));
         pipeline.set_lights(tour_.lights);
-        for (const size_t first : {0, 55, 2, 57, 25, 4}) add(pipeline, first, first + 10);
+        for (const size_t first : {0, 27, 1, 28, 12, 2}) add(pipeline, first, first + 6);
         return result_of(pipeline);
     };
     const Result all = jump(0), few = jump(1);
@@ -269,8 +271,8 @@ TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
     pipeline.set_lights(tour_.lights);
     Pipeline whole(device(), settings(0));
     whole.set_lights(tour_.lights);
-    add(pipeline, 0, 60);
-    add(whole, 0, 60);
+    add(pipeline, 0, kFarEnd);
+    add(whole, 0, kFarEnd);
     ASSERT_GT(pipeline.streamed_blocks().away, 500u);
     const auto view = [&](Pipeline& of, const RigidTransform& pose) {
         const ViewReadback seen = of.view(tour_.info.depth, pose);
@@ -306,7 +308,7 @@ TEST_F(StreamingTest, ViewsBetweenFramesMakeNoDifference) {
     for (size_t i = 0; i < tour_.frames.size(); ++i) {
         add(pipeline, i, i + 1);
         // Between two choices of samples.
-        if (i % 8 == 2 || i % 8 == 5) pipeline.view(tour_.info.depth, *tour_.frames[(i + 60) % 120].world_from_camera);
+        if (i % 8 == 2 || i % 8 == 5) pipeline.view(tour_.info.depth, *tour_.frames[(i + kFarEnd) % kFrames].world_from_camera);
     }
     const Result few = result_of(pipeline), alone = reconstruct(tight);
     EXPECT_EQ(few.counters.observations.records.refused_blocks, 0u);
@@ -339,7 +341,7 @@ TEST_F(StreamingTest, WhatTheColorCameraSeesIsOnTheDeviceToo) {
 TEST_F(StreamingTest, TilesHoldEachRecordOnce) {
     Pipeline pipeline(device(), settings(0));
     pipeline.set_lights(tour_.lights);
-    add(pipeline, 0, 60);
+    add(pipeline, 0, kFarEnd);
     pipeline.wait();
     const ObservationMap& map = pipeline.reflectance()->observations();
     graph::FrameGraph graph = runner().begin();
@@ -376,7 +378,7 @@ TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
     {
         Pipeline pipeline(device(), settings(1));
         pipeline.set_lights(tour_.lights);
-        add(pipeline, 0, 66);
+        add(pipeline, 0, kFarEnd + 3);
         Transaction change(map.database());
         StateWriter writer(device(), map);
         pipeline.visit(writer);
@@ -390,7 +392,7 @@ TEST_F(StreamingTest, ARunGoesOnFromAStateOfWhichPartsAreAway) {
     pipeline.visit(reader);
     reader.finish();
     ASSERT_GT(pipeline.streamed_blocks().away, 500u);
-    add(pipeline, 66, tour_.frames.size());
+    add(pipeline, kFarEnd + 3, tour_.frames.size());
     const Result again = result_of(pipeline);
     expect_same_scene(again, whole);
     EXPECT_EQ(again.streamed.left, whole.streamed.left);
@@ -405,7 +407,7 @@ TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
     stages.reflectance->set_lights(tour_.lights);
     Streaming streaming(runner(), stages);
     PosedFusion fusion(runner(), stages, streaming);
-    for (size_t i = 0; i < 60; ++i) fusion.add(patina::to_rgbd(tour_.info, tour_.frames[i]));
+    for (size_t i = 0; i < kFarEnd; ++i) fusion.add(patina::to_rgbd(tour_.info, tour_.frames[i]));
     runner().wait();
     const auto all_blocks = [&] {
         std::set<std::array<int, 4>> blocks;
@@ -418,7 +420,7 @@ TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
     ASSERT_GT(away, 500u);
     ASSERT_GT(records_away, 1000u);
     const PosedCamera start = make_posed_camera(tour_.info.depth, *tour_.frames[3].world_from_camera);
-    for (uint32_t index = 60; index < 64; ++index) {  // in one of them blocks leave, too
+    for (uint32_t index = kFarEnd; index < kFarEnd + 4; ++index) {  // in one of them blocks leave, too
         const ComingPlaces coming = streaming.plan(stages.geometry.around(start, start), index, {true, true});
         ASSERT_GT(coming.voxel_blocks, 100u);
         ASSERT_GT(coming.observed_blocks, 50u);
