@@ -114,28 +114,27 @@ TEST_F(Endings, OptionsOfTheSceneReachIt) {
         EXPECT_EQ(run(sequence(), more).exit_code, 0);
         return read_text(out() / "scene.glb");
     };
-    EXPECT_THAT(scene_with({}), Not(HasSubstr("_KD")));
-    EXPECT_THAT(scene_with({"--raw-attributes", "--gltf-fresnel", "constant"}), HasSubstr("_KD"));
-    const auto triangles = [&](std::vector<std::string> more) {
-        scene_with(std::move(more));
-        return summary_of(out())["totals"];
-    };
-    const nlohmann::json all = triangles({"--surface-error", "0"}), usual = triangles({});
-    const auto sum = [](const nlohmann::json& totals) {
+    const auto totals = [&] { return summary_of(out())["totals"]; };
+    EXPECT_THAT(scene_with({}), AllOf(HasSubstr("TEXCOORD_0"), Not(HasSubstr("_KD"))));
+    const nlohmann::json usual = totals();
+    EXPECT_THAT(scene_with({"--raw-attributes", "--gltf-fresnel", "constant", "--surface-error", "20"}),
+                HasSubstr("_KD"));
+    EXPECT_LT(totals()["triangles"], usual["triangles"]);
+    EXPECT_THAT(scene_with({"--texture", "off", "--surface-error", "0"}),
+                AllOf(HasSubstr("COLOR_0"), Not(HasSubstr("TEXCOORD_0"))));
+    const nlohmann::json all = totals();
+    const auto sum = [](const nlohmann::json& of) {
         int triangles_in_all = 0;
         for (const char* name :
              {"triangles", "degenerate triangles left out", "triangles of stray parts left out", "triangles collapsed"})
-            triangles_in_all += totals.at(name).get<int>();
+            triangles_in_all += of.at(name).get<int>();
         return triangles_in_all;
     };
     EXPECT_EQ(sum(all), sum(usual)) << "none without a word";
     EXPECT_EQ(all["triangles collapsed"], 0);
     EXPECT_LT(usual["triangles"], all["triangles"].get<int>() / 2);
-    EXPECT_LT(triangles({"--surface-error", "20"})["triangles"], usual["triangles"]);
-    EXPECT_LT(triangles({"--triangles", "300"})["triangles"], usual["triangles"]);
-    EXPECT_THAT(scene_with({}), HasSubstr("TEXCOORD_0"));
-    EXPECT_THAT(scene_with({"--texture", "off"}), AllOf(HasSubstr("COLOR_0"), Not(HasSubstr("TEXCOORD_0"))));
-    EXPECT_THAT(scene_with({"--texture", "3"}), HasSubstr("\"texel_m\":0.003"));
+    EXPECT_THAT(scene_with({"--texture", "3", "--triangles", "300"}), HasSubstr("\"texel_m\":0.003"));
+    EXPECT_LT(totals()["triangles"], usual["triangles"]);
     const Outcome wrong = run(sequence(), {"--texture", "fine"});
     EXPECT_NE(wrong.exit_code, 0);
     EXPECT_THAT(wrong.err, HasSubstr("'fine' is neither auto nor off nor a size of 0.1 to 100 millimetres"));

@@ -308,7 +308,8 @@ TEST_F(StreamingTest, ViewsBetweenFramesMakeNoDifference) {
     for (size_t i = 0; i < tour_.frames.size(); ++i) {
         add(pipeline, i, i + 1);
         // Between two choices of samples.
-        if (i % 8 == 2 || i % 8 == 5) pipeline.view(tour_.info.depth, *tour_.frames[(i + kFarEnd) % kFrames].world_from_camera);
+        if (i % 8 == 2 || i % 8 == 5)
+            pipeline.view(tour_.info.depth, *tour_.frames[(i + kFarEnd) % kFrames].world_from_camera);
     }
     const Result few = result_of(pipeline), alone = reconstruct(tight);
     EXPECT_EQ(few.counters.observations.records.refused_blocks, 0u);
