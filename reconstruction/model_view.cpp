@@ -20,10 +20,9 @@ ModelImages::Reflectance add_reflectance(graph::FrameGraph& graph, Stages& stage
                                            : stage.add_predict(graph, voxels, visible, model, other);
     // Under other lights than those of the frames, their colours would bring back the shadows of these.
     const ReflectanceStageSettings& settings = stage.settings();
-    const bool detailed = settings.refine.albedo && settings.detail;
-    const bool fused = detailed && stages.settings.fusion.color && !other;
+    const bool fused = stages.settings.fusion.color && settings.refine.albedo && settings.detail && !other;
     PredictedImages seen = fused ? add_restore_detail(graph, predicted, inputs) : predicted;
-    if (detailed && pictures) {
+    if (settings.detail && pictures) {
         // What pictures show holds what it mirrored; under the same light no other rays need to tell.
         const bool again = mirrored_ball_m && !pictures->relit();
         const PredictedImages mean = again ? stage.add_predict(graph, voxels, visible, model, other).images : predicted;

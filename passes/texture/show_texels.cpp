@@ -61,7 +61,8 @@ PredictedImages add_show_texels(graph::FrameGraph& frame, const TextureBand& pag
         inputs.other_light ? shown.kd : add_view_texels(frame, page, all, blocks, inputs.elsewhere.kd, false);
     auto pass = frame.compute("texture.show_texels", spirv::show_texels);
     pass.specialise("kPictured", inputs.other_light ? 0u : 1u);
-    pass.read("albedo", albedo).read("elsewhere", inputs.elsewhere.rgb);
+    // Under other light each known albedo is shown in it: there is no elsewhere.
+    pass.read("albedo", albedo).read("elsewhere", inputs.other_light ? inputs.predicted.kd : inputs.elsewhere.rgb);
     pass.read("rgb", inputs.predicted.rgb).read("picture_kd", inputs.predicted.picture_kd);
     pass.read("light", inputs.predicted.light);
     shown.rgb = pass.create("shown_rgb", {page.extent(), vulkan::Format::kRgba16f});

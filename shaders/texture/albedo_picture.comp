@@ -4,6 +4,7 @@
 // 7). One invocation per pixel.
 #include "shared/input/convert_color.h"
 #include "shared/texture/texture.h"
+#include "texture/albedo_states.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba16f) uniform readonly image2D color;
@@ -14,10 +15,25 @@ layout(binding = 4, rgba16f) uniform readonly image2D light;
 layout(binding = 5, rgba16f) uniform writeonly image2D albedo;
 layout(push_constant) uniform Push { AlbedoPictureParams params; };
 
-const float kOffVox = 3.0;      // along the view: farther from the surface of the nearest cast pixel is another one
+const float kOffVox = 3.0;  // along the view: farther from the surface of the nearest cast pixel is another one
+const int kEdge_px = 2;
+const float kBentVox = 3.0;     // along the view
 const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
 const float kClipped = 0.99;    // from here on a channel of a clipped pixel is at least as bright
 const float kLeastClear = 0.5;  // of what is seen is diffuse; below, the highlight's error is as large as the albedo
+
+// Whether the surface ends near a pixel of the cast image: there a picture's pixels may show what is behind. Between
+// two pixels on opposite sides a plane's inverse depth lies in the middle.
+bool at_edge(ivec2 pixel, float own_m) {
+    for (int i = 0; i < 4; ++i) {
+        const ivec2 step = kEdge_px * ivec2(i == 1 ? 0 : 1, i == 3 ? -1 : min(i, 1));
+        const float one_m = imageLoad(depth_m, pixel + step).r, other_m = imageLoad(depth_m, pixel - step).r;
+        if (one_m <= 0.0 || other_m <= 0.0) return true;
+        const float bent_m = abs(1.0 / one_m + 1.0 / other_m - 2.0 / own_m) * own_m * own_m;
+        if (bent_m > kBentVox * params.voxel_m) return true;
+    }
+    return false;
+}
 
 vec4 albedo_at(ivec2 pixel) {
     const vec4 seen = imageLoad(color, pixel);
@@ -53,6 +69,7 @@ vec4 albedo_at(ivec2 pixel) {
     const float clear = dot(diffuse, vec3(1.0)) / max(dot(leaving, vec3(1.0)), 1e-6);
     const bool tells = seen.a == kColorValid && all(greaterThanEqual(shine, vec3(kLeastShownLight))) &&
                        all(lessThanEqual(own, vec3(kMostAlbedo))) && clear >= kLeastClear;
+    if (at_edge(ivec2(floor(cast_at + 0.5)), own_m)) return vec4(clamp(own, -1e4, 1e4), kColorAtEdge);
     return tells ? vec4(max(own, 0.0), kColorValid) : vec4(clamp(own, -1e4, 1e4), kColorClipped);
 }
 

@@ -7,6 +7,7 @@
 #include "lib/math/octahedral.glsl"
 #include "shared/input/convert_color.h"
 #include "shared/texture/texture.h"
+#include "texture/albedo_states.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool kReflects = true;  // the model says how much light there is; else colours are taken
@@ -26,6 +27,7 @@ const float kBorder = 0.06;     // of the picture's width, over which weights fa
 const float kOffVox = 1.5;      // farther from the cast surface is another one
 const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
 const float kNear_rad = 0.02;   // about 3 degrees: between views that err alike
+const float kAside = 4.0;       // over kNear_rad: from beyond, what is seen beside edges may be another surface
 const float kSharpness = 3.0;   // of the preference for views that see most of a texel
 
 struct Corner {
@@ -109,6 +111,7 @@ void main() {
         const vec3 to_picture = -to_world_direction(params.camera, point_m) / range_m;
         const float between = length(to_eye - to_picture) / kNear_rad;
         agrees = 1.0 / pow(1.0 + between * between, 2.0);
+        if (seen.a == kColorAtEdge && between > kAside) return;
     }
     const float weight = pow(sight, kSharpness) * agrees * fade * max(clear * clear, 1e-3);
     const vec4 says = vec4(weight * albedo, weight);

@@ -20,5 +20,8 @@ void main() {
     const vec3 highlight = max(imageLoad(rgb, pixel).rgb - imageLoad(picture_kd, pixel).rgb * shine, 0.0);
     // As much as the colours were divided by.
     const vec3 diffuse = seen.rgb * (kPictured ? max(shine, vec3(kLeastShownLight)) : shine);
-    imageStore(shown_rgb, pixel, seen.a > 0.0 ? vec4(max(diffuse + highlight, 0.0), 1.0) : imageLoad(elsewhere, pixel));
+    imageStore(shown_rgb, pixel,
+               seen.a > 0.0 ? vec4(max(diffuse + highlight, 0.0), 1.0)
+               : kPictured  ? imageLoad(elsewhere, pixel)
+                            : imageLoad(rgb, pixel));
 }

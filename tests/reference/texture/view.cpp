@@ -14,6 +14,17 @@ glm::dvec4 pixel_at(const Image<glm::dvec4>& image, int x, int y) {
 
 constexpr double kEyesApart_rad = 0.02;  // pictures from within it count most
 
+/// Within 2 pixels of where a surface ends or bends sharply.
+bool at_edge(const Image<glm::dvec4>& positions_m, int x, int y, double own_m, double voxel_m) {
+    for (const glm::ivec2 step : {glm::ivec2(2, 0), glm::ivec2(0, 2), glm::ivec2(2, 2), glm::ivec2(2, -2)}) {
+        const double one_m = pixel_at(positions_m, x + step.x, y + step.y).w;
+        const double other_m = pixel_at(positions_m, x - step.x, y - step.y).w;
+        if (one_m <= 0 || other_m <= 0) return true;
+        if (std::abs(1 / one_m + 1 / other_m - 2 / own_m) * own_m * own_m > 3 * voxel_m) return true;
+    }
+    return false;
+}
+
 double sum_of(const glm::dvec3& v) { return v.r + v.g + v.b; }
 
 }  // namespace
@@ -59,8 +70,12 @@ Image<glm::dvec4> albedo_picture(const BakePicture& picture) {
             const bool lit = std::min({light.r, light.g, light.b}) >= 0.02;
             const bool sane = std::max({own.r, own.g, own.b}) <= 1.5;
             const bool clear = sum_of(diffuse) >= 0.5 * sum_of(color);
+            const bool edge = at_edge(picture.position_m, static_cast<int>(std::floor(cx + 0.5)),
+                                      static_cast<int>(std::floor(cy + 0.5)), own_m, picture.voxel_m);
             const bool tells = seen.a == 1 && lit && sane && clear;
-            result.at(x, y) = tells ? glm::dvec4(glm::max(own, 0.0), 1) : glm::dvec4(own, 0.5);
+            result.at(x, y) = edge    ? glm::dvec4(own, 0.25)
+                              : tells ? glm::dvec4(glm::max(own, 0.0), 1)
+                                      : glm::dvec4(own, 0.5);
         }
     }
     return result;
@@ -102,6 +117,7 @@ SaidToEye blend_picture_for(const BakePicture& picture, const Image<glm::dvec4>&
     const double sight =
         std::min(cosine / (range_m * range_m), std::max(glm::dot(normal, to_eye), 0.2) / (away_m * away_m));
     const double apart = glm::distance(to_eye, to_camera) / kEyesApart_rad;
+    if (worth == 0.25 && apart > 4) return {};
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);
     const double weight = std::pow(sight, 3) * into * into * (3 - 2 * into) / std::pow(1 + apart * apart, 2);
     const glm::dvec4 said(weight * own, weight);
