@@ -43,8 +43,8 @@ struct ModelView {
         Image<uint32_t> label;       ///< 0: none
         Image<glm::vec4> rgb;        ///< linear re-rendering; a = 1 where kd is known
         Image<glm::vec4> light;      ///< what kd multiplies in rgb; a: the part shadows leave
-        Image<glm::vec4> model_kd;   ///< as kd, without detail that is restored from the fused colour
-        Image<glm::vec4> model_rgb;  ///< as rgb, of model_kd; nowhere the fused colour
+        Image<glm::vec4> model_kd;   ///< as kd, without detail of pictures or of the fused colour
+        Image<glm::vec4> model_rgb;  ///< as rgb, of model_kd; nowhere what pictures saw
         /// By label: the albedo of the whole segment before refinement, as the fit or the network has it; of materials
         /// that are given, the mean of the segment's.
         std::vector<std::optional<glm::vec3>> segment_kd;

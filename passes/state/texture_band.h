@@ -15,10 +15,10 @@ struct TextureBandIds {
     graph::BufferId known;   ///< u32 by texel: the albedo by records (lib/color/packed_albedo.glsl)
 };
 
-/// Of a view (passes/texture/show_texels.h).
+/// Versions of a view's texels within one frame (passes/texture/show_texels.h).
 struct ViewTexelIds {
     TextureBandIds texels;
-    graph::BufferId shown;  ///< vec4 by texel: as sums, of all that pictures show
+    graph::BufferId shown;  ///< vec4 by texel: as sums, of what leaves without highlights
 };
 
 /// Some rows of a texture's page while it is baked; small enough for each buffer to be bound whole.

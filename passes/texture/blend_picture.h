@@ -27,10 +27,4 @@ struct BlendPictureInputs {
 TextureBandIds add_blend_picture(graph::FrameGraph& frame, const TextureBand& band, const TextureBandIds& ids,
                                  const BlendPictureInputs& inputs);
 
-/// The same for who looks at the texels from `eye_m` (world). Cosine over squared distance counts no more than for
-/// them, and pictures from about their direction, within 3 degrees, count most. What a picture shows without telling
-/// the albedo (add_albedo_picture) is in `shown` alone.
-ViewTexelIds add_blend_picture_for(graph::FrameGraph& frame, const TextureBand& band, const ViewTexelIds& ids,
-                                   const BlendPictureInputs& inputs, glm::vec3 eye_m);
-
 }  // namespace patina

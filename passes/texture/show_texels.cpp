@@ -20,7 +20,7 @@ Blocks add_blocks(graph::FrameGraph& frame, const TextureBand& page, const Textu
     return {count, add_balance_blocks(frame, blocks, page.extent(), pixel_m, true)};
 }
 
-/// rgba16f. Balanced: the albedo, as in `elsewhere` where no picture tells it. Else what pictures show; a: 1 there.
+/// rgba16f. Balanced: the albedo, as in `elsewhere` where no picture tells it. Else what `texels` hold; a: 1 there.
 graph::ImageId add_view_texels(graph::FrameGraph& frame, const TextureBand& page, const TextureBandIds& texels,
                                const Blocks& blocks, graph::ImageId elsewhere, bool balanced) {
     auto pass = frame.compute("texture.view_texels", spirv::view_texels);
@@ -28,21 +28,21 @@ graph::ImageId add_view_texels(graph::FrameGraph& frame, const TextureBand& page
     pass.read("Texels", texels.texels).read("Sums", texels.sums);
     pass.read("Blocks", blocks.balance.blocks).read("Balance", blocks.balance.balance);
     pass.read("elsewhere", elsewhere);
-    const graph::ImageId albedo = pass.create("albedo", {page.extent(), vulkan::Format::kRgba16f});
+    const graph::ImageId pixels = pass.create("pixels", {page.extent(), vulkan::Format::kRgba16f});
     pass.push(gpu::ViewTexelsParams{blocks.count, static_cast<float>(kBalanceReach_m), 0});
     pass.dispatch_covering(page.extent());
-    return albedo;
+    return pixels;
 }
 
 }  // namespace
 
 ViewTexelIds add_place_view(graph::FrameGraph& frame, const TextureBand& page, graph::ImageId position_m,
-                            graph::ImageId normal, const PredictedImages& predicted) {
-    const Extent2D extent = frame.common_extent({position_m, normal, predicted.kd});
+                            graph::ImageId normal, graph::ImageId kd) {
+    const Extent2D extent = frame.common_extent({position_m, normal, kd});
     TextureBandIds texels = page.import(frame);
     texels.sums = frame.fill(texels.sums, 0);
     auto pass = frame.compute("texture.place_view", spirv::place_view);
-    pass.read("position_m", position_m).read("normal", normal).read("kd", predicted.kd);
+    pass.read("position_m", position_m).read("normal", normal).read("kd", kd);
     texels.texels = pass.write("Texels", texels.texels);
     texels.known = pass.write("Known", texels.known);
     pass.dispatch_covering(extent);
@@ -50,21 +50,20 @@ ViewTexelIds add_place_view(graph::FrameGraph& frame, const TextureBand& page, g
     return {texels, frame.fill(shown, 0)};
 }
 
-PredictedImages add_show_texels(graph::FrameGraph& frame, const TextureBand& page, const ViewTexelIds& view,
-                                const ShowTexelsInputs& inputs) {
+ShownTexels add_show_texels(graph::FrameGraph& frame, const TextureBand& page, const ViewTexelIds& view,
+                            const ShowTexelsInputs& inputs) {
     const Blocks blocks = add_blocks(frame, page, view.texels, inputs.pixel_m);
-    PredictedImages shown = inputs.elsewhere;
-    shown.kd = add_view_texels(frame, page, view.texels, blocks, inputs.elsewhere.kd, true);
+    ShownTexels shown;
+    shown.kd = add_view_texels(frame, page, view.texels, blocks, inputs.kd_elsewhere, true);
     TextureBandIds all = view.texels;
     all.sums = view.shown;
-    const graph::ImageId albedo =
-        inputs.other_light ? shown.kd : add_view_texels(frame, page, all, blocks, inputs.elsewhere.kd, false);
+    const graph::ImageId seen =
+        inputs.other_light ? shown.kd : add_view_texels(frame, page, all, blocks, inputs.kd_elsewhere, false);
     auto pass = frame.compute("texture.show_texels", spirv::show_texels);
     pass.specialise("kPictured", inputs.other_light ? 0u : 1u);
     // Under other light each known albedo is shown in it: there is no elsewhere.
-    pass.read("albedo", albedo).read("elsewhere", inputs.other_light ? inputs.predicted.kd : inputs.elsewhere.rgb);
-    pass.read("rgb", inputs.predicted.rgb).read("picture_kd", inputs.predicted.picture_kd);
-    pass.read("light", inputs.predicted.light);
+    pass.read("seen", seen).read("elsewhere", inputs.other_light ? inputs.kd : inputs.rgb_elsewhere);
+    pass.read("rgb", inputs.rgb).read("picture_kd", inputs.picture_kd).read("light", inputs.light);
     shown.rgb = pass.create("shown_rgb", {page.extent(), vulkan::Format::kRgba16f});
     pass.dispatch_covering(page.extent());
     return shown;

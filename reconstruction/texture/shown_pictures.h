@@ -9,9 +9,9 @@
 
 namespace patina {
 
-/// What pictures say of the albedo of what they show, on the device, for views of the model. They see more than its
-/// voxels hold: a pixel of theirs covers less than a voxel. Their light was divided out when they were added, so that
-/// views may be under another one.
+/// What pictures tell of the surface that they show, on the device, for views of the model. They see more than its
+/// voxels hold: a pixel of theirs covers less than a voxel. They are kept beside the light when they were added, so
+/// that views may be under another one.
 class ShownPictures {
   public:
     static constexpr uint64_t kMostBytes = uint64_t{256} << 20;  ///< of all pictures, on the device
@@ -26,7 +26,8 @@ class ShownPictures {
     /// when memory runs out.
     void add(const TexturePicture& picture);
 
-    /// Shows the surface of a view with the albedo that the pictures tell (add_show_texels).
+    /// Shows the surface of a view with the albedo that the pictures tell (add_show_texels). Returns `elsewhere` where
+    /// the view has more pixels than a band may have texels (TextureBand::most_rows), about 3 million.
     PredictedImages add_to_view(graph::FrameGraph& graph, const PosedCamera& camera, graph::ImageId position_m,
                                 graph::ImageId normal, const PredictedImages& predicted,
                                 const PredictedImages& elsewhere);
@@ -38,7 +39,7 @@ class ShownPictures {
   private:
     struct Picture {
         gpu::Camera camera;
-        vulkan::ImageRef albedo, depth_m;
+        vulkan::ImageRef diffuse, light, depth_m;
     };
 
     graph::Runner& runner_;

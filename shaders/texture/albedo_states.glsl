@@ -1,7 +1,11 @@
-// Alpha of what a picture says of the albedo (albedo_picture.comp) besides those of shared/input/convert_color.h.
+// What a picture tells of the albedo.
 #ifndef PATINA_TEXTURE_ALBEDO_STATES_GLSL
 #define PATINA_TEXTURE_ALBEDO_STATES_GLSL
 
-const float kColorAtEdge = 0.25;  // near where the surface ends: what is seen may be another one
+const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
+
+// Alpha of such a picture (diffuse_picture.comp) besides those of shared/input/convert_color.h: near where the surface
+// ends, so that what is seen may be another one.
+const float kColorAtEdge = 0.25;
 
 #endif

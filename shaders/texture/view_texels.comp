@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The albedo by pictures of each pixel of a view, balanced between the blocks around. One invocation per pixel.
+// What pictures tell of each pixel of a view: means of sums. Albedo is balanced between the blocks around. One
+// invocation per pixel.
 #include "lib/math/octahedral.glsl"
 #include "shared/texture/texture.h"
 
@@ -12,7 +13,7 @@ layout(std430, binding = 1) readonly buffer Sums { vec4 sums[]; };
 layout(std430, binding = 2) readonly buffer Blocks { TextureBlock blocks[]; };
 layout(std430, binding = 3) readonly buffer Balance { vec4 balance[]; };
 layout(binding = 4, rgba16f) uniform readonly image2D elsewhere;
-layout(binding = 5, rgba16f) uniform writeonly image2D albedo;  // a: 1 where a picture shows the surface
+layout(binding = 5, rgba16f) uniform writeonly image2D pixels;  // a: 1 where a picture shows the surface
 layout(push_constant) uniform Push { ViewTexelsParams params; };
 #include "texture/around.glsl"
 
@@ -44,7 +45,7 @@ vec4 seen_at(ivec2 pixel, ivec2 extent, SurfaceTexel own, vec4 sum) {
 }
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), extent = imageSize(albedo);
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), extent = imageSize(pixels);
     if (any(greaterThanEqual(pixel, extent))) return;
     const int index = pixel.y * extent.x + pixel.x;
     const SurfaceTexel own = texels[index];
@@ -58,5 +59,5 @@ void main() {
             if (around.factor.a > 0.0) shown = vec4(min(around.factor.rgb * seen.rgb, vec3(1.0)), 1.0);
         }
     }
-    imageStore(albedo, pixel, shown);
+    imageStore(pixels, pixel, shown);
 }

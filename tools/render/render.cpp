@@ -169,8 +169,10 @@ Outcome render(const RenderOptions& given_options) {
     const double fps = options.orbit_seconds > 0 ? options.orbit / options.orbit_seconds : session.info().fps;
     if (!options.video.empty()) sink.open_video(options.video, camera.extent, fps);
     KeptPictures pictures;
+    const bool detailed = options.show == Show::kRgb || options.show == Show::kKd;
     while (session.step()) {
-        if (const Frame* frame = session.fused()) pictures.add(session.info(), *frame, session.pipeline().frames() - 1);
+        if (const Frame* frame = session.fused(); frame && detailed)
+            pictures.add(session.info(), *frame, session.pipeline().frames() - 1);
     }
     session.end();
     console.end();

@@ -48,7 +48,7 @@ struct DetailNormalsParams {
     uint pad0;
 };
 
-struct AlbedoPictureParams {
+struct DiffusePictureParams {
     vec4 gain;      // rgb: of the picture over the first one's; w unused
     float voxel_m;  // of the surface
     uint pad0;
@@ -59,10 +59,22 @@ struct AlbedoPictureParams {
 struct BlendPictureParams {
     Camera camera;      // the colour camera, of the pictures' extent
     vec4 gain_voxel_m;  // rgb: gain of the picture over the first one's; w: edge of a voxel of the surface
-    float eye_x_m;      // world: who looks at the texels
+    uint texels;        // of the band
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+struct BlendDiffuseParams {
+    Camera camera;  // the colour camera, of the picture's extent
+    float eye_x_m;  // world: who looks at the texels
     float eye_y_m;
     float eye_z_m;
-    uint texels;  // of the band
+    float voxel_m;  // of the surface
+    uint texels;    // of the band
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 // What the texels of a block that a picture shows have in common.

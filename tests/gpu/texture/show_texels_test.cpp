@@ -2,13 +2,14 @@
 
 #include "passes/texture/show_texels.h"
 
+#include <array>
 #include <random>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/shader_camera.h"
-#include "passes/texture/albedo_picture.h"
+#include "passes/texture/blend_diffuse.h"
 #include "passes/texture/cast_depth.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/texture/balance.h"
@@ -89,44 +90,50 @@ class ShowTexels : public GpuTest {
         return wide;
     }
 
-    /// Shows the pictures in the view; `albedos`: what add_albedo_picture made of them.
+    DiffusePicture take_apart(graph::FrameGraph& frame, const BakePicture& picture) {
+        BlendPictureInputs inputs;
+        inputs.color = upload(frame, "color", picture.color);
+        inputs.depth_m = add_cast_depth(frame, upload_positions(frame, picture.position_m));
+        inputs.reflected = {upload(frame, "kd", picture.kd), upload(frame, "rgb", picture.rgb),
+                            upload(frame, "light", picture.light)};
+        inputs.gain = picture.gain;
+        inputs.voxel_m = static_cast<float>(picture.voxel_m);
+        const auto target = [&](const char* name) {
+            return frame.create_image(name, {picture.camera.extent, vulkan::Format::kRgba16f});
+        };
+        return add_diffuse_picture(frame, inputs, {target("diffuse"), target("light of the picture")});
+    }
+
+    /// Shows the pictures in the view; `taken`: what add_diffuse_picture made of them.
     Shown show(const std::vector<BakePicture>& pictures) {
         graph::FrameGraph frame = runner().begin();
-        PredictedImages predicted{};
-        predicted.kd = upload(frame, "kd", filled_with(kExtent, kRecords));
-        predicted.picture_kd = upload(frame, "picture kd", filled_with(kExtent, kRecords));
-        predicted.light = upload(frame, "light", filled_with(kExtent, kLight));
-        predicted.rgb = upload(frame, "rgb", filled_with(kExtent, kRecords * kLight + kGloss));
-        PredictedImages elsewhere = predicted;
-        elsewhere.kd = upload(frame, "kd elsewhere", filled_with(kExtent, glm::vec3(0.125f)));
-        elsewhere.rgb = upload(frame, "rgb elsewhere", filled_with(kExtent, glm::vec3(0.25f)));
+        ShowTexelsInputs view;
+        view.kd = upload(frame, "kd", filled_with(kExtent, kRecords));
+        view.picture_kd = upload(frame, "picture kd", filled_with(kExtent, kRecords));
+        view.light = upload(frame, "light", filled_with(kExtent, kLight));
+        view.rgb = upload(frame, "rgb", filled_with(kExtent, kRecords * kLight + kGloss));
+        view.kd_elsewhere = upload(frame, "kd elsewhere", filled_with(kExtent, glm::vec3(0.125f)));
+        view.rgb_elsewhere = upload(frame, "rgb elsewhere", filled_with(kExtent, glm::vec3(0.25f)));
+        view.pixel_m = kPixel_m;
+        view.other_light = other_light;
         const TextureBand page(device(), 0, 0, kExtent);
         ViewTexelIds texels = add_place_view(frame, page, upload_positions(frame, view_m),
-                                             upload(frame, "normal", filled_with(kExtent, {0, 0, -1}, 0)), predicted);
-        std::vector<graph::Readback> reads;
+                                             upload(frame, "normal", filled_with(kExtent, {0, 0, -1}, 0)), view.kd);
+        std::vector<std::array<graph::Readback, 2>> reads;
         for (const BakePicture& picture : pictures) {
-            BlendPictureInputs inputs;
-            inputs.color = upload(frame, "color", picture.color);
+            BlendDiffuseInputs inputs;
+            inputs.picture = take_apart(frame, picture);
+            reads.push_back({frame.read_back(inputs.picture.diffuse), frame.read_back(inputs.picture.light)});
             inputs.depth_m = add_cast_depth(frame, upload_positions(frame, picture.position_m));
-            inputs.reflected = {upload(frame, "kd", picture.kd), upload(frame, "rgb", picture.rgb),
-                                upload(frame, "light", picture.light)};
             inputs.camera = make_camera(picture.camera, picture.world_from_camera);
-            inputs.gain = picture.gain;
             inputs.voxel_m = static_cast<float>(picture.voxel_m);
-            const graph::ImageId target =
-                frame.create_image("albedo", {picture.camera.extent, vulkan::Format::kRgba16f});
-            inputs.color = add_albedo_picture(frame, inputs, target);
-            reads.push_back(frame.read_back(inputs.color));
-            inputs.reflected.reset();
-            inputs.gain = glm::vec3(1);
-            texels = add_blend_picture_for(frame, page, texels, inputs, glm::vec3(0));
+            texels = add_blend_diffuse(frame, page, texels, inputs);
         }
-        const PredictedImages shown =
-            add_show_texels(frame, page, texels, {predicted, elsewhere, kPixel_m, other_light});
+        const ShownTexels shown = add_show_texels(frame, page, texels, view);
         const graph::Readback kd = frame.read_back(shown.kd), rgb = frame.read_back(shown.rgb);
         run(std::move(frame));
-        albedos.clear();
-        for (const graph::Readback& read : reads) albedos.push_back(widened(read));
+        taken.clear();
+        for (const auto& [diffuse, light] : reads) taken.push_back({widened(diffuse), widened(light)});
         return {widened(kd), widened(rgb)};
     }
 
@@ -139,8 +146,8 @@ class ShowTexels : public GpuTest {
             pixel.normal = {0, 0, -1};
             if (!pixel.surface) continue;
             for (size_t i = 0; i < pictures.size(); ++i) {
-                const auto said = reference::blend_picture_for(pictures[i], albedos[i], pixel.position_m, pixel.normal,
-                                                               glm::dvec3(0));
+                const auto said =
+                    reference::blend_diffuse(pictures[i], taken[i], pixel.position_m, pixel.normal, glm::dvec3(0));
                 pixel.said.told += said.told;
                 pixel.said.shown += said.shown;
             }
@@ -150,7 +157,7 @@ class ShowTexels : public GpuTest {
 
     Pixels view_m = wall_from(kCamera, 0);
     bool other_light = false;
-    std::vector<Pixels> albedos;
+    std::vector<reference::DiffusePicture> taken;
 };
 
 /// Pictures that are clipped, dark, hidden or too bright here and there; the view has holes.
@@ -180,13 +187,15 @@ TEST_F(ShowTexels, AgreesWithTheReference) {
     const Shown shown = show(pictures);
 
     for (size_t i = 0; i < pictures.size(); ++i) {
-        const Pixels expected = reference::albedo_picture(pictures[i]);
+        const reference::DiffusePicture expected = reference::diffuse_picture(pictures[i]);
+        const size_t pixels = expected.diffuse.pixels().size();
         size_t differing = 0;
-        for (size_t p = 0; p < expected.pixels().size(); ++p) {
-            const glm::dvec4 got = albedos[i].pixels()[p], exact = expected.pixels()[p];
-            differing += glm::length(got - exact) > 4e-3 * (1 + glm::length(exact));
+        for (size_t p = 0; p < pixels; ++p) {
+            const glm::dvec4 exact = expected.diffuse.pixels()[p], arrives = expected.light.pixels()[p];
+            differing += glm::length(taken[i].diffuse.pixels()[p] - exact) > 4e-3 * (1 + glm::length(exact));
+            differing += glm::distance(glm::dvec3(taken[i].light.pixels()[p]), glm::dvec3(arrives)) > 2e-3;
         }
-        EXPECT_LT(differing, expected.pixels().size() / 500) << "of the albedos by picture " << i;
+        EXPECT_LT(differing, pixels / 500) << "of picture " << i;
     }
 
     const std::vector<ViewPixel> view = expected_view(pictures);
@@ -202,9 +211,8 @@ TEST_F(ShowTexels, AgreesWithTheReference) {
     size_t compared = 0, filled = 0, differing = 0;
     for (size_t i = 0; i < view.size(); ++i) {
         const glm::dvec3 rgb(shown.rgb.pixels()[i]), kd(shown.kd.pixels()[i]);
-        const glm::dvec3 expected = all[i].a > 0
-                                        ? glm::max(glm::dvec3(all[i]) * glm::dvec3(kLight) + glm::dvec3(kGloss), 0.0)
-                                        : glm::dvec3(0.25);
+        const glm::dvec3 expected =
+            all[i].a > 0 ? glm::max(glm::dvec3(all[i]) + glm::dvec3(kGloss), 0.0) : glm::dvec3(0.25);
         differing += glm::length(rgb - expected) > 5e-3;
         filled += all[i].a > 0 && view[i].said.shown.a == 0;
         differing += !view[i].surface && kd != glm::dvec3(0.125);

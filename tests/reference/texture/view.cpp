@@ -29,9 +29,9 @@ double sum_of(const glm::dvec3& v) { return v.r + v.g + v.b; }
 
 }  // namespace
 
-Image<glm::dvec4> albedo_picture(const BakePicture& picture) {
+DiffusePicture diffuse_picture(const BakePicture& picture) {
     const Extent2D extent = picture.color.extent(), cast = picture.position_m.extent();
-    Image<glm::dvec4> result(extent);
+    DiffusePicture result{Image<glm::dvec4>(extent), Image<glm::dvec4>(extent)};
     for (uint32_t y = 0; y < extent.height; ++y) {
         for (uint32_t x = 0; x < extent.width; ++x) {
             const glm::dvec4 seen = picture.color.at(x, y);
@@ -73,16 +73,17 @@ Image<glm::dvec4> albedo_picture(const BakePicture& picture) {
             const bool edge = at_edge(picture.position_m, static_cast<int>(std::floor(cx + 0.5)),
                                       static_cast<int>(std::floor(cy + 0.5)), own_m, picture.voxel_m);
             const bool tells = seen.a == 1 && lit && sane && clear;
-            result.at(x, y) = edge    ? glm::dvec4(own, 0.25)
-                              : tells ? glm::dvec4(glm::max(own, 0.0), 1)
-                                      : glm::dvec4(own, 0.5);
+            result.diffuse.at(x, y) = edge    ? glm::dvec4(diffuse, 0.25)
+                                      : tells ? glm::dvec4(glm::max(diffuse, 0.0), 1)
+                                              : glm::dvec4(diffuse, 0.5);
+            result.light.at(x, y) = glm::dvec4(light, 0);
         }
     }
     return result;
 }
 
-SaidToEye blend_picture_for(const BakePicture& picture, const Image<glm::dvec4>& albedo, const glm::dvec3& position_m,
-                            const glm::dvec3& normal, const glm::dvec3& eye_m) {
+SaidToEye blend_diffuse(const BakePicture& picture, const DiffusePicture& taken, const glm::dvec3& position_m,
+                        const glm::dvec3& normal, const glm::dvec3& eye_m) {
     const glm::dvec3 camera_m(picture.world_from_camera[3]);
     const glm::dvec3 p(rigid_inverse(picture.world_from_camera) * glm::dvec4(position_m, 1));
     const Intrinsics& camera = picture.camera;
@@ -104,24 +105,26 @@ SaidToEye blend_picture_for(const BakePicture& picture, const Image<glm::dvec4>&
         if (there_m <= 0 || std::abs(there_m - p.z) > tolerance_m) return {};
     }
     const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-    glm::dvec3 own(0);
+    glm::dvec3 leaves(0), albedo(0);
     double worth = 1;
     for (int i = 0; i < 4; ++i) {
         const int px = x + i % 2, py = y + i / 2;
-        const glm::dvec4 pixel = pixel_at(albedo, px, py);
+        const glm::dvec4 pixel = pixel_at(taken.diffuse, px, py);
+        const glm::dvec3 diffuse(pixel), light(pixel_at(taken.light, px, py));
+        const double share = (1 - std::abs(at.x - px)) * (1 - std::abs(at.y - py));
         worth = std::min(worth, pixel.a);
-        own += (1 - std::abs(at.x - px)) * (1 - std::abs(at.y - py)) * glm::dvec3(pixel);
+        leaves += share * diffuse;
+        for (int c = 0; c < 3; ++c) albedo[c] += share * diffuse[c] / std::max(light[c], 0.02);
     }
     if (worth == 0) return {};
     const glm::dvec3 to_eye = (eye_m - position_m) / away_m, to_camera = (camera_m - position_m) / range_m;
     const double sight =
         std::min(cosine / (range_m * range_m), std::max(glm::dot(normal, to_eye), 0.2) / (away_m * away_m));
     const double apart = glm::distance(to_eye, to_camera) / kEyesApart_rad;
-    if (worth == 0.25 && apart > 4) return {};
+    if (worth == 0.25 && apart > 2) return {};
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);
     const double weight = std::pow(sight, 3) * into * into * (3 - 2 * into) / std::pow(1 + apart * apart, 2);
-    const glm::dvec4 said(weight * own, weight);
-    return {worth == 1 ? said : glm::dvec4(0), said};
+    return {worth == 1 ? glm::dvec4(weight * albedo, weight) : glm::dvec4(0), glm::dvec4(weight * leaves, weight)};
 }
 
 std::vector<glm::dvec4> means_of(const std::vector<ViewPixel>& view, Extent2D extent, bool told) {

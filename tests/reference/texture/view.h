@@ -6,15 +6,19 @@
 
 namespace patina::reference {
 
-/// What add_albedo_picture makes of a picture: the albedo; a: 1 where it is told, 0.5 where it is shown alone, else 0.
-Image<glm::dvec4> albedo_picture(const BakePicture& picture);
-
-/// What a picture of albedos says of a surface point to who looks from `eye_m` (add_blend_picture_for).
-struct SaidToEye {
-    glm::dvec4 told{0}, shown{0};  ///< weighted albedo, and the weight
+/// What add_diffuse_picture makes of a picture.
+struct DiffusePicture {
+    Image<glm::dvec4> diffuse;  ///< a: 1 where it tells the albedo, 0.5 where it is shown alone, 0.25 at edges, else 0
+    Image<glm::dvec4> light;
 };
-SaidToEye blend_picture_for(const BakePicture& picture, const Image<glm::dvec4>& albedo, const glm::dvec3& position_m,
-                            const glm::dvec3& normal, const glm::dvec3& eye_m);
+DiffusePicture diffuse_picture(const BakePicture& picture);
+
+/// What it says of a surface point to who looks from `eye_m` (add_blend_diffuse).
+struct SaidToEye {
+    glm::dvec4 told{0}, shown{0};  ///< weighted albedo, and what leaves; a: the weight
+};
+SaidToEye blend_diffuse(const BakePicture& picture, const DiffusePicture& taken, const glm::dvec3& position_m,
+                        const glm::dvec3& normal, const glm::dvec3& eye_m);
 
 /// A pixel of a view with what pictures say of it.
 struct ViewPixel {

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What a picture says of the albedo of what it shows: its colour, less the highlight, over the light there (paper, Eq.
-// 7). One invocation per pixel.
+// What leaves diffusely from what a picture shows, its colour less the highlight, and the light there: the two terms of
+// the albedo (paper, Eq. 7). One invocation per pixel.
 #include "shared/input/convert_color.h"
 #include "shared/texture/texture.h"
 #include "texture/albedo_states.glsl"
@@ -12,13 +12,13 @@ layout(binding = 1, r32f) uniform readonly image2D depth_m;  // cast, of any ext
 layout(binding = 2, rgba16f) uniform readonly image2D kd;
 layout(binding = 3, rgba16f) uniform readonly image2D rgb;
 layout(binding = 4, rgba16f) uniform readonly image2D light;
-layout(binding = 5, rgba16f) uniform writeonly image2D albedo;
-layout(push_constant) uniform Push { AlbedoPictureParams params; };
+layout(binding = 5, rgba16f) uniform writeonly image2D diffuse;
+layout(binding = 6, rgba16f) uniform writeonly image2D shine;
+layout(push_constant) uniform Push { DiffusePictureParams params; };
 
 const float kOffVox = 3.0;  // along the view: farther from the surface of the nearest cast pixel is another one
 const int kEdge_px = 2;
 const float kBentVox = 3.0;     // along the view
-const float kMostAlbedo = 1.5;  // what is above is a highlight that the model does not know
 const float kClipped = 0.99;    // from here on a channel of a clipped pixel is at least as bright
 const float kLeastClear = 0.5;  // of what is seen is diffuse; below, the highlight's error is as large as the albedo
 
@@ -35,14 +35,20 @@ bool at_edge(ivec2 pixel, float own_m) {
     return false;
 }
 
-vec4 albedo_at(ivec2 pixel) {
+struct Told {
+    vec4 diffuse;  // a: what it is worth
+    vec3 light;
+};
+
+Told told_at(ivec2 pixel) {
+    const Told nothing = Told(vec4(0.0, 0.0, 0.0, kColorInvalid), vec3(0.0));
     const vec4 seen = imageLoad(color, pixel);
     const vec2 cast_at = (vec2(pixel) + 0.5) * vec2(imageSize(depth_m)) / vec2(imageSize(color)) - 0.5;
     const float own_m = imageLoad(depth_m, ivec2(floor(cast_at + 0.5))).r;
-    if (seen.a == kColorInvalid || own_m <= 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
+    if (seen.a == kColorInvalid || own_m <= 0.0) return nothing;
     const ivec2 low = ivec2(floor(cast_at));
     const vec2 t = cast_at - vec2(low);
-    vec3 shine = vec3(0.0), highlight = vec3(0.0), modelled = vec3(0.0);
+    vec3 arriving = vec3(0.0), highlight = vec3(0.0), modelled = vec3(0.0);
     float shares = 0.0;
     for (int i = 0; i < 4; ++i) {
         const ivec2 step = ivec2(i & 1, i >> 1), at = low + step;
@@ -51,30 +57,31 @@ vec4 albedo_at(ivec2 pixel) {
         if (share == 0.0 || there_m <= 0.0 || abs(there_m - own_m) > kOffVox * params.voxel_m) continue;
         const vec4 known = imageLoad(kd, at);
         const vec3 arrives = imageLoad(light, at).rgb, leaves = imageLoad(rgb, at).rgb;
-        shine += share * arrives;
+        arriving += share * arrives;
         modelled += share * leaves;
         if (known.a > 0.0) highlight += share * max(leaves - known.rgb * arrives, 0.0);
         shares += share;
     }
-    if (shares == 0.0) return vec4(0.0, 0.0, 0.0, kColorInvalid);
-    shine /= shares;
+    if (shares == 0.0) return nothing;
+    arriving /= shares;
     highlight /= shares;
     modelled /= shares;
     vec3 leaving = seen.rgb / params.gain.rgb;
     if (seen.a == kColorClipped)
         leaving = mix(leaving, max(leaving, modelled), greaterThanEqual(seen.rgb, vec3(kClipped)));
     // Below 0 where the model's highlight is too bright: in a view from about here it is likewise, which cancels out.
-    const vec3 diffuse = leaving - highlight;
-    const vec3 own = diffuse / max(shine, vec3(kLeastShownLight));
-    const float clear = dot(diffuse, vec3(1.0)) / max(dot(leaving, vec3(1.0)), 1e-6);
-    const bool tells = seen.a == kColorValid && all(greaterThanEqual(shine, vec3(kLeastShownLight))) &&
-                       all(lessThanEqual(own, vec3(kMostAlbedo))) && clear >= kLeastClear;
-    if (at_edge(ivec2(floor(cast_at + 0.5)), own_m)) return vec4(clamp(own, -1e4, 1e4), kColorAtEdge);
-    return tells ? vec4(max(own, 0.0), kColorValid) : vec4(clamp(own, -1e4, 1e4), kColorClipped);
+    const vec3 leaves = clamp(leaving - highlight, -1e4, 1e4);
+    const float clear = dot(leaves, vec3(1.0)) / max(dot(leaving, vec3(1.0)), 1e-6);
+    const bool tells = seen.a == kColorValid && all(greaterThanEqual(arriving, vec3(kLeastShownLight))) &&
+                       all(lessThanEqual(leaves, kMostAlbedo * arriving)) && clear >= kLeastClear;
+    if (at_edge(ivec2(floor(cast_at + 0.5)), own_m)) return Told(vec4(leaves, kColorAtEdge), arriving);
+    return Told(tells ? vec4(max(leaves, 0.0), kColorValid) : vec4(leaves, kColorClipped), arriving);
 }
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(albedo)))) return;
-    imageStore(albedo, pixel, albedo_at(pixel));
+    if (any(greaterThanEqual(pixel, imageSize(diffuse)))) return;
+    const Told told = told_at(pixel);
+    imageStore(diffuse, pixel, told.diffuse);
+    imageStore(shine, pixel, vec4(told.light, 0.0));
 }
