@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using sensor::testing::read_text;
 
 constexpr const char* kFrames = "12";
-constexpr Extent2D kExtent{512, 424};
+constexpr Extent2D kExtent{256, 212};
 
 /// A run whose numbers are stored in tests/golden/NAME.json.
 struct Stored {
@@ -89,8 +89,8 @@ std::set<std::string> names(const std::map<std::string, std::string>& files) {
 }
 
 TEST_F(Golden, TwoRunsGiveTheSameBytes) {
-    run("synthetic:cubes", beside("first"));
-    run("synthetic:cubes", beside("second"));
+    run(small_cubes(), beside("first"));
+    run(small_cubes(), beside("second"));
     const auto first = files_in(beside("first")), second = files_in(beside("second"));
     ASSERT_EQ(names(first), names(second));
     for (const char* name : {"scene.glb", "trajectory.txt", "report.html", "run.json", "frames/000000.exr",
@@ -108,7 +108,7 @@ TEST_F(Golden, TwoRunsGiveTheSameBytes) {
 
 TEST_F(Golden, TwoTrackedRunsGiveTheSameBytes) {
     const auto tracked = [&](const char* name) {
-        const Outcome outcome = patina({"run", "synthetic:cubes", "--out", beside(name), "--quiet", "--frames", "4",
+        const Outcome outcome = patina({"run", small_cubes(), "--out", beside(name), "--quiet", "--frames", "4",
                                         "--lighting", "none", "--poses", "track", "--texture", "off"});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         return files_in(beside(name));
@@ -143,16 +143,16 @@ void expect_close(const Image<float>& view_m, const Image<uint16_t>& truth_mm) {
 
 TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
     const fs::path recorded = beside("recorded");
-    const Outcome synth = patina({"synth", "cubes", "--frames", kFrames, "--out", recorded});
+    const Outcome synth = patina({"synth", "cubes", "--extent", "256x212", "--frames", kFrames, "--out", recorded});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
     run(recorded, beside("from_files"), "off");
-    run("synthetic:cubes", beside("live"), "off");
+    run(small_cubes(), beside("live"), "off");
     const std::string scene = read_text(beside("live") / "scene.glb");
     EXPECT_TRUE(scene == read_text(beside("from_files") / "scene.glb"));
 
     const nlohmann::json summary = summary_of(beside("from_files"));
     EXPECT_EQ(summary["frames"], nlohmann::json({{"read", 12}, {"used", 12}, {"skipped", nlohmann::json::array()}}));
-    EXPECT_GT(summary["totals"]["triangles"], 10000);
+    EXPECT_GT(summary["totals"]["triangles"], 5000);
     EXPECT_TRUE(summary["warnings"].empty()) << summary["warnings"];
     for (const char* frame : {"000004", "000008"}) {
         const Image<float> view_m =
@@ -196,14 +196,14 @@ TEST_F(Golden, SceneIsValidGltf) {
     if (!fs::exists(fs::path(PATINA_SOURCE_DIR) / "node_modules/gltf-validator")) {
         GTEST_SKIP() << "node_modules/gltf-validator is missing: run npm ci in " << PATINA_SOURCE_DIR;
     }
-    run("synthetic:cubes", out());
+    run(small_cubes(), out());
     const std::string validator = PATINA_SOURCE_DIR "/tools/validate_gltf.mjs";
     EXPECT_EQ(std::system(("node '" + validator + "' '" + (out() / "scene.glb").string() + "'").c_str()), 0);
 }
 
 TEST_F(Golden, ValidationHasNothingToSayAndTheGraphIsDumped) {
     fs::create_directory(out());
-    run_quietly("synthetic:cubes", {"--frames", "2", "--validation", "--dump-graph", out() / "graph"});
+    run_quietly(small_cubes(), {"--frames", "2", "--validation", "--dump-graph", out() / "graph"});
     EXPECT_THAT(read_text(out() / "graph.dot"), ::testing::StartsWith("digraph"));
     const nlohmann::json graph = nlohmann::json::parse(read_text(out() / "graph.json"), nullptr, false);
     ASSERT_TRUE(graph.is_object());

@@ -20,14 +20,12 @@ using sensor::testing::write_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr const char* kCubes = "synthetic:cubes";
-
 class Render : public RunFolderTest {
   protected:
     /// Renders views of two frames of a scene, small.
     void render_cubes(const fs::path& to, std::vector<std::string> more) {
-        std::vector<std::string> arguments{"render", kCubes,    "--frames", "2",        "--extent",
-                                           "64x48",  "--quiet", "--out",    to.string()};
+        std::vector<std::string> arguments{"render", small_cubes(), "--frames", "2",        "--extent",
+                                           "64x48",  "--quiet",     "--out",    to.string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = patina(arguments);
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -89,8 +87,8 @@ TEST_F(Render, RecordedPosesOrbitAndVideo) {
 }
 
 TEST_F(Render, PosesOfAFileAreThoseOfASequence) {
-    const Outcome run =
-        patina({"run", kCubes, "--frames", "2", "--lighting", "none", "--texture", "off", "--out", out(), "--quiet"});
+    const Outcome run = patina(
+        {"run", small_cubes(), "--frames", "2", "--lighting", "none", "--texture", "off", "--out", out(), "--quiet"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     render_cubes(beside("recorded"), {"--lighting", "none"});
     render_cubes(beside("given"), {"--lighting", "none", "--poses", out() / "trajectory.txt"});

@@ -36,6 +36,9 @@ class RunFolderTest : public ::testing::Test {
     std::string failure_of_run(const std::string& input, std::vector<std::string> more = {},
                                const Program::Environment& changes = {});
 
+    /// `synthetic:SCENE` of the built-in cubes for a camera of 256 x 212, a quarter of the pixels.
+    std::string small_cubes() const;
+
     const std::filesystem::path& sequence() const { return sequence_; }
     const std::filesystem::path& out() const { return out_; }
     std::filesystem::path beside(const std::string& name) const { return folder_ / name; }

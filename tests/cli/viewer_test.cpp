@@ -24,7 +24,7 @@ class Viewer : public RunFolderTest {
   protected:
     /// A run of a built-in scene that keeps its map.
     void run_with_map(std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments{"run",     "synthetic:cubes",    "--frames", "4",         "--out",
+        std::vector<std::string> arguments{"run",     small_cubes(),        "--frames", "4",         "--out",
                                            out(),     "--checkpoint-every", "4",        "--texture", "off",
                                            "--quiet", "--detail",           "coarse"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -112,8 +112,8 @@ TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
 
 TEST_F(Viewer, ARunDrawsItsSceneWhileItGrowsAndItsResultIsTheSame) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    const std::vector<std::string> run{"run",  "synthetic:cubes", "--frames", "3",       "--lighting",
-                                       "none", "--texture",       "off",      "--quiet", "--out"};
+    const std::vector<std::string> run{"run",  small_cubes(), "--frames", "3",       "--lighting",
+                                       "none", "--texture",   "off",      "--quiet", "--out"};
     std::vector<std::string> plain = run, drawn = run;
     plain.push_back(beside("plain"));
     drawn.insert(drawn.end(), {beside("drawn"), "--offscreen", beside("frame-#.png"), "--window-extent", "96x64",
