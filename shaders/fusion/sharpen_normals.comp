@@ -16,7 +16,11 @@ const int kTaps = 8;
 const float kReachVox = 1.5;        // of the taps
 const float kOnPlaneShare = 0.35;   // of their distance: farther from a plane is not on it
 const float kEvenCosine = 0.7;      // 45 degrees: normals that differ by less around a point are a curved face's
-const float kSameCosine = 0.94;     // 20 degrees: those that differ by more are not averaged
+const float kSameCosine = 0.94;     // 20 degrees: those that differ by more are not averaged,
+const float kRoughCosine = 0.5;     // or by more than 60, where the surface is rough,
+const float kRoughPlane = 3.0;      // and so many times as far off the plane
+const float kRoughSupport = 2.0;    // points that agree with the normal: it is rough with no more,
+const float kEvenSupport = 4.0;     // and even with as many
 const float kFaceSupport = 2.0;     // points that a face has at least,
 const float kOwnSupport = 0.5;      // and more than the plane of the gradient's own normal
 const float kFlatReachVox = 5.0;    // of the points that tell a flat face from a curved one
@@ -92,8 +96,8 @@ uint flat_support_of(Ring ring, vec3 facing) {
 }
 
 // The normal of the flat face through the point that most of the points farther off lie on; `face` where there is none
-// or where the point's own normal has as many.
-vec3 flat_face(Ring ring, vec3 own, vec3 face) {
+// or where the point's own normal has as many. a: 1 where there is one.
+vec4 flat_face(Ring ring, vec3 own, vec3 face) {
     uint most = max(flat_support_of(ring, own), kFlatSupport - 1u);
     vec3 best = face;
     [[unroll]] for (int i = 0; i < kTaps; ++i) {
@@ -102,16 +106,29 @@ vec3 flat_face(Ring ring, vec3 own, vec3 face) {
         best = support > most ? candidate : best;
         most = max(support, most);
     }
-    return best;
+    return vec4(best, most >= kFlatSupport ? 1.0 : 0.0);
+}
+
+bool on_face(Ring ring, int i, vec3 face, float on_plane_m) {
+    return ring.hit[i] && abs(dot(face, ring.around[i])) < on_plane_m;
+}
+
+// 1: the surface is rough, as where few frames saw it, and those flat: normals around differ from the face's without
+// being another face's.
+float roughness_of(Ring ring, vec3 face, float on_plane_m) {
+    float support = 0.0;
+    [[unroll]] for (int i = 0; i < kTaps; ++i) support +=
+        on_face(ring, i, face, on_plane_m) && dot(ring.normals[i], face) > kSameCosine ? 1.0 : 0.0;
+    return 1.0 - smoothstep(kRoughSupport, kEvenSupport, support);
 }
 
 // The mean of a face's normal and those of the points around on its plane.
-vec3 smooth_over(Ring ring, vec3 face, float on_plane_m) {
+vec3 smooth_over(Ring ring, vec3 face, float rough, float on_plane_m) {
+    const float least = mix(kSameCosine, kRoughCosine, rough), off_m = mix(1.0, kRoughPlane, rough) * on_plane_m;
     vec3 sum = face;
     [[unroll]] for (int i = 0; i < kTaps; ++i) {
-        const bool on_plane = ring.hit[i] && abs(dot(face, ring.around[i])) < on_plane_m;
-        const float agreement = max(dot(ring.normals[i], face) - kSameCosine, 0.0) * (1.0 / (1.0 - kSameCosine));
-        sum += on_plane ? agreement * ring.normals[i] : vec3(0.0);
+        const float agreement = max(dot(ring.normals[i], face) - least, 0.0) / (1.0 - least);
+        sum += on_face(ring, i, face, off_m) ? agreement * ring.normals[i] : vec3(0.0);
     }
     return normalize(sum);
 }
@@ -126,10 +143,14 @@ void main() {
     const Ring near = look_around(pixel, hit.xyz, reach);
     const float least = least_cosine(near, own);
     vec3 face = own;
+    float is_flat = 0.0;
     if (least < kEvenCosine && hit.w > 0.0) face = best_face(near, own, on_plane_m);
     if (least < kUnbentCosine && hit.w > 0.0) {
         const Ring far = look_around(pixel, hit.xyz, max(pixels_of(kFlatReachVox, hit.w), reach + 1));
-        face = flat_face(far, own, face);
+        const vec4 found = flat_face(far, own, face);
+        face = found.xyz;
+        is_flat = found.a;
     }
-    imageStore(sharp_normal, pixel, vec4(face == vec3(0.0) ? face : smooth_over(near, face, on_plane_m), 0.0));
+    const float rough = (1.0 - is_flat) * roughness_of(near, face, on_plane_m);
+    imageStore(sharp_normal, pixel, vec4(face == vec3(0.0) ? face : smooth_over(near, face, rough, on_plane_m), 0.0));
 }

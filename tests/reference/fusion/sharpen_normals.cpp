@@ -82,12 +82,21 @@ glm::dvec3 flat_face_of(const Neighbourhood& around, glm::dvec3 own, glm::dvec3 
     return face;
 }
 
-glm::dvec3 smoothed(const Neighbourhood& around, glm::dvec3 face, double tolerance_m) {
+glm::dvec3 smoothed(const Neighbourhood& around, glm::dvec3 face, bool flat, double tolerance_m) {
     if (face == glm::dvec3(0)) return face;
+    const auto is_near = [&](const Neighbour& point, double off_m) {
+        return std::abs(glm::dot(face, point.away_m)) < off_m;
+    };
+    const auto agreeing = std::count_if(around.points.begin(), around.points.end(), [&](const Neighbour& point) {
+        return is_near(point, tolerance_m) && glm::dot(point.normal, face) > 0.94;
+    });
+    // Half rough with three points that agree.
+    const double rough = flat ? 0 : agreeing <= 2 ? 1 : agreeing == 3 ? 0.5 : 0;
+    const double least = glm::mix(0.94, 0.5, rough);
     glm::dvec3 sum = face;
     for (const Neighbour& point : around.points) {
-        if (std::abs(glm::dot(face, point.away_m)) >= tolerance_m) continue;
-        sum += std::max(glm::dot(point.normal, face) - 0.94, 0.0) / 0.06 * point.normal;
+        if (!is_near(point, glm::mix(1.0, 3.0, rough) * tolerance_m)) continue;
+        sum += std::max(glm::dot(point.normal, face) - least, 0.0) / (1 - least) * point.normal;
     }
     return glm::normalize(sum);
 }
@@ -105,11 +114,14 @@ Image<glm::dvec3> sharpen_normals(const SeenSurface& seen, double focal_px, doub
             const Neighbourhood around = look_around(seen, glm::ivec2(x, y), reach);
             const glm::dvec3 own = seen.normal.at(x, y);
             glm::dvec3 face = depth > 0 ? face_of(around, own, tolerance_m) : own;
+            bool flat = false;
             if (depth > 0 && around.least_cosine < 0.999) {
                 const int far = std::max(static_cast<int>(std::floor(5 * voxel_m / pixel_m + 0.5)), reach + 1);
-                face = flat_face_of(look_around(seen, glm::ivec2(x, y), far), own, face, voxel_m);
+                const Neighbourhood farther = look_around(seen, glm::ivec2(x, y), far);
+                face = flat_face_of(farther, own, face, voxel_m);
+                flat = points_of_flat_face(farther, face, voxel_m) >= 3;
             }
-            sharp.at(x, y) = smoothed(around, face, tolerance_m);
+            sharp.at(x, y) = smoothed(around, face, flat, tolerance_m);
         }
     }
     return sharp;
