@@ -167,8 +167,13 @@ std::vector<BakePicture> awkward_pictures(std::mt19937& random) {
         BakePicture picture = picture_from(x_m, random);
         const size_t pixels = picture.color.pixels().size();
         for (size_t i = 0; i < 1500; ++i) {
-            glm::dvec4& color = picture.color.pixels()[random() % pixels];
+            const size_t chosen = random() % pixels;
+            glm::dvec4& color = picture.color.pixels()[chosen];
             color.a = i % 3 == 0 ? 0 : 0.5;
+            if (i % 4 == 1) {  // clipped, and known to be brighter
+                color.g = 1;
+                picture.rgb.pixels()[chosen] = {0.3, 1.6, 0.3, 1};
+            }
             if (i % 30 == 0)
                 picture.position_m.pixels()[random() % pixels].w = i % 60 == 0 ? 0 : 0.2;  // edges around it
             picture.light.pixels()[random() % pixels] = {0.01, 0.5, 0.5, 1};
