@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "sensor/recording/container.h"
+#include "tests/scenes/small_cubes.h"
 
 namespace patina::testing {
 
@@ -55,13 +56,7 @@ std::string expect_failure(const Outcome& outcome, int exit_code) {
     return outcome.err.size() > 9 ? outcome.err.substr(8, outcome.err.size() - 9) : "";
 }
 
-std::string RunFolderTest::small_cubes() const {
-    nlohmann::json scene = nlohmann::json::parse(read_text(fs::path(PATINA_SOURCE_DIR) / "assets/scenes/cubes.json"));
-    scene["camera"] = {{"width", 256}, {"height", 212}, {"fx", 182.5}, {"fy", 182.5}, {"cx", 127.5}, {"cy", 105.5}};
-    const fs::path file = beside("small-cubes.json");
-    write_text(file, scene.dump());
-    return "synthetic:" + file.string();
-}
+std::string RunFolderTest::small_cubes() const { return testing::small_cubes(beside("small-cubes.json")); }
 
 RunFolderTest::RunFolderTest() { sensor::testing::write_native(sequence_, 3); }
 

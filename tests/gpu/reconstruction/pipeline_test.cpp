@@ -26,7 +26,9 @@ ReconstructionSettings small_settings() {
 /// A few frames of the built-in scene.
 struct Cubes {
     Cubes(vulkan::Device& device, uint32_t count) {
-        scenes::SyntheticSource source(device, scenes::load_scene("cubes"), {.frames = count});
+        scenes::SyntheticScene scene = scenes::load_scene("cubes");
+        scene.camera = scaled_to(scene.camera, {256, 212});
+        scenes::SyntheticSource source(device, std::move(scene), {.frames = count});
         info = source.info();
         while (auto reading = source.next()) frames.push_back(std::get<Frame>(std::move(*reading)));
     }

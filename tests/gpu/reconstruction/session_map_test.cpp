@@ -12,6 +12,7 @@
 #include "reconstruction/store/map_file.h"
 #include "scenes/files/scene_file.h"
 #include "tests/export/temporary_folder.h"
+#include "tests/scenes/small_cubes.h"
 
 // A session that goes on from a map yields what one without a break does.
 
@@ -32,7 +33,7 @@ class SessionMapTest : public ::testing::Test {
     /// A built-in scene at a resolution that makes many of its records change in every frame.
     SessionOptions options() const {
         SessionOptions options;
-        options.sequence = "synthetic:cubes";
+        options.sequence = testing::small_cubes(folder_ / "cubes.json");
         options.frames = kFrames;
         options.lighting = Lighting{.lights = scenes::load_scene("cubes").lights};
         for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"},
