@@ -415,7 +415,7 @@ TEST_F(PipelineTest, ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeld
         const std::vector<uint16_t> wall(cleared.depth.camera.extent.area(), 5500);
         cleared.depth.pixels = std::span(wall);
         cleared.held_out = held_out;
-        for (int i = 0; i < 40; ++i) pipeline.add(cleared);
+        for (int i = 0; i < 20; ++i) pipeline.add(cleared);
         expect_sound(pipeline, "a frame that gives observations back");
         pipeline.wait();
         const gpu::MapCounters after = pipeline.counters().observations.records;
