@@ -4,6 +4,7 @@
 
 namespace patina {
 
+/// A picture without its highlights, and the model as its camera sees it.
 struct BlendDiffuseInputs {
     DiffusePicture picture;
     graph::ImageId depth_m;  ///< r32f: the model cast into the same view, of any extent (add_cast_depth)

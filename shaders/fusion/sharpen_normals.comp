@@ -113,8 +113,7 @@ bool on_face(Ring ring, int i, vec3 face, float on_plane_m) {
     return ring.hit[i] && abs(dot(face, ring.around[i])) < on_plane_m;
 }
 
-// 1: the surface is rough, as where few frames saw it, and those flat: normals around differ from the face's without
-// being another face's.
+// 1: the surface is rough: few of the normals around agree with the face's.
 float roughness_of(Ring ring, vec3 face, float on_plane_m) {
     float support = 0.0;
     [[unroll]] for (int i = 0; i < kTaps; ++i) support +=

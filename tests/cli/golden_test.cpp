@@ -152,7 +152,7 @@ TEST_F(Golden, RecordedAndLiveSceneGiveTheSameScene) {
 
     const nlohmann::json summary = summary_of(beside("from_files"));
     EXPECT_EQ(summary["frames"], nlohmann::json({{"read", 12}, {"used", 12}, {"skipped", nlohmann::json::array()}}));
-    EXPECT_GT(summary["totals"]["triangles"], 5000);
+    EXPECT_GT(summary["totals"]["triangles"], 10000);
     EXPECT_TRUE(summary["warnings"].empty()) << summary["warnings"];
     for (const char* frame : {"000004", "000008"}) {
         const Image<float> view_m =
