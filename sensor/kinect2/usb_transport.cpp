@@ -112,8 +112,17 @@ class UsbTransport final : public Transport {
     }
 
     void set_alternate_setting(uint8_t interface, uint8_t setting) override {
+        // When the device is gone, libusb 1.0.26 unlocks a mutex here that it did not lock (its issue 1199), and aborts
+        // the program when the handle is closed. To claim what is claimed tells whether it is gone, and does nothing
+        // else.
+        usb::check(libusb_claim_interface(handle(), interface), name_, "claiming its interfaces");
         const int code = libusb_set_interface_alt_setting(handle(), interface, setting);
-        if (code < 0 && code != LIBUSB_ERROR_NO_DEVICE && setting != 0) {
+        if (code == LIBUSB_ERROR_NO_DEVICE) {  // gone in between: the handle must not be closed
+            handle_.release();
+            gone_ = true;
+            throw Unplugged(name_, " was unplugged");
+        }
+        if (code < 0 && setting != 0) {
             throw Error(name_, ": the host controller does not reserve the bandwidth of the infrared stream (",
                         libusb_strerror(code), "); those of Intel and Renesas do, those of ASMedia mostly not");
         }
@@ -163,6 +172,7 @@ class UsbTransport final : public Transport {
 
   private:
     libusb_device_handle* handle() const {
+        if (gone_) throw Unplugged(name_, " was unplugged");
         if (!handle_) throw Error(name_, " was closed, because it did not give back its transfers");
         return handle_.get();
     }
@@ -181,6 +191,7 @@ class UsbTransport final : public Transport {
             if (listed.path == path_ && usb::is_camera(listed)) handle_ = open_handle(listed);
         }
         if (!handle_) throw Unplugged(name_, " did not come back after its reset");
+        gone_ = false;
     }
 
     void configure() {
@@ -222,6 +233,7 @@ class UsbTransport final : public Transport {
     usb::Context context_;
     usb::Handle handle_;
     std::unique_ptr<usb::Streams> streams_;
+    bool gone_ = false;  ///< and its handle given up
     std::string path_, name_, serial_, warning_;
 };
 

@@ -5,39 +5,17 @@
 #include <cstring>
 #include <utility>
 
-#include <pthread.h>
-
 namespace patina::sensor::kinect2::testing {
 namespace {
 
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-/// Of a thread that was kept waiting: time that it makes up for. The rest passes for nobody.
-constexpr uint64_t kMostAtOnce = 80;
 constexpr uint64_t kSubmissionsBeforeFailures = 200;
 
 }  // namespace
 
-Bus::Bus(const StandInOptions& options) : options_(options), device_(options.device_options()) {
-    thread_ = std::jthread([this](std::stop_token stop) { run(stop); });
-}
-
-void Bus::run(const std::stop_token& stop) {
-    pthread_setname_np(pthread_self(), "kinect2-bus");
-    const double intervals_per_second = options_.frames_per_second * 800 / 3;
-    auto last = Clock::now();
-    double due = 0;
-    while (!stop.stop_requested()) {
-        std::this_thread::sleep_for(1ms);
-        const auto now = Clock::now();
-        due += std::chrono::duration<double>(now - last).count() * intervals_per_second;
-        last = now;
-        const auto whole = static_cast<uint64_t>(due);
-        due -= static_cast<double>(whole);
-        for (uint64_t i = 0; i < std::min(whole, kMostAtOnce); ++i) pass_interval();
-    }
-}
+Bus::Bus(const BusOptions& options)
+    : options_(options),
+      device_(options.device_options()),
+      clock_(options.frames_per_second, [this] { pass_interval(); }) {}
 
 void Bus::pass_interval() {
     const bool streaming = device_.streaming_infrared();

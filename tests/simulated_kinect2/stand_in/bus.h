@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include <libusb.h>
 
-#include "tests/simulated_kinect2/stand_in/options.h"
+#include "tests/simulated_kinect2/bus_clock.h"
+#include "tests/simulated_kinect2/bus_options.h"
 
 namespace patina::sensor::kinect2::testing {
 
@@ -17,7 +17,7 @@ namespace patina::sensor::kinect2::testing {
 /// a thread named "kinect2-bus". An isochronous packet for which no transfer was submitted is lost, as on a real bus.
 class Bus {
   public:
-    explicit Bus(const StandInOptions& options);
+    explicit Bus(const BusOptions& options);
 
     /// All as the libusb functions of the same name, with libusb's codes.
     int submit(libusb_transfer* transfer);
@@ -35,7 +35,6 @@ class Bus {
         libusb_transfer_status status;
     };
 
-    void run(const std::stop_token& stop);
     void pass_interval();
     void receive(const SentPacket& packet);
     bool receive(std::span<const uint8_t> bytes);
@@ -43,7 +42,7 @@ class Bus {
     void complete_all(libusb_transfer_status status);
     std::deque<libusb_transfer*>& queue_of(const libusb_transfer* transfer);
 
-    StandInOptions options_;
+    BusOptions options_;
     SimulatedDevice device_;
 
     std::mutex mutex_;
@@ -55,7 +54,7 @@ class Bus {
     bool interrupted_ = false;
     bool hung_ = false;  ///< cancelled transfers do not come back
 
-    std::jthread thread_;
+    BusClock clock_;
 };
 
 }  // namespace patina::sensor::kinect2::testing

@@ -13,7 +13,7 @@
 
 using patina::sensor::kinect2::testing::Answer;
 using patina::sensor::kinect2::testing::Bus;
-using patina::sensor::kinect2::testing::StandInOptions;
+using patina::sensor::kinect2::testing::BusOptions;
 
 struct libusb_device {
     libusb_context* context;
@@ -22,14 +22,15 @@ struct libusb_device {
 };
 
 struct libusb_context {
-    StandInOptions options = StandInOptions::from_environment();
+    BusOptions options = BusOptions::from_environment();
     Bus bus{options};
     bool moved = false;  ///< by a reset
 };
 
 struct libusb_device_handle {
     libusb_device* device;
-    bool stale = false;  ///< the device was put on the bus anew
+    bool stale = false;   ///< the device was put on the bus anew
+    bool broken = false;  ///< its mutex was unlocked without having been locked
 };
 
 namespace {
@@ -87,7 +88,7 @@ const char* libusb_strerror(int code) {
 }
 
 ssize_t libusb_get_device_list(libusb_context* context, libusb_device*** list) {
-    const StandInOptions& options = context->options;
+    const BusOptions& options = context->options;
     const size_t count = options.device == "none" || context->bus.device().gone() ? 0 : 1;
     *list = static_cast<libusb_device**>(std::calloc(count + 1, sizeof(libusb_device*)));
     if (count > 0) (*list)[0] = new libusb_device{context, options.device == "adaptor" ? kAdaptorHub : kCamera};
@@ -136,6 +137,7 @@ int libusb_open(libusb_device* device, libusb_device_handle** handle) {
 }
 
 void libusb_close(libusb_device_handle* handle) {
+    if (handle->broken) std::abort();
     bus_of(handle).forget_transfers();
     libusb_unref_device(handle->device);
     delete handle;
@@ -162,6 +164,7 @@ int libusb_set_configuration(libusb_device_handle*, int configuration) {
 int libusb_set_auto_detach_kernel_driver(libusb_device_handle*, int) { return LIBUSB_ERROR_NOT_SUPPORTED; }
 
 int libusb_claim_interface(libusb_device_handle* handle, int) {
+    if (handle->stale || bus_of(handle).device().gone()) return LIBUSB_ERROR_NO_DEVICE;
     return handle->device->context->options.busy ? LIBUSB_ERROR_BUSY : 0;
 }
 
@@ -177,7 +180,10 @@ int libusb_reset_device(libusb_device_handle* handle) {
 }
 
 int libusb_set_interface_alt_setting(libusb_device_handle* handle, int interface, int setting) {
-    if (handle->stale) return LIBUSB_ERROR_NO_DEVICE;
+    if (handle->stale || bus_of(handle).device().gone()) {
+        handle->broken = true;  // as libusb 1.0.26 does (its issue 1199)
+        return LIBUSB_ERROR_NO_DEVICE;
+    }
     return code_of(
         bus_of(handle).device().set_alternate_setting(static_cast<uint8_t>(interface), static_cast<uint8_t>(setting)));
 }

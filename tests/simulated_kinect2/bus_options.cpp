@@ -1,4 +1,4 @@
-#include "tests/simulated_kinect2/stand_in/options.h"
+#include "tests/simulated_kinect2/bus_options.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -59,8 +59,8 @@ ColorSignal::Pictures pictures_of(const fs::path& folder) {
 
 }  // namespace
 
-StandInOptions StandInOptions::from_environment() {
-    StandInOptions options;
+BusOptions BusOptions::from_environment() {
+    BusOptions options;
     if (!variable("DEVICE").empty()) options.device = variable("DEVICE");
     options.high_speed = variable("SPEED") == "high";
     options.denied = variable("ACCESS") == "denied";
@@ -78,7 +78,7 @@ StandInOptions StandInOptions::from_environment() {
     return options;
 }
 
-SimulatedDeviceOptions StandInOptions::device_options() const {
+SimulatedDeviceOptions BusOptions::device_options() const {
     SimulatedDeviceOptions simulated;
     simulated.commands.high_speed = high_speed;
     simulated.commands.no_bandwidth = no_bandwidth;

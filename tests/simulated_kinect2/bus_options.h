@@ -8,8 +8,8 @@
 
 namespace patina::sensor::kinect2::testing {
 
-/// What the environment asks of the stand-in. Every variable's name begins with PATINA_KINECT2_.
-struct StandInOptions {
+/// What the environment asks of a simulated bus. Every variable's name begins with PATINA_KINECT2_.
+struct BusOptions {
     std::string device = "camera";        ///< DEVICE: camera, adaptor (without a camera), none
     bool high_speed = false;              ///< SPEED=high
     bool denied = false;                  ///< ACCESS=denied: the device may not be opened
@@ -25,7 +25,7 @@ struct StandInOptions {
     std::filesystem::path color_folder;   ///< COLOR: JPEG files by name; the last one stays
     bool no_bandwidth = false;            ///< BANDWIDTH=none: alternate setting 1 is refused
 
-    static StandInOptions from_environment();
+    static BusOptions from_environment();
     /// The simulated device that they describe.
     SimulatedDeviceOptions device_options() const;
 };
