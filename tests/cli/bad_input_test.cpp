@@ -19,7 +19,7 @@ class BadInput : public RunFolderTest {
   protected:
     /// Runs the sequence, in which frame 1 alone is damaged; returns the reason why it is skipped.
     std::string reason_of_skipped_frame() {
-        const Outcome outcome = patina({"run", sequence(), "--out", out(), "--quiet"});
+        const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off", "--quiet"});
         EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
         EXPECT_THAT(outcome.err, ::testing::StartsWith("patina: only 2 of 3 frames were used"));
         const nlohmann::json summary = summary_of(out());
@@ -80,7 +80,7 @@ TEST_F(BadInput, FrameWithoutPoseIsSkipped) {
 
 TEST_F(BadInput, SkippedFramesAreToldAsTheyHappen) {
     fs::remove(sequence() / "color/000001.png");
-    const Outcome outcome = patina({"run", sequence(), "--out", out()});
+    const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off"});
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_THAT(outcome.err, HasSubstr("frame 1 is skipped: "));
     EXPECT_THAT(outcome.out, HasSubstr("2 of 3 frames"));

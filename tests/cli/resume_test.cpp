@@ -15,9 +15,10 @@ using ::testing::HasSubstr;
 class Resume : public RunFolderTest {
   protected:
     /// `patina run` of the recording, whose results are what `name` holds then.
-    std::vector<std::string> arguments(const std::string& name) const {
-        return {"run", sequence(),     "--out", beside(name),         "--set", "map.voxel_m=0.02", "--hold-out",
-                "2",   "--dump-every", "1",     "--checkpoint-every", "1",     "--quiet"};
+    std::vector<std::string> arguments(const std::string& name, const std::string& texture = "off") const {
+        return {"run",    sequence(),     "--out", beside(name),         "--set", "map.voxel_m=0.02", "--hold-out",
+                "2",      "--dump-every", "1",     "--checkpoint-every", "1",     "--texture",        texture,
+                "--quiet"};
     }
 
     static std::map<std::string, std::string> results_in(const fs::path& folder) {
@@ -28,11 +29,11 @@ class Resume : public RunFolderTest {
 };
 
 TEST_F(Resume, AKilledRunGoesOnToTheSameResults) {
-    const Outcome whole = patina(arguments("whole"));
+    const Outcome whole = patina(arguments("whole", "auto"));
     ASSERT_EQ(whole.exit_code, 0) << whole.err;
     const fs::path map = beside("killed") / "map.sqlite";
     {
-        Program killed(arguments("killed"));
+        Program killed(arguments("killed", "auto"));
         while (killed.running() && patina({"info", map}).exit_code != 0)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         killed.send(SIGKILL);

@@ -141,11 +141,24 @@ class StreamingTest : public GpuTest {
         return result;
     }
 
-    const Tour tour_{device()};
+    /// Of a map all of which stays on the device; computed once.
+    const Result& whole() const {
+        static const Result result = reconstruct(settings(0));
+        return result;
+    }
+
+    const Tour& tour_ = the_tour(device());
+
+  private:
+    /// Rendered once.
+    static const Tour& the_tour(vulkan::Device& device) {
+        static const Tour tour(device);
+        return tour;
+    }
 };
 
 TEST_F(StreamingTest, WhatLeavesTheDeviceMakesNoDifference) {
-    const Result all = reconstruct(settings(0)), few = reconstruct(settings(1));
+    const Result &all = whole(), few = reconstruct(settings(1));
     ReconstructionSettings with_file = settings(1);
     with_file.host_mib = 1;
     const Result fewer = reconstruct(with_file);
@@ -300,7 +313,7 @@ TEST_F(StreamingTest, ViewsOfWhatIsAwayBringItBack) {
 
 /// Of another place, and of a pool that cannot hold both that and what frames look at.
 TEST_F(StreamingTest, ViewsBetweenFramesMakeNoDifference) {
-    const Result all = reconstruct(settings(0));
+    const Result& all = whole();
     ReconstructionSettings tight = settings(1);
     tight.reflectance->limit_records = kTightRecords;
     Pipeline pipeline(device(), tight);
