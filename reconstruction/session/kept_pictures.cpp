@@ -15,7 +15,7 @@ namespace patina {
 namespace {
 
 // A stretch of the way ends where the camera has moved or turned by this much.
-constexpr double kStep_m = 0.15, kStep_rad = 0.14;
+constexpr double kStep_m = 0.05, kStep_rad = 0.045;
 constexpr float kLonger = 1.3f;  // stretches become, where there are too many
 
 Extent2D extent_of(const ColorImage& color) {

@@ -65,15 +65,15 @@ TEST(KeptPictures, ThoseOfFramesThatWereUndoneGo) {
 
 TEST(KeptPictures, OfAStretchTheSharpestStays) {
     KeptPictures pictures;
-    const Frame sharp = frame_at(0.05, 90, 7);
-    const Frame frames[] = {frame_at(0, 20), sharp, frame_at(0.1, 40), frame_at(1, 10)};
+    const Frame sharp = frame_at(0.015, 90, 7);
+    const Frame frames[] = {frame_at(0, 20), sharp, frame_at(0.03, 40), frame_at(1, 10)};
     for (uint32_t i = 0; i < 4; ++i) pictures.add(info_of_camera(), frames[i], i);
     const std::vector<gpu::ColorGains> gains{{glm::vec4(1), {}}, {glm::vec4(1.5f, 2, 3, 0), {}}};
     const Given given = given_by(pictures, gains);
     ASSERT_EQ(given.colors.size(), 2u);
     EXPECT_EQ(pictures.size(), 2u);
     EXPECT_EQ(given.colors[0].pixels(), color_of(sharp).pixels()) << "without loss";
-    EXPECT_EQ(given.x_m[0], 0.05);
+    EXPECT_EQ(given.x_m[0], 0.015);
     EXPECT_EQ(given.gains[0], glm::vec3(1.5f, 2, 3)) << "those of its frame";
     EXPECT_EQ(given.gains[1], glm::vec3(1)) << "none are known";
 }
@@ -122,7 +122,7 @@ TEST(KeptPictures, ASessionThatGoesOnKeepsTheSame) {
     KeptPictures whole, first, second;
     Memory memory;
     for (uint32_t i = 0; i < 12; ++i) {
-        const Frame frame = frame_at(0.06 * i, 20 + static_cast<int>(i * 7 % 11), i);
+        const Frame frame = frame_at(0.02 * i, 20 + static_cast<int>(i * 7 % 11), i);
         whole.add(info_of_camera(), frame, i);
         (i < 7 ? first : second).add(info_of_camera(), frame, i);
         if (i != 6) continue;
