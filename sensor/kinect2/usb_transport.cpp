@@ -117,7 +117,7 @@ class UsbTransport final : public Transport {
         // else.
         usb::check(libusb_claim_interface(handle(), interface), name_, "claiming its interfaces");
         const int code = libusb_set_interface_alt_setting(handle(), interface, setting);
-        if (code == LIBUSB_ERROR_NO_DEVICE) {  // gone in between: the handle must not be closed
+        if (code == LIBUSB_ERROR_NO_DEVICE) {  // gone in between: its mutex may be broken
             handle_.release();
             gone_ = true;
             throw Unplugged(name_, " was unplugged");
