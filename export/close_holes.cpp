@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -25,10 +26,7 @@ constexpr float kLeastAgreement = 0.25f;  // cosine between what closes a hole a
 class Borders {
   public:
     Borders(const Mesh& mesh, bool in_pieces) : mesh_(mesh), first_(first_of_position(mesh.positions_m)) {
-        edges_.reserve(3 * mesh.triangles.size());
-        for (const Triangle& t : mesh.triangles)
-            for (size_t i = 0; i < 3; ++i) edges_.push_back(edge_of(t, i));
-        std::ranges::sort(edges_);
+        list_edges();
         for (const glm::vec3& position : mesh.positions_m) {
             low_ = glm::min(low_, position);
             high_ = glm::max(high_, position);
@@ -36,7 +34,7 @@ class Borders {
         for (const Triangle& t : mesh.triangles) {
             for (size_t i = 0; i < 3; ++i) {
                 const auto [from, to] = edge_of(t, i);
-                if (from == to || std::ranges::binary_search(edges_, Edge(to, from))) continue;
+                if (from == to || goes_round(to, from)) continue;
                 next_.emplace(to, from);
                 if (in_pieces && is_cut_off(from, to, t[(i + 2) % 3])) cut_off_.insert({to, from});
             }
@@ -52,8 +50,7 @@ class Borders {
 
     /// Of the mesh, or added since.
     bool has_edge(uint32_t a, uint32_t b) const {
-        return std::ranges::binary_search(edges_, Edge(a, b)) || std::ranges::binary_search(edges_, Edge(b, a)) ||
-               added_.contains(std::minmax(a, b));
+        return goes_round(a, b) || goes_round(b, a) || added_.contains(std::minmax(a, b));
     }
 
     void add_edges(const Loop& loop, std::span<const Triangle> triangles) {
@@ -68,6 +65,28 @@ class Borders {
     }
 
   private:
+    void list_edges() {
+        begins_.assign(first_.size() + 1, 0);
+        for (const Triangle& t : mesh_.triangles)
+            for (const uint32_t vertex : t) ++begins_[first_[vertex]];
+        std::exclusive_scan(begins_.begin(), begins_.end(), begins_.begin(), 0u);
+        std::vector<uint32_t> next(begins_);
+        ends_.resize(begins_.back());
+        for (const Triangle& t : mesh_.triangles) {
+            for (size_t i = 0; i < 3; ++i) {
+                const auto [from, to] = edge_of(t, i);
+                ends_[next[from]++] = to;
+            }
+        }
+    }
+
+    /// Whether a triangle of the mesh has this edge, as it goes round.
+    bool goes_round(uint32_t from, uint32_t to) const {
+        const std::span<const uint32_t> ends(ends_);
+        const auto of_vertex = ends.subspan(begins_[from], begins_[from + 1] - begins_[from]);
+        return std::ranges::find(of_vertex, to) != of_vertex.end();
+    }
+
     Edge edge_of(const Triangle& t, size_t i) const { return {first_[t[i]], first_[t[(i + 1) % 3]]}; }
 
     /// An edge in a side of the mesh's box, whose triangle is not: the surface goes on beyond.
@@ -100,7 +119,7 @@ class Borders {
 
     const Mesh& mesh_;
     std::vector<uint32_t> first_;
-    std::vector<Edge> edges_;  ///< of the mesh's triangles, as they go round; sorted
+    std::vector<uint32_t> begins_, ends_;  ///< by vertex, where its edges begin, and to which vertices they go
     std::set<Edge> added_, cut_off_;
     std::multimap<uint32_t, uint32_t> next_;  ///< border edges that are in no loop yet
     glm::vec3 low_{1e9f}, high_{-1e9f};
