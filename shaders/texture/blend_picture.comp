@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Adds what one picture says of each texel that it truly sees: its colour, less the highlight, over the light there.
-// The weight falls with the angle and the square of the distance, and towards the picture's border. One invocation per
-// texel.
+// The weight falls with the angle and the square of the distance, and towards the picture's border. Between a picture's
+// pixels colours are blurred: what lies in the middle of one counts most, so that together pictures show what is finer
+// than their pixels. One invocation per texel.
 #include "lib/math/octahedral.glsl"
 #include "shared/input/convert_color.h"
 #include "shared/texture/texture.h"
@@ -19,6 +20,9 @@ layout(binding = 5, rgba16f) uniform readonly image2D rgb;
 layout(binding = 6, rgba16f) uniform readonly image2D light;
 layout(push_constant) uniform Push { BlendPictureParams params; };
 #include "texture/sight.glsl"
+
+const float kCentred = 32.0;
+const float kLeastCentred = 0.05;  // halfway between pixels
 
 struct Corner {
     vec3 light, highlight;
@@ -69,6 +73,8 @@ void main() {
 
     const float clear = dot(diffuse, vec3(1.0)) / max(dot(diffuse + highlight, vec3(1.0)), 1e-6);
     const float facing = sight.cosine / (sight.range_m * sight.range_m);
-    const float weight = pow(facing, kSharpness) * sight.fade * max(clear * clear, 1e-3);
+    const vec2 beside = sight.at - round(sight.at);
+    const float centred = max(exp(-kCentred * dot(beside, beside)), kLeastCentred);
+    const float weight = pow(facing, kSharpness) * sight.fade * max(clear * clear, 1e-3) * centred;
     sums[index] += vec4(weight * albedo, weight);
 }

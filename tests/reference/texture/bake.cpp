@@ -115,7 +115,8 @@ glm::dvec4 blend_picture(const BakePicture& picture, const glm::dvec3& position_
     const double clear = of_diffuse / std::max(of_diffuse + of_shine, 1e-6);
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);
     const double fade = into * into * (3 - 2 * into);
-    const double weight = std::pow(cosine / (range_m * range_m), 3) * fade * std::max(clear * clear, 1e-3);
+    const double centred = std::max(std::exp(-32 * glm::dot(at - glm::round(at), at - glm::round(at))), 0.05);
+    const double weight = std::pow(cosine / (range_m * range_m), 3) * fade * std::max(clear * clear, 1e-3) * centred;
     return glm::dvec4(weight * albedo, weight);
 }
 
