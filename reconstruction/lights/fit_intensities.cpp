@@ -35,9 +35,9 @@ std::array<int, 5> group_key(const gpu::LightSample& sample, float cell_m) {
 }
 
 /// A symmetric system of few unknowns.
-class NormalEquations {
+class IntensityEquations {
   public:
-    explicit NormalEquations(size_t unknowns) : n_(unknowns), values_(n_ * n_) {}
+    explicit IntensityEquations(size_t unknowns) : n_(unknowns), values_(n_ * n_) {}
 
     void add(std::span<const double> row, double weight) {
         for (size_t i = 0; i < n_; ++i)
@@ -146,7 +146,7 @@ class IntensityFit {
             for (size_t l = 0; l < unknowns_; ++l)
                 group_given[part_[i] * unknowns_ + l] += double{weight_[i]} * given(i, l);
         }
-        NormalEquations equations(unknowns_);
+        IntensityEquations equations(unknowns_);
         for (size_t i = 0; i < count_; ++i) {
             const uint32_t g = part_[i];
             if (!(group_bright[g] > 0)) continue;

@@ -137,6 +137,7 @@ class SessionCore {
     void resume();
     void visit(graph::StateVisitor& visitor);
     void skip_readings();
+    void forget_empty_map();
     void mark_ended();
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
@@ -155,6 +156,7 @@ class SessionCore {
     std::unique_ptr<Source> source_;
     scenes::SyntheticSource* scene_ = nullptr;  ///< the source, where it is one
     std::shared_ptr<MapFile> map_;              ///< null until there is something in it
+    bool made_map_ = false;                     ///< there was no file
     std::optional<uint32_t> kept_after_;  ///< frames read when the state in it was; empty: it is another session's
     std::string checkpoint_problem_;
     bool ended_ = false;  ///< the source has

@@ -12,10 +12,17 @@ namespace patina {
 namespace {
 
 /// How far a session is, for people and for open_map().
-nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const SequenceInfo& info, bool ended) {
-    nlohmann::ordered_json json{{"read", ledger.read()}, {"used", ledger.used()}, {"ended", ended}};
+nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const SequenceInfo& info, bool ended,
+                                     bool replaceable) {
+    nlohmann::ordered_json json{
+        {"read", ledger.read()}, {"used", ledger.used()}, {"ended", ended}, {"replaceable", ended || replaceable}};
     if (info.frames) json["frames"] = *info.frames;
     return json;
+}
+
+/// Names of files need not be UTF-8.
+std::string text_of(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 /// How many of a session's frames were in a model.
@@ -52,7 +59,7 @@ void SessionCore::open_map() {
     map_ = std::make_unique<MapFile>(options_.map);
     if (!map_->has_state()) return;
     const auto progress = map_->expect_json("progress");
-    if (progress.value("ended", false)) return;
+    if (progress.value("ended", false) || progress.value("replaceable", false)) return;
     throw Error(
         hinted(patina::text("'", options_.map.string(), "' holds a session that has not come to its end, after ",
                             progress.value("read", 0), " frames; go on with it, or remove the file"),
@@ -113,16 +120,19 @@ void SessionCore::checkpoint(const MoreState& more) {
     pipeline_->wait();
     if (!map_) {
         if (options_.map.has_parent_path()) std::filesystem::create_directories(options_.map.parent_path());
+        std::error_code failure;
+        made_map_ = !std::filesystem::exists(options_.map, failure);
         map_ = std::make_unique<MapFile>(options_.map);
     }
     Transaction change(map_->database());
     if (!kept_after_) map_->clear();
     const vulkan::DeviceCaps& caps = device_.caps();
     map_->set_text("device", fmt::format("{}, {}", caps.name, caps.driver));
-    map_->set_text("session", identity_of(options_, info_, settings()).dump(2));
-    map_->set_text("detail", detail_json(detail_).dump(2));
-    map_->set_text("lights", lights_json(illumination_).dump(2));
-    map_->set_text("progress", progress_json(ledger_, info_, ended_).dump(2));
+    map_->set_text("session", text_of(identity_of(options_, info_, settings())));
+    map_->set_text("detail", text_of(detail_json(detail_)));
+    map_->set_text("lights", text_of(lights_json(illumination_)));
+    map_->set_text("progress",
+                   text_of(progress_json(ledger_, info_, ended_, options_.checkpoint_every == SessionOptions::kAtEnd)));
     SessionLight light{illumination_, no_light_because_, shortfalls_};
     StateWriter writer(device_, *map_);
     patina::visit(writer, light);
@@ -134,9 +144,18 @@ void SessionCore::checkpoint(const MoreState& more) {
     kept_after_ = ledger_.read();
 }
 
+/// Where nothing could be kept, no file is left that was not there.
+void SessionCore::forget_empty_map() {
+    if (!made_map_ || kept_after_) return;
+    map_.reset();
+    std::error_code failure;
+    std::filesystem::remove(options_.map, failure);
+}
+
 void SessionCore::mark_ended() {
     Transaction change(map_->database());
-    map_->set_text("progress", progress_json(ledger_, info_, ended_).dump(2));
+    map_->set_text("progress",
+                   text_of(progress_json(ledger_, info_, ended_, options_.checkpoint_every == SessionOptions::kAtEnd)));
     change.commit();
 }
 
@@ -151,6 +170,7 @@ void SessionCore::checkpoint_if_due(const MoreState& more) {
         }
         checkpoint_problem_.clear();
     } catch (const std::exception& error) {
+        forget_empty_map();
         checkpoint_problem_ =
             fmt::format("the state after {} frames could not be kept: {}", ledger_.read(), reason_of(error));
         report(options_.callbacks, "warning: " + checkpoint_problem_);

@@ -7,12 +7,12 @@ namespace patina {
 
 namespace {
 
-constexpr BlockStream::Limits kLimits{32768, 16384};  // 10 MiB of records, and half of it
+constexpr BlockStream::Limits kRecordLimits{32768, 16384};  // 10 MiB of records, and half of it
 
 }  // namespace
 
 RecordStream::RecordStream(graph::Runner& runner, Stages& stages, BlockStore& store)
-    : BlockStream(runner, stages.geometry.map(), kLimits, store), stages_(stages) {}
+    : BlockStream(runner, stages.geometry.map(), kRecordLimits, store), stages_(stages) {}
 
 BlockStream::Leaving RecordStream::leave(graph::FrameGraph& graph, const gpu::StreamRegion& region, uint32_t most) {
     const LeavingRecords records = reflectance().add_leave(graph, region, most);

@@ -8,12 +8,12 @@ namespace patina {
 
 namespace {
 
-constexpr BlockStream::Limits kLimits{2048, 1024};  // 12 MiB of blocks, and half of it
+constexpr BlockStream::Limits kVoxelLimits{2048, 1024};  // 12 MiB of blocks, and half of it
 
 }  // namespace
 
 VoxelStream::VoxelStream(graph::Runner& runner, Stages& stages, BlockStore& store)
-    : BlockStream(runner, stages.geometry.map(), kLimits, store), stages_(stages) {}
+    : BlockStream(runner, stages.geometry.map(), kVoxelLimits, store), stages_(stages) {}
 
 BlockStream::Leaving VoxelStream::leave(graph::FrameGraph& graph, const gpu::StreamRegion& region, uint32_t most) {
     VoxelMapIds voxels = map_.import(graph);

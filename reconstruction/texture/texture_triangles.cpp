@@ -7,7 +7,7 @@
 namespace patina {
 namespace {
 
-using Corners = std::array<glm::vec2, 3>;
+using PageCorners = std::array<glm::vec2, 3>;
 
 static_assert(gpu::kGutterTexels == kTextureGutter);
 constexpr float kTile = gpu::kTextureTile;
@@ -23,7 +23,7 @@ glm::vec3 known_albedo(const TexturedSurface& piece, size_t vertex) {
 }
 
 /// Whether a tile lies beyond one of the triangle's edges by more than kReach_px.
-bool is_apart(const Corners& corners, glm::vec2 low, glm::vec2 high) {
+bool is_apart(const PageCorners& corners, glm::vec2 low, glm::vec2 high) {
     const glm::vec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
     const float turn = a.x * b.y - a.y * b.x < 0 ? -1.0f : 1.0f;
     for (size_t i = 0; i < 3; ++i) {
@@ -37,7 +37,7 @@ bool is_apart(const Corners& corners, glm::vec2 low, glm::vec2 high) {
 
 /// Calls `take` with each tile of the band that a triangle may touch.
 template <class Take>
-void for_tiles(const Corners& corners, uint32_t first_row, glm::uvec2 tiles, const Take& take) {
+void for_tiles(const PageCorners& corners, uint32_t first_row, glm::uvec2 tiles, const Take& take) {
     const glm::vec2 origin(0, static_cast<float>(first_row));
     glm::vec2 low = corners[0] - origin, high = low;
     for (const glm::vec2 corner : corners) {
@@ -94,7 +94,7 @@ TileLists list_tiles(const TextureTriangles& triangles, uint32_t page, uint32_t 
     const auto for_all = [&](const auto& take) {
         for (uint32_t t = 0; t < triangles.pages.size(); ++t) {
             if (triangles.pages[t] != page) continue;
-            Corners corners;
+            PageCorners corners;
             for (size_t i = 0; i < 3; ++i) {
                 const gpu::TextureVertex& vertex = triangles.vertices[triangles.indices[3 * t + i]];
                 corners[i] = {vertex.position_m.w, vertex.kd.w};

@@ -1,6 +1,6 @@
 #include "tests/cli/run_folder.h"
 
-namespace patina::testing {
+namespace patina::testing::arguments_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST_F(Arguments, SettingsAreEchoed) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::arguments_test

@@ -5,7 +5,7 @@
 
 // What the outside does wrong, as a user meets it: one line that names the cause, and nothing lost.
 
-namespace patina::testing {
+namespace patina::testing::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -19,7 +19,7 @@ class BadInput : public RunFolderTest {
   protected:
     /// Runs the sequence, in which frame 1 alone is damaged; returns the reason why it is skipped.
     std::string reason_of_skipped_frame() {
-        const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off", "--quiet"});
+        const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off", "--no-map", "--quiet"});
         EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
         EXPECT_THAT(outcome.err, ::testing::StartsWith("patina: only 2 of 3 frames were used"));
         const nlohmann::json summary = summary_of(out());
@@ -80,7 +80,7 @@ TEST_F(BadInput, FrameWithoutPoseIsSkipped) {
 
 TEST_F(BadInput, SkippedFramesAreToldAsTheyHappen) {
     fs::remove(sequence() / "color/000001.png");
-    const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off"});
+    const Outcome outcome = patina({"run", sequence(), "--out", out(), "--texture", "off", "--no-map"});
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_THAT(outcome.err, HasSubstr("frame 1 is skipped: "));
     EXPECT_THAT(outcome.out, HasSubstr("2 of 3 frames"));
@@ -196,7 +196,7 @@ TEST_F(BadInput, InfoOfNothing) {
 
 TEST_F(BadInput, FullVoxelPoolEndsWell) {
     const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "3", "--lighting", "none", "--out", out(),
-                                    "--texture", "off", "--set", "map.capacity_blocks=200"});
+                                    "--texture", "off", "--no-map", "--set", "map.capacity_blocks=200"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
     EXPECT_EQ(summary["voxel_pool"]["blocks_used"], 200);
@@ -213,8 +213,9 @@ TEST_F(BadInput, FullVoxelPoolEndsWell) {
 
 TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
-    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "2", "--lights", beside("l.json"), "--out",
-                                    out(), "--texture", "off", "--set", "reflectance.capacity_records=1000"});
+    const Outcome outcome =
+        patina({"run", "synthetic:cubes", "--frames", "2", "--lights", beside("l.json"), "--out", out(), "--texture",
+                "off", "--no-map", "--set", "reflectance.capacity_records=1000"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
     EXPECT_GT(summary["observation_pool"]["records_used"], 900);
@@ -230,7 +231,7 @@ TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
 TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
     const Outcome outcome =
         patina({"run", "synthetic:cubes", "--frames", "1", "--lighting", "none", "--out", out(), "--texture", "off",
-                "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
+                "--no-map", "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("with voxels of 0.0025 m the view reaches 3."));
     EXPECT_THAT(summary_of(out())["warnings"].dump(), HasSubstr("not 6.00 m: what lies farther is left out"));
@@ -238,8 +239,9 @@ TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
 
 TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
-    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"),
-                                    "--observation-mm", "10", "--texture", "off", "--out", out(), "--quiet"});
+    const Outcome outcome =
+        patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"), "--observation-mm", "10",
+                "--texture", "off", "--no-map", "--out", out(), "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0);
     const nlohmann::json summary = summary_of(out());
     EXPECT_EQ(summary["settings"]["reflectance.voxel_m"], 0.01);
@@ -263,4 +265,4 @@ TEST_F(BadInput, UnknownDevice) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::bad_input_test

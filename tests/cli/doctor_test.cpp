@@ -4,7 +4,7 @@
 
 // `patina doctor` over the stand-in for libusb, as a user with a Kinect meets it.
 
-namespace patina::testing {
+namespace patina::testing::doctor_test {
 namespace {
 
 using ::testing::AllOf;
@@ -41,4 +41,4 @@ TEST(Doctor, SaysThatThereIsNoKinect) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::doctor_test

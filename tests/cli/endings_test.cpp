@@ -8,7 +8,7 @@
 
 // A run ends with what it can: geometry where there is no light, and an exit code that says what is missing.
 
-namespace patina::testing {
+namespace patina::testing::endings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,8 @@ class Endings : public RunFolderTest {
     Outcome run(const std::string& input, const std::vector<std::string>& more = {}) {
         std::vector<std::string> arguments{"run", input, "--out", out()};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        if (std::ranges::count(more, "--texture") == 0) arguments.insert(arguments.end(), {"--texture", "off"});
+        if (std::ranges::count(more, "--texture") == 0)
+            arguments.insert(arguments.end(), {"--texture", "off", "--no-map"});
         Outcome outcome = patina(arguments);
         EXPECT_EQ(read_text(out() / "scene.glb").substr(0, 4), "glTF") << outcome.err;
         return outcome;
@@ -124,7 +125,7 @@ TEST_F(Endings, OptionsOfTheSceneReachIt) {
         scene_with({"--texture", "auto", "--raw-attributes", "--gltf-fresnel", "constant", "--surface-error", "20"}),
         HasSubstr("_KD"));
     EXPECT_LT(totals()["triangles"], usual["triangles"]);
-    EXPECT_THAT(scene_with({"--texture", "off", "--surface-error", "0"}),
+    EXPECT_THAT(scene_with({"--texture", "off", "--no-map", "--surface-error", "0"}),
                 AllOf(HasSubstr("COLOR_0"), Not(HasSubstr("TEXCOORD_0"))));
     const nlohmann::json all = totals();
     const auto sum = [](const nlohmann::json& of) {
@@ -219,7 +220,7 @@ TEST_F(Endings, TrackingThatIsLostForGood) {
         const fs::path picture = recording / "depth" / (std::string("00000") + frame + ".png");
         sensor::write_png(picture, Image<uint16_t>({256, 212}, 0));
     }
-    const Outcome outcome = run(recording, {"--detail", "coarse", "--texture", "off"});
+    const Outcome outcome = run(recording, {"--detail", "coarse", "--texture", "off", "--no-map"});
     expect_short(outcome, "tracking was lost at frame 4 and not found again");
     EXPECT_THAT(outcome.out, HasSubstr("the last 2 frames are left out"));
 }
@@ -293,8 +294,8 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
     auto poses_aside = given;
     for (sensor::StampedPose& pose : poses_aside) pose.world_from_camera[3] += glm::dvec4(7, 0, 0, 0);
     sensor::write_trajectory(aside / "trajectory.txt", poses_aside);
-    const Outcome extended = patina(
-        {"run", aside, "--out", beside("aside-run"), "--extend", beside("far-run"), "--texture", "off", "--quiet"});
+    const Outcome extended = patina({"run", aside, "--out", beside("aside-run"), "--extend", beside("far-run"),
+                                     "--texture", "off", "--no-map", "--quiet"});
     ASSERT_EQ(extended.exit_code, 0) << extended.err;
     EXPECT_EQ(summary_of(beside("aside-run"))["world_offset_m"], moved["world_offset_m"]);
     EXPECT_LT(glm::distance(
@@ -304,4 +305,4 @@ TEST_F(Endings, AWorldFarFromItsOriginIsMovedAndComesOutWhereItWas) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::endings_test

@@ -7,7 +7,7 @@
 
 // `patina eval` as a user meets it.
 
-namespace patina::testing {
+namespace patina::testing::eval_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,14 +179,14 @@ TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunTha
         EXPECT_TRUE(fs::exists(recording / "truth" / views / "truth/frames/000001.exr")) << views;
     const std::vector<std::string> options{
         "--dump-every", "3", "--set", "map.voxel_m=0.01", "--set", "reflectance.voxel_m=0.04", "--texture", "off"};
-    run_quietly(recording, options);
+    std::vector<std::string> without_map = options;
+    without_map.emplace_back("--no-map");
+    run_quietly(recording, without_map);
     EXPECT_THAT(patina({"eval", recording, out()}).out,
                 HasSubstr("Note: Views that were never recorded were not compared: the run kept no map"));
     EXPECT_TRUE(nlohmann::json::parse(read_text(out() / "eval/eval.json"))["novel"].is_null());
 
-    std::vector<std::string> with_map = options;
-    with_map.insert(with_map.end(), {"--checkpoint-every", "100"});
-    run_quietly(recording, with_map);
+    run_quietly(recording, options);
     const Outcome outcome = patina({"eval", recording, out()});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("\nNever recorded: the same under other lamps, 2 views:\n"));
@@ -249,4 +249,4 @@ TEST_F(HeldOutFrames, AreTrackedWhereTheirPosesAreNotGiven) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::eval_test

@@ -3,7 +3,7 @@
 
 // A finished scene in other formats, as a user asks for them.
 
-namespace patina::testing {
+namespace patina::testing::export_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,7 +48,7 @@ TEST_F(Export, EndingsChooseTheFormat) {
 }
 
 TEST_F(Export, WhatNeedsTheMapSaysSo) {
-    run_into(out());
+    run_into(out(), {"--no-map"});
     const auto complaint = [&](std::vector<std::string> more) {
         std::vector<std::string> arguments{"export", out(), file("a.glb")};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -68,7 +68,7 @@ TEST_F(Export, WhatNeedsTheMapSaysSo) {
 }
 
 TEST_F(Export, AMapGivesWhatARunWithTheseChoicesWould) {
-    run_into(out(), {"--checkpoint-every", "2"});
+    run_into(out());
     const std::string before = read_text(out() / "map.sqlite");
     run_into(beside("other"), {"--texture", "off", "--up", "0,0,1"});
     export_quietly({out() / "map.sqlite", file("a.glb"), "--texture", "off", "--up", "0,0,1"});
@@ -88,4 +88,4 @@ TEST_F(Export, AFolderIsTurnedUpright) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::export_test

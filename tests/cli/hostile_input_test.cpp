@@ -7,7 +7,7 @@
 
 // Files that are no files, or say of themselves what is not so: one line that names them, and no start that hangs.
 
-namespace patina::testing {
+namespace patina::testing::hostile_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,4 +122,4 @@ TEST_F(HostileInput, APictureWithTwoHeadersCostsItsFrame) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::hostile_input_test

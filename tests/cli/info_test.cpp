@@ -2,7 +2,7 @@
 
 // What `patina info` tells of a scene.
 
-namespace patina::testing {
+namespace patina::testing::info_test {
 namespace {
 
 using sensor::testing::write_text;
@@ -45,4 +45,4 @@ TEST_F(Info, OfASceneFileCountsWhatItHolds) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::info_test

@@ -5,7 +5,7 @@
 
 #include "tests/cli/run_folder.h"
 
-namespace patina::testing {
+namespace patina::testing::interrupt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ class Interrupt : public RunFolderTest {
     std::vector<std::string> endless(std::vector<std::string> more, bool texture = false) {
         std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out",
                                            out(), "--detail",        "coarse"};
-        if (!texture) more.insert(more.end(), {"--texture", "off"});
+        if (!texture) more.insert(more.end(), {"--texture", "off", "--no-map"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
@@ -147,4 +147,4 @@ TEST_F(Interrupt, OfSynthLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::interrupt_test

@@ -15,7 +15,7 @@
 // patina live and record with a Kinect v2: the stand-in for libusb sends what the forward model makes of a corner of a
 // room.
 
-namespace patina::testing {
+namespace patina::testing::kinect2_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,9 +117,9 @@ class Kinect2Commands : public RunFolderTest {
 };
 
 TEST_F(Kinect2Commands, LiveReconstructsWhatTheKinectSees) {
-    const Outcome outcome =
-        patina({"live", "kinect2", "--seconds", "3", "--texture", "off", "--out", out(), "--record", file_, "--quiet"},
-               with_kinect());
+    const Outcome outcome = patina({"live", "kinect2", "--seconds", "3", "--texture", "off", "--no-map", "--out", out(),
+                                    "--record", file_, "--quiet"},
+                                   with_kinect());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const nlohmann::json summary = summary_of(out());
     EXPECT_EQ(summary["finished"], true);
@@ -159,7 +159,8 @@ TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
     EXPECT_NEAR(std::stod(farthest[1]), kWall_m, 0.01);
     expect_a_copy_of_its_rows(file_);
     expect_infrared_in_export(file_, beside("native"));
-    const nlohmann::json summary = run_quietly(file_, {"--frames", "3", "--lighting", "none", "--texture", "off"});
+    const nlohmann::json summary =
+        run_quietly(file_, {"--frames", "3", "--lighting", "none", "--texture", "off", "--no-map"});
     EXPECT_EQ(taken(summary), 3u);
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
 }
@@ -217,4 +218,4 @@ TEST_F(Kinect2Commands, WithoutAKinectThereIsOneSentenceAndNoFile) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::kinect2_test

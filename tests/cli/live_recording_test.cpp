@@ -8,7 +8,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::tools {
+namespace patina::tools::live_recording_test {
 namespace {
 
 using sensor::SequenceRole;
@@ -76,4 +76,4 @@ TEST_F(LiveRecordingTest, AFileThatCannotBeMadeIsAnErrorAndNothingIsOpen) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::live_recording_test

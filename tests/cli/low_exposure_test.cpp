@@ -5,7 +5,7 @@
 
 // A recording whose low-exposure sequence goes round the scene, in which surfaces light each other.
 
-namespace patina::testing {
+namespace patina::testing::low_exposure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,7 +22,7 @@ class LowExposure : public RunFolderTest {
 
     /// run.json of a run that may fall short of materials.
     nlohmann::json run_to(const fs::path& to, std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments{"run", scene(), "--out", to, "--texture", "off", "--quiet"};
+        std::vector<std::string> arguments{"run", scene(), "--out", to, "--texture", "off", "--no-map", "--quiet"};
         for (const char* setting : {"map.voxel_m=0.02", "fusion.truncation_m=0.06"})
             arguments.insert(arguments.end(), {"--set", setting});
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -73,4 +73,4 @@ TEST_F(LowExposure, LightThatNoFrameShowsIsTold) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::low_exposure_test

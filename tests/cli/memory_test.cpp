@@ -4,7 +4,7 @@
 // Each subcommand with memory that is filled when it is handed out and when it is given back: whoever reads what was
 // not written, or what was freed, computes with 0xa5a5a5a5. Under the address sanitizer its own options fill instead.
 
-namespace patina::testing {
+namespace patina::testing::memory_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,4 +39,4 @@ TEST_F(FilledMemory, EverySubcommandGivesItsResult) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::memory_test

@@ -2,7 +2,7 @@
 
 // Paths that lead nowhere, or to a file in place of a folder and the other way round: one sentence with the path.
 
-namespace patina::testing {
+namespace patina::testing::missing_paths_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_F(MissingPaths, PlacesThatNothingCanBeWrittenToAreToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::missing_paths_test

@@ -8,7 +8,7 @@
 // Cameras through libraries of others: a Kinect v1 by libfreenect's fakenect, which plays a session that the test
 // writes, and OpenNI2's dummy device.
 
-namespace patina::testing {
+namespace patina::testing::other_cameras_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,9 +88,10 @@ TEST_F(OtherCameras, AKinectV1IsReadLiveAndRecorded) {
     if (std::string(PATINA_FAKENECT_FOLDER).empty()) GTEST_SKIP() << "fakenect is not installed";
     write_session(beside("session"));
     const fs::path beside_run = beside("beside.patina"), alone = beside("alone.patina");
-    const Outcome live = patina({"live", "kinect1", "--seconds", "1", "--out", out(), "--record", beside_run,
-                                 "--texture", "off", "--lighting", "none", "--set", "map.voxel_m=0.02", "--quiet"},
-                                with_fakenect());
+    const Outcome live =
+        patina({"live", "kinect1", "--seconds", "1", "--out", out(), "--record", beside_run, "--texture", "off",
+                "--no-map", "--lighting", "none", "--set", "map.voxel_m=0.02", "--quiet"},
+               with_fakenect());
     EXPECT_THAT(live.exit_code, AnyOf(0, 3)) << live.err;
     const auto summary = summary_of(out());
     EXPECT_EQ(summary["finished"], true);
@@ -161,4 +162,4 @@ TEST_F(OtherCameras, TheDoctorNamesThem) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::other_cameras_test

@@ -9,7 +9,7 @@
 
 // What the program does to the files around its results.
 
-namespace patina::testing {
+namespace patina::testing::output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,7 +22,8 @@ class Output : public RunFolderTest {
   protected:
     /// A finished run of little work.
     void run_into(const fs::path& folder, std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments{"run", sequence(), "--out", folder, "--texture", "off", "--quiet"};
+        std::vector<std::string> arguments{"run",       sequence(), "--out",    folder,
+                                           "--texture", "off",      "--no-map", "--quiet"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = patina(arguments);
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -183,8 +184,8 @@ TEST_F(Output, EveryPictureHasItsRunsIdAndEvalRefusesAMixture) {
                                   "--no-lighting", "--quiet", "--out", recording});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
     const auto run = [&](const fs::path& folder, const char* voxel) {
-        const Outcome outcome = patina(
-            {"run", recording, "--dump-every", "1", "--set", voxel, "--texture", "off", "--quiet", "--out", folder});
+        const Outcome outcome = patina({"run", recording, "--dump-every", "1", "--set", voxel, "--texture", "off",
+                                        "--no-map", "--quiet", "--out", folder});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         return summary_of(folder)["id"].get<std::string>();
     };
@@ -210,4 +211,4 @@ TEST_F(Output, EveryPictureHasItsRunsIdAndEvalRefusesAMixture) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::output_test

@@ -5,7 +5,7 @@
 #include "sensor/pose.h"
 #include "tests/cli/run_folder.h"
 
-namespace patina::tools {
+namespace patina::tools::preflight_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,4 +71,4 @@ TEST_F(PreflightTest, ConventionsMatterWherePosesAreUsed) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::preflight_test

@@ -14,7 +14,7 @@
 
 // patina record, export and live: what a camera saw, kept, unpacked, and reconstructed while it is seen.
 
-namespace patina::testing {
+namespace patina::testing::recording_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,8 +40,8 @@ class RecordingCommands : public RunFolderTest {
 
     /// The files of a run that hold what was reconstructed.
     std::map<std::string, std::string> results_of(const std::string& sequence, const fs::path& results) {
-        expect_done(patina({"run", sequence, "--lights", folder_ / "truth/lights.json", "--texture", "off", "--out",
-                            results, "--quiet"}));
+        expect_done(patina({"run", sequence, "--lights", folder_ / "truth/lights.json", "--texture", "off", "--no-map",
+                            "--out", results, "--quiet"}));
         return reconstructed(results);
     }
 
@@ -184,7 +184,7 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
     const fs::path slow = beside("slow.patina");
     slow_down(folder_, 4, slow);  // 12 s
     expect_done(patina({"live", "--simulate", slow, "--lights", folder_ / "truth/lights.json", "--texture", "off",
-                        "--out", out(), "--record", beside("beside.patina"), "--quiet"}));
+                        "--no-map", "--out", out(), "--record", beside("beside.patina"), "--quiet"}));
     const nlohmann::json summary = summary_of(out());
     const auto &live = summary["live"], &frames = summary["frames"];
     const auto count = [](const nlohmann::json& value) { return value.get<uint32_t>(); };
@@ -210,15 +210,15 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
 TEST_F(RecordingCommands, LiveFindsTheLightsThatTheRunOfItsFramesFinds) {
     expect_done(patina({"synth", "cubes", "--frames", "30", "--extent", "64x53", "--quiet", "--out", folder_}));
     // With the sequence of low exposure beside it.
-    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--texture", "off", "--quiet"}));
+    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--texture", "off", "--no-map", "--quiet"}));
     const nlohmann::json lights = summary_of(out())["lights"];
     EXPECT_EQ(lights["found_by"], "lighting sequence");
     std::set<int64_t> used_ms;
     for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt"))
         used_ms.insert(milliseconds(pose.timestamp_s));
     keep_frames(folder_, used_ms, file_);
-    expect_done(patina(
-        {"run", file_, "--lighting", folder_ / "lighting", "--out", beside("again"), "--texture", "off", "--quiet"}));
+    expect_done(patina({"run", file_, "--lighting", folder_ / "lighting", "--out", beside("again"), "--texture", "off",
+                        "--no-map", "--quiet"}));
     EXPECT_EQ(summary_of(beside("again"))["lights"], lights);
     expect_same(reconstructed(out()), reconstructed(beside("again")));
 }
@@ -245,4 +245,4 @@ TEST_F(RecordingCommands, AnInterruptEndsALiveRunThatIsWhole) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::recording_test

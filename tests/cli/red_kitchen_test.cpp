@@ -11,7 +11,7 @@
 
 // A real recording: what the model looks like from the depth camera, against what that camera measured.
 
-namespace patina::testing {
+namespace patina::testing::red_kitchen_test {
 namespace {
 
 constexpr uint32_t kViewEvery = 10;
@@ -81,4 +81,4 @@ TEST(RedKitchen, ModelIsWhereTheDepthCameraSawIt) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::red_kitchen_test

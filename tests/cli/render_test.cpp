@@ -12,7 +12,7 @@
 
 // Views of a reconstruction as a user asks for them, and the poses of an orbit.
 
-namespace patina::testing {
+namespace patina::testing::render_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -231,4 +231,4 @@ TEST(Orbit, TheCentreIsTheMedianByCoordinate) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::render_test

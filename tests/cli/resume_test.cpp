@@ -5,7 +5,7 @@
 
 // Runs that are killed and go on from their map.
 
-namespace patina::testing {
+namespace patina::testing::resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(Resume, WhatIsMissingIsNamed) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::resume_test

@@ -4,7 +4,7 @@
 
 // What changes the bytes of a run with materials, and what does not.
 
-namespace patina::testing {
+namespace patina::testing::same_bytes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,8 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
             sequence["color"].erase("motion_blur");
             write_text(recording_ / "sequence.json", sequence.dump());
         }
-        const std::vector<std::string> more{"--set", "observe.max_blur_px=0.001", "--texture", blurs ? "off" : "auto"};
+        const std::vector<std::string> more{"--set", "observe.max_blur_px=0.001", "--no-map", "--texture",
+                                            blurs ? "off" : "auto"};
         const auto with_truth = files_of_run(more);
         fs::rename(recording_ / "truth", beside("truth"));
         const auto without_truth = files_of_run(more);
@@ -80,8 +81,9 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
 
 TEST_F(SameBytes, ASeedChangesMaterialsAndNeitherPathNorLights) {
     record("8");  // until the network has seen a segment
-    const auto zero = files_of_run({"--texture", "off"}), one = files_of_run({"--texture", "off", "--seed", "1"}),
-               again = files_of_run({"--texture", "off", "--seed", "1"});
+    const auto zero = files_of_run({"--texture", "off", "--no-map"}),
+               one = files_of_run({"--texture", "off", "--no-map", "--seed", "1"}),
+               again = files_of_run({"--texture", "off", "--no-map", "--seed", "1"});
     expect_same(one, again);
     EXPECT_FALSE(one.at("scene.glb") == zero.at("scene.glb"));
     EXPECT_FALSE(one.at("materials.json") == zero.at("materials.json")) << "the network is shown other voxels";
@@ -92,7 +94,8 @@ TEST_F(SameBytes, ASeedChangesMaterialsAndNeitherPathNorLights) {
 TEST_F(SameBytes, ASeedRoundsColoursAndLeavesTheSurface) {
     record("4");
     const auto scene_of = [&](std::vector<std::string> more) {
-        more.insert(more.end(), {"--lighting", "none", "--labels", "off", "--surface-error", "0", "--texture", "off"});
+        more.insert(more.end(),
+                    {"--lighting", "none", "--labels", "off", "--surface-error", "0", "--texture", "off", "--no-map"});
         run_quietly(recording_, std::move(more));
         return read_text(out() / "scene.glb");
     };
@@ -114,7 +117,7 @@ TEST_F(SameBytes, ASeedIsAlsoThatOfASyntheticScenesNoise) {
         "path": {"orbit": {"target": [0, 0, 0], "distance": 2, "azimuth_degrees": 180}},
         "recording": {"noise": "kinect2", "pose_noise": {"translation": 0.01, "rotation_degrees": 0.1}, "seed": 3}})");
     const auto path_of = [&](std::vector<std::string> more) {
-        more.insert(more.end(), {"--texture", "off"});
+        more.insert(more.end(), {"--texture", "off", "--no-map"});
         run_quietly("synthetic:" + beside("noisy.json").string(), std::move(more));
         return read_text(out() / "trajectory.txt");
     };
@@ -129,7 +132,7 @@ TEST_F(SameBytes, WhatSteersATerminalIsNotPrinted) {
     fs::rename(recording_, steering);
     fs::remove(steering / "color/000001.png");
     const Outcome outcome =
-        patina({"run", steering, "--lighting", "none", "--texture", "off", "--out", beside("c\033[2Jd")});
+        patina({"run", steering, "--lighting", "none", "--texture", "off", "--no-map", "--out", beside("c\033[2Jd")});
     ASSERT_TRUE(fs::exists(beside("c\033[2Jd") / "scene.glb")) << outcome.err;
     EXPECT_THAT(outcome.out + outcome.err, ::testing::Not(::testing::HasSubstr("\033")));
     EXPECT_THAT(outcome.err, ::testing::HasSubstr("a\\x1b[31mb/color/000001 is missing"));
@@ -139,4 +142,4 @@ TEST_F(SameBytes, WhatSteersATerminalIsNotPrinted) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::same_bytes_test

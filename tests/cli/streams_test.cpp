@@ -4,7 +4,7 @@
 
 // What a shell does to the standard streams costs no result.
 
-namespace patina::testing {
+namespace patina::testing::streams_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST_F(Streams, NamesThatAreNotUtf8GetThroughToTheEnd) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::streams_test

@@ -6,7 +6,7 @@
 #include "tests/cli/run_folder.h"
 #include "tools/synth/example_file.h"
 
-namespace patina::testing {
+namespace patina::testing::synth_hemi_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ TEST_F(SynthHemi, WritesOverNothing) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::synth_hemi_test

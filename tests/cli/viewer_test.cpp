@@ -8,7 +8,7 @@
 #include "sensor/recording/container.h"
 #include "tests/cli/run_folder.h"
 
-namespace patina::testing {
+namespace patina::testing::viewer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,11 +22,10 @@ bool installed(const std::string& program) { return shell("command -v " + progra
 
 class Viewer : public RunFolderTest {
   protected:
-    /// A run of a built-in scene that keeps its map.
-    void run_with_map(std::vector<std::string> more = {}) {
-        std::vector<std::string> arguments{"run",     small_cubes(),        "--frames", "4",         "--out",
-                                           out(),     "--checkpoint-every", "4",        "--texture", "off",
-                                           "--quiet", "--detail",           "coarse"};
+    /// A run of a built-in scene.
+    void run_cubes(std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"run",       small_cubes(), "--frames", "4",        "--out", out(),
+                                           "--texture", "off",         "--quiet",  "--detail", "coarse"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = patina(arguments);
         ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -87,7 +86,7 @@ class Viewer : public RunFolderTest {
 
 TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    run_with_map({"--labels", "truth", "--materials", "truth"});  // known from the first frame on
+    run_cubes({"--labels", "truth", "--materials", "truth"});  // known from the first frame on
     std::vector<std::vector<SrgbPixel>> pictures;
     for (const char* layer : kLayers) {
         const fs::path file = beside(std::string(layer) + ".png"), again = beside("again.png");
@@ -130,7 +129,7 @@ TEST_F(Viewer, BadInputIsOneSentence) {
     if (absent()) return expect_no_viewer_is_one_sentence(view(beside("x.png"), {}));
     EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("does not exist"));
     fs::create_directory(out());
-    EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("--checkpoint-every"));
+    EXPECT_THAT(expect_failure(view(beside("x.png"), {})), HasSubstr("--no-map"));
     EXPECT_THAT(expect_failure(view(beside("x.png"), {"--layer", "colour"}), 2), HasSubstr("color"));
     EXPECT_FALSE(fs::exists(beside("x.png")));
     const Outcome no_display =
@@ -143,7 +142,7 @@ TEST_F(Viewer, BadInputIsOneSentence) {
 TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
     if (!has_display()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
-    run_with_map({"--lighting", "none"});
+    run_cubes({"--lighting", "none"});
     const int exit_code = in_window("view " + out().string() + " --extent 320x240", R"(
         xdotool mousemove --window $window 160 200
         xdotool key 6; sleep 1
@@ -196,4 +195,4 @@ TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::viewer_test

@@ -3,7 +3,7 @@
 
 // Vulkan calls that fail, each once, somewhere in a run with lights: one sentence, and nothing but whole files.
 
-namespace patina::testing {
+namespace patina::testing::vulkan_fault_test {
 namespace {
 
 using ::testing::AllOf;
@@ -82,4 +82,4 @@ TEST_F(VulkanFault, PassTimesThePipelineCacheAndADescriptorPoolAreNoReasonToFail
 }
 
 }  // namespace
-}  // namespace patina::testing
+}  // namespace patina::testing::vulkan_fault_test

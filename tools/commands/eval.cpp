@@ -53,9 +53,7 @@ void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, 
                                 run = std::filesystem::absolute(arguments.run), truth = sequence / "truth";
     if (!path_exists(truth / "novel")) return;
     if (!path_exists(map_in(run))) {
-        evaluation.no_views =
-            "Views that were never recorded were not compared: the run kept no map "
-            "(--checkpoint-every).";
+        evaluation.no_views = "Views that were never recorded were not compared: the run kept no map (--no-map).";
         return;
     }
     const RigidTransform truth_from_run = eval::world_of_run(sequence, run);

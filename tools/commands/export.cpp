@@ -85,7 +85,7 @@ int export_scene_of(const CLI::App& command, const Arguments& arguments) {
     }
     if (!needs.empty())
         throw Error(needs, " needs the map of the run, and '", arguments.source,
-                    "' has none: give a map.sqlite, which patina run --checkpoint-every leaves");
+                    "' has none: give a map.sqlite, which patina run leaves");
     options.changes = {arguments.choices.files.tidy.most_triangles,
                        command.count("--texture") > 0 && !arguments.choices.texture, arguments.choices.files.up};
     return export_scene(options).exit_code();

@@ -34,6 +34,7 @@ void add_live(CLI::App& app, int& exit_code) {
         RunArguments& run = arguments->run;
         run.sequence.finish(run.run);
         if (run.extends) run.run.extends = map_in(*run.extends);
+        name_map(run);
         run.run.hints.track = "--poses track";
         run.run.hints.lights = "--lights FILE, --lighting SEQUENCE";
         arguments->live.source = run.run.sequence;

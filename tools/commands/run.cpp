@@ -34,13 +34,6 @@ std::shared_ptr<RunArguments> resumed(const RunArguments& given) {
     return arguments;
 }
 
-fs::path working_folder() {
-    std::error_code failure;
-    const fs::path folder = fs::current_path(failure);
-    if (failure) throw Error("the folder that this program was started in is gone: ", failure.message());
-    return folder;
-}
-
 int start(RunArguments& arguments) {
     RunOptions& run_options = arguments.run;
     arguments.sequence.finish(run_options);
@@ -48,10 +41,7 @@ int start(RunArguments& arguments) {
     run_options.hints.track = "--poses track";
     run_options.resume = arguments.resume.has_value();
     run_options.hints.resume = "--resume " + run_options.out.string();
-    if (run_options.resume || run_options.checkpoint_every > 0) {
-        run_options.map = map_in(arguments.resume.value_or(run_options.out));
-        run_options.started_in = working_folder();
-    }
+    name_map(arguments);
     if (!arguments.shows()) return run(run_options).exit_code();
     const auto window = show_run(arguments.viewer, run_options, nullptr, nullptr);
     return run(run_options, window.get()).exit_code();

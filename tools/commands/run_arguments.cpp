@@ -76,27 +76,45 @@ void declare(CLI::App& command, RunArguments& arguments) {
     command.add_option("--hold-out", run.hold_out,
                        "Keep every so many-th frame out of the model, and compare its colours in the end");
     command.add_option("--dump-graph", run.dump_graph, "Write PATH.dot and PATH.json of the last frame's last graph");
+    command.add_flag("--no-map", arguments.no_map,
+                     "Do not keep OUT/map.sqlite, which view, export and --extend begin from");
     command
         .add_option("--checkpoint-every", run.checkpoint_every,
-                    "Keep the state of the run in OUT/map.sqlite every so many frames, to go on from after whatever "
-                    "stopped it")
-        ->check(at_least_one());
+                    "Keep OUT/map.sqlite not only at the end but every so many frames, to go on from after whatever "
+                    "stopped the run")
+        ->check(at_least_one())
+        ->excludes("--no-map");
     command
         .add_option("--extend", arguments.extends,
                     "Begin from the map that another run left in this folder: its model, its world, its lights")
         ->excludes("--lights")
         ->excludes("--lighting");
-    command.add_option("--resume", arguments.resume,
-                       "Go on from the map in this folder; alone: with the arguments that the run was started with");
+    command
+        .add_option("--resume", arguments.resume,
+                    "Go on from the map in this folder; alone: with the arguments that the run was started with")
+        ->excludes("--no-map");
     fold_rare_options(command);
 }
 
 fs::path map_in(const fs::path& run_folder) { return run_folder / "map.sqlite"; }
 
+void name_map(RunArguments& arguments) {
+    if (arguments.no_map) return;
+    RunOptions& run = arguments.run;
+    run.map = map_in(arguments.resume.value_or(run.out));
+    if (run.checkpoint_every == 0) run.checkpoint_every = SessionOptions::kAtEnd;
+    std::error_code failure;
+    run.started_in = fs::current_path(failure);
+    if (failure && run.checkpoint_every != SessionOptions::kAtEnd)
+        throw Error("the folder that this program was started in is gone: ", failure.message());
+}
+
 std::shared_ptr<RunArguments> kept_arguments(const fs::path& file) {
     const auto map = MapFile::with_state(file);
     std::vector<std::string> words;
     for (const auto& word : map->expect_json("arguments")) words.push_back(word.get<std::string>());
+    if (words.empty())
+        throw Error("'", file.string(), "' is of 'patina live': what its camera saw cannot be read again");
     const fs::path started_in = map->expect_text("started_in");
     std::error_code failure;
     fs::current_path(started_in, failure);

@@ -172,7 +172,8 @@ class Run {
     }
 
     void keep(graph::StateVisitor& visitor, MapFile& map) {
-        map.set_text("arguments", nlohmann::json(options_.arguments).dump());
+        using Json = nlohmann::json;
+        map.set_text("arguments", Json(options_.arguments).dump(-1, ' ', false, Json::error_handler_t::replace));
         map.set_text("started_in", options_.started_in.string());
         visit(visitor);
         const std::vector<std::string> known = map.files();

@@ -27,7 +27,7 @@ std::filesystem::path map_of(const std::filesystem::path& input) {
     const bool folder = std::filesystem::is_directory(input);
     throw Error("'", input.string(), "' ",
                 !std::filesystem::exists(input) ? "does not exist"
-                : folder                        ? "has no map.sqlite, which patina run keeps with --checkpoint-every N"
+                : folder                        ? "has no map.sqlite; patina run keeps one unless --no-map is given"
                                                 : "is no map, and no folder that has one");
 }
 
