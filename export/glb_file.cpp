@@ -15,7 +15,7 @@ namespace patina {
 namespace {
 
 constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
-constexpr uint32_t kMagic = 0x4654'6c67, kVersion = 2, kJsonChunk = 0x4e4f'534a, kBufferChunk = 0x004e'4942;
+constexpr uint32_t kMagic = 0x4654'6c67, kGlbVersion = 2, kJsonChunk = 0x4e4f'534a, kBufferChunk = 0x004e'4942;
 constexpr size_t kCopiedAtOnce = 1 << 20;
 
 constexpr uint64_t aligned(uint64_t bytes) { return (bytes + 3) / 4 * 4; }
@@ -73,7 +73,7 @@ void GlbFile::finish(tinygltf::Model& model) {
     const uint64_t length = length_with(json.size(), bytes);
     sensor::NewFile file(path_);
     write_word(file, kMagic);
-    write_word(file, kVersion);
+    write_word(file, kGlbVersion);
     write_word(file, length);
     write_word(file, aligned(json.size()));
     write_word(file, kJsonChunk);

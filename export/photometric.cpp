@@ -10,12 +10,12 @@ namespace patina {
 namespace {
 
 /// Nearer surface counts as if it were so far away: it belongs to the lamp.
-constexpr double kNearest_m = 0.1;
+constexpr double kNearestLamp_m = 0.1;
 
 /// Irradiance, in linear pixel values times pi.
 double irradiance(const Light& light, const Patch& patch) {
     const glm::dvec3 to_light_m = light.position_m - glm::dvec3(patch.center_m), area_m2(patch.area_m2);
-    const double distance_m = std::max({glm::length(to_light_m), light.radius_m, kNearest_m});
+    const double distance_m = std::max({glm::length(to_light_m), light.radius_m, kNearestLamp_m});
     const double cosine = glm::dot(to_light_m, area_m2) / (distance_m * glm::length(area_m2));
     return luminance(light.intensity) * std::max(cosine, 0.0) / (distance_m * distance_m);
 }

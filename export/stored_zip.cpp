@@ -9,8 +9,8 @@ namespace patina {
 namespace {
 
 constexpr uint32_t kLocal = 0x0403'4b50, kCentral = 0x0201'4b50, kEnd = 0x0605'4b50;
-constexpr uint32_t kVersion = 20, kFirstDay = 0x0021;  // 1980-01-01: no time, so that bytes do not depend on it
-constexpr uint64_t kLocalBytes = 30;                   // a header before the entry's name
+constexpr uint32_t kZipVersion = 20, kFirstDay = 0x0021;  // 1980-01-01: no time, so that bytes do not depend on it
+constexpr uint64_t kLocalBytes = 30;                      // a header before the entry's name
 
 std::array<uint32_t, 256> crc_table() {
     std::array<uint32_t, 256> table{};
@@ -62,7 +62,7 @@ void StoredZip::add(const std::string& name, std::string_view bytes) {
     const uint64_t unpadded = file_.position() + kLocalBytes + name.size() + 4;
     const auto padding = static_cast<uint32_t>((kAlignment - unpadded % kAlignment) % kAlignment);
     Fields fields;
-    fields.word(kLocal).half(kVersion).half(0).half(0).half(0).half(kFirstDay);
+    fields.word(kLocal).half(kZipVersion).half(0).half(0).half(0).half(kFirstDay);
     fields.word(entry.crc).word(entry.size).word(entry.size).half(length_of(name)).half(padding + 4);
     file_.write(fields.bytes());
     file_.write(name);
@@ -77,7 +77,7 @@ void StoredZip::finish() {
     for (const Entry& entry : entries_) {
         expect_room(1024);
         Fields fields;
-        fields.word(kCentral).half(kVersion).half(kVersion).half(0).half(0).half(0).half(kFirstDay);
+        fields.word(kCentral).half(kZipVersion).half(kZipVersion).half(0).half(0).half(0).half(kFirstDay);
         fields.word(entry.crc).word(entry.size).word(entry.size).half(length_of(entry.name));
         fields.half(0).half(0).half(0).half(0).word(0).word(entry.first);
         file_.write(fields.bytes());

@@ -17,12 +17,12 @@ const double kLevelCosine = std::cos(glm::radians(12.0));
 /// Of cameras against up. Tried on one room, from 3 frames to 60, and four other recordings: docs/log/changes.md.
 const double kUsualTilt = glm::radians(15.0), kTiltDeviation = glm::radians(40.0), kMostTilt = glm::radians(60.0);
 const double kRollDeviation = glm::radians(20.0), kMostRoll = glm::radians(30.0);
-constexpr double kUprightPart = 0.25;  // of what level surface counts: things stand at all angles about up
-constexpr double kLeastShare = 0.03;   // of the surface, that speaks for up
-constexpr double kLeastLevel = 0.005;  // of the surface, that is level
-constexpr double kLayer_m = 0.03;      // half a floor's thickness: three voxels of 1 cm
-constexpr double kLeastFloor = 0.25;   // of the largest level layer
-constexpr double kLowest = 0.01;       // of the surface, that may be below the floor where there is no layer
+constexpr double kUprightPart = 0.25;      // of what level surface counts: things stand at all angles about up
+constexpr double kLeastFloorShare = 0.03;  // of the surface, that speaks for up
+constexpr double kLeastLevel = 0.005;      // of the surface, that is level
+constexpr double kLayer_m = 0.03;          // half a floor's thickness: three voxels of 1 cm
+constexpr double kLeastFloor = 0.25;       // of the largest level layer
+constexpr double kLowest = 0.01;           // of the surface, that may be below the floor where there is no layer
 
 /// Area by direction, on the faces of a cube in steps of some 3 degrees.
 class DirectionHistogram {
@@ -128,7 +128,7 @@ std::optional<glm::dvec3> up_of_planes(std::span<const RigidTransform> cameras, 
         const auto [level_m2, upright_m2] = histogram.areas(bin.direction);
         if (level_m2 < kLeastLevel * histogram.total_m2()) continue;
         const double support_m2 = level_m2 + kUprightPart * upright_m2;
-        if (support_m2 < kLeastShare * histogram.total_m2() || weight * support_m2 <= most) continue;
+        if (support_m2 < kLeastFloorShare * histogram.total_m2() || weight * support_m2 <= most) continue;
         most = weight * support_m2;
         best = bin.direction;
     }

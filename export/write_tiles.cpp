@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPartOfLevel = 1.0 / 8;
 
-struct Box {
+struct TileBox {
     glm::dvec3 low{1e9}, high{-1e9};
 
     void add(glm::dvec3 point) {
@@ -25,8 +25,8 @@ struct Box {
 };
 
 /// In the tileset's coordinates, in which z is up: viewers turn the y of a glTF there.
-Box box_of(const Mesh& mesh, const Upright& upright) {
-    Box box;
+TileBox box_of(const Mesh& mesh, const Upright& upright) {
+    TileBox box;
     const RigidTransform gltf_from_world = upright.gltf_from_world();
     for (const glm::vec3& position : mesh.positions_m) {
         const glm::dvec3 y_up(gltf_from_world * glm::dvec4(position, 1));
@@ -36,7 +36,7 @@ Box box_of(const Mesh& mesh, const Upright& upright) {
 }
 
 /// A box by its centre and half its edges.
-nlohmann::ordered_json volume_of(const Box& box) {
+nlohmann::ordered_json volume_of(const TileBox& box) {
     const glm::dvec3 center = (box.low + box.high) / 2.0, half = (box.high - box.low) / 2.0;
     return {{"box", {center.x, center.y, center.z, half.x, 0, 0, 0, half.y, 0, 0, 0, half.z}}};
 }
@@ -86,7 +86,7 @@ void TileWriter::add(const Mesh& mesh, const MeshReflectance& reflectance) {
 
 /// The coarsest level, with each finer one below the one before.
 void TileWriter::add_tile(const Mesh& mesh, const std::array<Level, kLevels>& levels) {
-    const Box box = box_of(mesh, info_.upright);
+    const TileBox box = box_of(mesh, info_.upright);
     low_ = glm::min(low_, box.low);
     high_ = glm::max(high_, box.high);
     nlohmann::ordered_json tile;
@@ -108,7 +108,7 @@ void TileWriter::add(const GlbSummary& tile) {
 }
 
 GlbSummary TileWriter::finish() {
-    const Box box = cells_ > 0 ? Box{low_, high_} : Box{glm::dvec3(0), glm::dvec3(0)};
+    const TileBox box = cells_ > 0 ? TileBox{low_, high_} : TileBox{glm::dvec3(0), glm::dvec3(0)};
     // Of a scene that is not drawn at all, all is missing.
     const double all_m = glm::distance(box.low, box.high);
     nlohmann::ordered_json root{{"boundingVolume", volume_of(box)}, {"geometricError", all_m}, {"refine", "REPLACE"}};

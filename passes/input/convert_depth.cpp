@@ -12,7 +12,7 @@ namespace patina {
 
 namespace {
 
-constexpr const char* kPass = "input.convert_depth";
+constexpr const char* kConvertDepth = "input.convert_depth";
 
 /// The largest source value that is a reading; compared as a number by the shader.
 uint32_t max_code(const DepthInput& input, bool metres) {
@@ -25,7 +25,7 @@ void check_scale(const DepthInput& input) {
     const bool usable = std::isfinite(input.metres_per_unit) && input.metres_per_unit > 0 &&
                         std::isfinite(input.max_metres) && input.max_metres > 0;
     if (!usable) {
-        throw Error("the pass '", kPass, "' got a scale without use: ", input.metres_per_unit,
+        throw Error("the pass '", kConvertDepth, "' got a scale without use: ", input.metres_per_unit,
                     " metres per unit, readings up to ", input.max_metres, " m");
     }
 }
@@ -34,7 +34,7 @@ void check_scale(const DepthInput& input) {
 
 void check_depth(const DepthInput& input) {
     check_scale(input);
-    lens_of(input.camera, kPass);
+    lens_of(input.camera, kConvertDepth);
 }
 
 graph::ImageId add_convert_depth(graph::FrameGraph& frame, const DepthInput& input,
@@ -42,11 +42,11 @@ graph::ImageId add_convert_depth(graph::FrameGraph& frame, const DepthInput& inp
     check_scale(input);
     const bool metres = std::holds_alternative<std::span<const float>>(input.pixels);
     const Extent2D extent = input.camera.extent;
-    const gpu::Lens lens = lens_of(input.camera, kPass);
+    const gpu::Lens lens = lens_of(input.camera, kConvertDepth);
     const graph::BufferId source =
-        std::visit([&](auto pixels) { return upload_picture(frame, kPass, extent, pixels); }, input.pixels);
+        std::visit([&](auto pixels) { return upload_picture(frame, kConvertDepth, extent, pixels); }, input.pixels);
 
-    auto pass = frame.compute(kPass, spirv::convert_depth);
+    auto pass = frame.compute(kConvertDepth, spirv::convert_depth);
     pass.read("Source", source).specialise("kMetres", metres).specialise("kDistorted", input.camera.distorted());
     const graph::ImageId depth_m =
         target ? pass.write("depth_m", *target) : pass.create("depth_m", {extent, vulkan::Format::kR32f});

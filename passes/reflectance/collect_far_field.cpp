@@ -6,16 +6,16 @@ namespace patina {
 
 namespace {
 
-constexpr uint32_t kStride_px = 8;
+constexpr uint32_t kFarStride_px = 8;
 
 gpu::FarFieldParams make_params(const FarFieldInputs& inputs, Extent2D extent) {
     gpu::FarFieldParams params{};
     params.depth_camera = inputs.depth_camera;
     params.color_camera = inputs.color_camera;
-    params.visited = (glm::uvec2(extent.width, extent.height) + kStride_px - 1u) / kStride_px;
-    params.stride_px = kStride_px;
+    params.visited = (glm::uvec2(extent.width, extent.height) + kFarStride_px - 1u) / kFarStride_px;
+    params.stride_px = kFarStride_px;
     // 37 shares no factor with 64: frames beside each other look at pixels that are apart.
-    params.phase = inputs.frame_index * 37 % (kStride_px * kStride_px);
+    params.phase = inputs.frame_index * 37 % (kFarStride_px * kFarStride_px);
     return params;
 }
 

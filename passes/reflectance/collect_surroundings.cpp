@@ -6,16 +6,16 @@ namespace patina {
 
 namespace {
 
-constexpr uint32_t kStride_px = 4;
+constexpr uint32_t kNearStride_px = 4;
 
 gpu::SurroundingsParams make_params(const SurroundingsInputs& inputs, Extent2D extent) {
     gpu::SurroundingsParams params{};
     params.depth_camera = inputs.depth_camera;
     params.color_camera = inputs.color_camera;
-    params.visited = (glm::uvec2(extent.width, extent.height) + kStride_px - 1u) / kStride_px;
-    params.stride_px = kStride_px;
+    params.visited = (glm::uvec2(extent.width, extent.height) + kNearStride_px - 1u) / kNearStride_px;
+    params.stride_px = kNearStride_px;
     // 7 shares no factor with 16: frames beside each other look at pixels that are apart.
-    params.phase = inputs.frame_index * 7 % (kStride_px * kStride_px);
+    params.phase = inputs.frame_index * 7 % (kNearStride_px * kNearStride_px);
     params.radiance_scale = inputs.radiance_scale;
     params.lamp_luminance = inputs.lamp_luminance;
     return params;

@@ -8,7 +8,7 @@ namespace patina {
 namespace {
 
 // The dispatch covers the pool, used or not, and software devices run a group that finds nothing at nearly full cost.
-constexpr uint32_t kRecordsPerItem = 8;
+constexpr uint32_t kAlbedosPerItem = 8;
 constexpr uint64_t kTableBytes = sizeof(glm::uvec4) + gpu::kSurfaceCells * sizeof(gpu::SurfaceCell);
 
 }  // namespace
@@ -20,8 +20,8 @@ void add_surface_albedo(graph::FrameGraph& frame, const ObservationMap& map, con
         pass.read("RecordCounters", records.record_counters).read("Records", records.records);
         pass.read("Albedo", records.albedo).read("Visibility", records.visibility);
         pass.read("Lights", lights).read("Status", state.status);
-        pass.specialise("kRecordsPerItem", kRecordsPerItem).push(params);
-        pass.dispatch_covering((map.capacity_records() + kRecordsPerItem - 1) / kRecordsPerItem);
+        pass.specialise("kRecordsPerItem", kAlbedosPerItem).push(params);
+        pass.dispatch_covering((map.capacity_records() + kAlbedosPerItem - 1) / kAlbedosPerItem);
     };
     graph::BufferId surfaces = frame.fill(frame.create_buffer("reflectance.surfaces", kTableBytes), 0);
     auto sum = frame.compute("reflectance.sum_surfaces", spirv::sum_surfaces);

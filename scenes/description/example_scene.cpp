@@ -53,9 +53,9 @@ glm::dvec3 draw_kd(Draws& draws) {
 }
 
 /// A curved, a boxy, or a flat thing around the origin.
-class Shape {
+class ExampleShape {
   public:
-    Shape(Draws& draws) {
+    ExampleShape(Draws& draws) {
         const double kind = draws.between(0, 1);
         kind_ = kind < 0.4 ? Kind::kBall : kind < 0.55 ? Kind::kCylinder : kind < 0.78 ? Kind::kBox : Kind::kPlane;
         half_m_ = 0.05 * std::exp(draws.between(0, std::log(12.0))) * three(draws, 0.7, 1.3);
@@ -112,7 +112,7 @@ class Shape {
 };
 
 /// A camera's ways around the origin: a few waves of azimuth, elevation and distance.
-void draw_views(Draws draws, const Shape& shape, ExampleScene& result) {
+void draw_views(Draws draws, const ExampleShape& shape, ExampleScene& result) {
     const bool orbit = !shape.is_wall() && chance(draws, 0.5);
     result.scene.views = static_cast<uint32_t>(draws.between(10, gpu::kExampleViews + 1));
     const double arc = glm::radians(orbit ? draws.between(60, 360) : draws.between(15, 110));
@@ -131,7 +131,7 @@ void draw_views(Draws draws, const Shape& shape, ExampleScene& result) {
     }
 }
 
-void draw_lamps(Draws draws, const Shape& shape, ExampleScene& result) {
+void draw_lamps(Draws draws, const ExampleShape& shape, ExampleScene& result) {
     double total = 0;
     for (uint32_t i = 0; i < result.scene.lamps; ++i) {
         glm::dvec3 away = direction_of(draws.between(-kPi, kPi), glm::radians(draws.between(-10, 80)));
@@ -180,7 +180,7 @@ uint32_t shadow_at(const Draws& common, const ExampleScene& scene, double reach_
     return shadow;
 }
 
-uint32_t views_faced(const ExampleScene& scene, const Shape::Point& at) {
+uint32_t views_faced(const ExampleScene& scene, const ExampleShape::Point& at) {
     uint32_t faced = 0;
     for (uint32_t i = 0; i < scene.scene.views; ++i) {
         const glm::dvec3 toward = glm::dvec3(scene.views[i]) - at.point_m;
@@ -190,12 +190,12 @@ uint32_t views_faced(const ExampleScene& scene, const Shape::Point& at) {
 }
 
 /// A point that several views face, if there is one.
-Shape::Point draw_point(Draws& draws, const Shape& shape, const ExampleScene& scene) {
-    Shape::Point best = shape.point(draws);
+ExampleShape::Point draw_point(Draws& draws, const ExampleShape& shape, const ExampleScene& scene) {
+    ExampleShape::Point best = shape.point(draws);
     const uint32_t enough = std::max(kUsefulViews, static_cast<uint32_t>(draws.between(0.2, 0.6) * scene.scene.views));
     uint32_t most = views_faced(scene, best);
     for (int attempt = 0; attempt < 16 && most < enough; ++attempt) {
-        const Shape::Point other = shape.point(draws);
+        const ExampleShape::Point other = shape.point(draws);
         if (const uint32_t faced = views_faced(scene, other); faced > most) {
             most = faced;
             best = other;
@@ -211,12 +211,12 @@ glm::dvec3 tilted(Draws& draws, glm::dvec3 normal, double most_degrees) {
     return glm::normalize(normal + radius * across);
 }
 
-void draw_voxels(uint64_t seed, uint64_t index, const Shape& shape, ExampleScene& result) {
+void draw_voxels(uint64_t seed, uint64_t index, const ExampleShape& shape, ExampleScene& result) {
     Draws draws(seed, "example voxels", index);
     const Draws shadows(seed, "example shadows", index);
     const double texture = chance(draws, 0.25) ? draws.between(0.1, 0.6) : 0;
     for (gpu::ExampleVoxel& voxel : result.voxels) {
-        const Shape::Point at = draw_point(draws, shape, result);
+        const ExampleShape::Point at = draw_point(draws, shape, result);
         const double factor = 1 + texture * draws.between(-1, 1);
         const bool foreign = chance(draws, 0.05);
         voxel.point_m = glm::vec4(glm::vec3(at.point_m), factor);
@@ -247,7 +247,7 @@ gpu::WardMaterial draw_example_material(uint64_t seed, uint64_t index, uint32_t 
 ExampleScene draw_example_scene(uint64_t seed, uint64_t index) {
     Draws draws(seed, "example scene", index);
     ExampleScene result;
-    const Shape shape(draws);
+    const ExampleShape shape(draws);
     const bool environment = chance(draws, 0.5), lamp_too = chance(draws, 0.3);
     result.scene.windows = environment ? static_cast<uint32_t>(1 + draws.below(6)) : 0;
     result.scene.lamps = environment ? (lamp_too ? 1 : 0) : static_cast<uint32_t>(1 + draws.below(6));

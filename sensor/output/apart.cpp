@@ -50,7 +50,7 @@ std::vector<fs::path> with_links(const fs::path& input) {
     return all;
 }
 
-void expect_apart(const fs::path& output, const fs::path& place, const fs::path& input, const fs::path& of) {
+void expect_place_apart(const fs::path& output, const fs::path& place, const fs::path& input, const fs::path& of) {
     const auto read = identity_of(input);
     if (!read) return;
     const auto written = identity_of(place);
@@ -93,7 +93,7 @@ void expect_apart(const fs::path& output, const std::vector<fs::path>& inputs) {
     const fs::path place = resolved(output);
     for (const fs::path& input : inputs) {
         if (input.empty()) continue;
-        for (const fs::path& each : with_links(input)) expect_apart(output, place, each, input);
+        for (const fs::path& each : with_links(input)) expect_place_apart(output, place, each, input);
     }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path& checked(const fs::path& folder, const std::vector<fs::path>& inputs) {
+const fs::path& checked_folder(const fs::path& folder, const std::vector<fs::path>& inputs) {
     expect_apart(folder, inputs);
     if (!path_exists(folder)) return folder;
     if (!is_folder(folder)) throw Error(folder.string(), " is a file, so that no folder can be written there");
@@ -26,7 +26,8 @@ const fs::path& checked(const fs::path& folder, const std::vector<fs::path>& inp
 
 }  // namespace
 
-NewFolder::NewFolder(const fs::path& folder, const std::vector<fs::path>& inputs) : partial_(checked(folder, inputs)) {}
+NewFolder::NewFolder(const fs::path& folder, const std::vector<fs::path>& inputs)
+    : partial_(checked_folder(folder, inputs)) {}
 
 void NewFolder::finish() {
     try {

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The file, where it can be written.
-const fs::path& checked(const fs::path& file, const std::vector<fs::path>& inputs, OutputFile::Existing existing) {
+const fs::path& checked_file(const fs::path& file, const std::vector<fs::path>& inputs, OutputFile::Existing existing) {
     expect_apart(file, inputs);
     const fs::path place = resolved(file), parent = place.parent_path();
     std::error_code failure;
@@ -33,7 +33,7 @@ const fs::path& checked(const fs::path& file, const std::vector<fs::path>& input
 }  // namespace
 
 OutputFile::OutputFile(const fs::path& file, const std::vector<fs::path>& inputs, Existing existing)
-    : partial_(checked(file, inputs, existing)),
+    : partial_(checked_file(file, inputs, existing)),
       place_(partial_.path() / partial_.target().filename()),
       existing_(existing) {}
 

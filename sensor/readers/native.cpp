@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kAssociationLimit_s = 0.02;  // TUM's own limit for its trajectories
+constexpr double kMostPoseLag_s = 0.02;  // TUM's own limit for its trajectories
 
 /// Calls use(index, line) for each line of a file of 'index ...' lines; throws Error on an index out of range or given
 /// twice.
@@ -116,7 +116,7 @@ class NativeSource : public FolderSource {
         exposures_ = read_exposures(folder / "exposures.txt", *info_.frames, sequence.exposure);
         info_.exposure_known = info_.exposure_known || path_exists(folder / "exposures.txt");
         if (const fs::path trajectory = folder / "trajectory.txt"; path_exists(trajectory)) {
-            poses_ = FramePoses(trajectory, timestamps_s_, std::min(kAssociationLimit_s, 0.5 / info_.fps));
+            poses_ = FramePoses(trajectory, timestamps_s_, std::min(kMostPoseLag_s, 0.5 / info_.fps));
         }
         info_.has_poses = !poses_.empty();
     }

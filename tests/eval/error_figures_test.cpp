@@ -6,7 +6,7 @@
 #include "tests/eval/eval_rig.h"
 #include "tests/export/throws.h"
 
-namespace patina::eval {
+namespace patina::eval::error_figures_test {
 namespace {
 
 using test::EvalFrame;
@@ -119,4 +119,4 @@ TEST(ErrorFigures, OneFrameIsShownOnce) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::error_figures_test

@@ -7,7 +7,7 @@
 
 #include "tests/eval/made_up_evaluation.h"
 
-namespace patina::eval {
+namespace patina::eval::eval_json_test {
 namespace {
 
 using nlohmann::json;
@@ -144,4 +144,4 @@ TEST(EvalJson, BadBytesAreReplaced) {
 TEST(EvalJson, NothingIsStillJson) { EXPECT_EQ(parsed({})["objects"], json::array()); }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::eval_json_test

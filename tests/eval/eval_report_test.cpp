@@ -7,7 +7,7 @@
 
 #include "tests/eval/made_up_evaluation.h"
 
-namespace patina::eval {
+namespace patina::eval::eval_report_test {
 namespace {
 
 using test::full_evaluation;
@@ -129,4 +129,4 @@ TEST(EvalReport, ShowsNothingThatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::eval_report_test

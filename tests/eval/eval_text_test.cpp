@@ -8,7 +8,7 @@
 
 #include "tests/eval/made_up_evaluation.h"
 
-namespace patina::eval {
+namespace patina::eval::eval_text_test {
 namespace {
 
 using test::full_evaluation;
@@ -188,4 +188,4 @@ TEST(EvalText, NamesCannotMoveTheCursor) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::eval_text_test

@@ -12,7 +12,7 @@
 #include "tests/eval/pictures.h"
 #include "tests/export/throws.h"
 
-namespace patina::eval {
+namespace patina::eval::evaluate_test {
 namespace {
 
 using test::change_object;
@@ -432,4 +432,4 @@ TEST(Evaluate, ATrajectoryOfAnotherTimeIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::evaluate_test

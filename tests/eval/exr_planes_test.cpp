@@ -10,7 +10,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
 
-namespace patina::eval {
+namespace patina::eval::exr_planes_test {
 namespace {
 
 using test::throws_error_with;
@@ -73,4 +73,4 @@ TEST(ExrFrames, AreFoundByIndex) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::exr_planes_test

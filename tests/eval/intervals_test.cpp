@@ -6,7 +6,7 @@
 #include "tests/eval/eval_rig.h"
 #include "tools/eval/eval_text.h"
 
-namespace patina::eval {
+namespace patina::eval::intervals_test {
 namespace {
 
 /// Truth: "floor" has kd (0.6, 0.5, 0.4), ks (0.1, 0.15, 0.2), alpha 0.2; "box" is textured, its alpha is 0.3. The
@@ -71,4 +71,4 @@ TEST_F(Intervals, OfOtherThingsSegmentsDoNotCount) {
 TEST_F(Intervals, RunsWithoutMaterialsHaveNone) { EXPECT_TRUE(rig_.evaluate().intervals.empty()); }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::intervals_test

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina::eval {
+namespace patina::eval::lights_test {
 namespace {
 
 using testing::ElementsAre;
@@ -90,4 +90,4 @@ TEST(Lights, ChannelsWithoutLightDoNotDisturb) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::lights_test

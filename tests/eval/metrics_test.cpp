@@ -8,7 +8,7 @@
 #include "tests/eval/pictures.h"
 #include "tools/eval/pixel_errors.h"
 
-namespace patina::eval {
+namespace patina::eval::metrics_test {
 namespace {
 
 using test::random_picture;
@@ -196,4 +196,4 @@ TEST(PixelErrorSum, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::metrics_test

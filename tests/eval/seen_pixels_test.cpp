@@ -9,7 +9,7 @@
 #include "tests/export/throws.h"
 #include "tools/eval/evaluate.h"
 
-namespace patina::eval {
+namespace patina::eval::seen_pixels_test {
 namespace {
 
 using test::SlidingRig;
@@ -139,4 +139,4 @@ TEST(SeenPixels, AreScoredWhereTheyAreFilled) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::seen_pixels_test

@@ -6,7 +6,7 @@
 
 #include "tests/eval/sliding_view.h"
 
-namespace patina::eval {
+namespace patina::eval::seen_surface_test {
 namespace {
 
 using test::SlidingView;
@@ -102,4 +102,4 @@ TEST(SeenSurface, GrazingSurfacesHaveNoGaps) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::seen_surface_test

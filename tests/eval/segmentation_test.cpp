@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina::eval {
+namespace patina::eval::segmentation_test {
 namespace {
 
 TEST(Segmentation, OneLabelPerObjectIsPerfect) {
@@ -93,4 +93,4 @@ TEST(Segmentation, AveragesOverObjects) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::segmentation_test

@@ -8,7 +8,7 @@
 #include "tests/eval/pictures.h"
 #include "tests/reference/eval/ssim.h"
 
-namespace patina::eval {
+namespace patina::eval::ssim_test {
 namespace {
 
 using test::picture_of;
@@ -106,4 +106,4 @@ TEST(Ssim, DoesNotLookOutsideTheMasks) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::ssim_test

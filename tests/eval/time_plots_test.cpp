@@ -6,7 +6,7 @@
 
 #include "tests/eval/made_up_evaluation.h"
 
-namespace patina::eval {
+namespace patina::eval::time_plots_test {
 namespace {
 
 using test::full_evaluation;
@@ -80,4 +80,4 @@ TEST(TimePlots, PerfectRunsHaveAnAxis) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::time_plots_test

@@ -8,7 +8,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
 
-namespace patina::eval {
+namespace patina::eval::trajectory_test {
 namespace {
 
 using sensor::StampedPose;
@@ -172,4 +172,4 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
 }
 
 }  // namespace
-}  // namespace patina::eval
+}  // namespace patina::eval::trajectory_test

@@ -11,7 +11,7 @@
 #include "export/atlas/pack_boxes.h"
 #include "tests/export/test_meshes.h"
 
-namespace patina {
+namespace patina::atlas_test {
 namespace {
 
 using test::wavy_sheet;
@@ -266,4 +266,4 @@ TEST(LayOutTexture, ASurfaceWithoutReflectanceHasNoLabels) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::atlas_test

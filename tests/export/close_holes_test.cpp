@@ -13,7 +13,7 @@
 #include "export/same_positions.h"
 #include "export/tidy_surface.h"
 
-namespace patina {
+namespace patina::close_holes_test {
 namespace {
 
 constexpr float kRadius_m = 0.1f;
@@ -228,4 +228,4 @@ TEST(CloseHoles, ATidiedSphereIsClosedAndSaysWhere) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::close_holes_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
-namespace patina {
+namespace patina::drawing_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -65,4 +65,4 @@ TEST(Drawing, PngHoldsThePixels) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::drawing_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::fill_unseen_test {
 namespace {
 
 /// A strip of so many squares along x, white, of segment 7.
@@ -86,4 +86,4 @@ TEST(FillUnseen, WhereAllOrNothingWasSeenAllStays) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fill_unseen_test

@@ -9,7 +9,7 @@
 #include "tests/export/test_meshes.h"
 #include "tests/export/throws.h"
 
-namespace patina {
+namespace patina::glb_reflectance_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -307,4 +307,4 @@ TEST(GlbReflectance, RefusesAnAlbedoThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::glb_reflectance_test

@@ -11,7 +11,7 @@
 #include "export/write_glb.h"
 #include "tests/export/temporary_folder.h"
 
-namespace patina {
+namespace patina::glb_texture_test {
 namespace {
 
 using test::TemporaryFolder;
@@ -224,4 +224,4 @@ TEST(PagePicture, ASegmentsFactorStaysInItsBox) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::glb_texture_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::gltf_material_test {
 namespace {
 
 constexpr glm::vec3 kGrey(0.5f);
@@ -128,4 +128,4 @@ TEST(GltfMaterial, ExtremesStayWithinWhatGltfAllows) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::gltf_material_test

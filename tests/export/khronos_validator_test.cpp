@@ -9,7 +9,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
 
-namespace patina {
+namespace patina::khronos_validator_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST_F(KhronosValidator, RejectsADamagedScene) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::khronos_validator_test

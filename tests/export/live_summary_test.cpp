@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina {
+namespace patina::live_summary_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -38,4 +38,4 @@ TEST(LiveSummary, TellsWhatARecordingBesideItHas) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::live_summary_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace patina {
+namespace patina::materials_test {
 namespace {
 
 TEST(Materials, TellWhatIsKnownOfEverySegmentThatWasSeen) {
@@ -50,4 +50,4 @@ TEST(Materials, OfNothingAreAnEmptyList) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::materials_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina {
+namespace patina::mesh_parts_test {
 namespace {
 
 using testing::ElementsAre;
@@ -41,4 +41,4 @@ TEST(MeshParts, WhereThreeSegmentsMeetTheFirstVertexDecides) {
 TEST(MeshParts, OfNothingThereAreNone) { EXPECT_TRUE(parts_by_label(0, {}, std::vector<uint32_t>{1}).empty()); }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::mesh_parts_test

@@ -18,7 +18,7 @@
 #include "tests/export/throws.h"
 #include "tests/support/file_size_limit.h"
 
-namespace patina {
+namespace patina::other_formats_test {
 namespace {
 
 using test::bytes_of;
@@ -211,4 +211,4 @@ TEST(LightMap, AmbientLightIsEverywhere) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::other_formats_test

@@ -19,7 +19,7 @@
 #include "tests/export/throws.h"
 #include "tools/report/swap_folder.h"
 
-namespace patina {
+namespace patina::output_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -432,4 +432,4 @@ TEST(OutputFolderDeathTest, NamesAreThoseOfResults) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::output_folder_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::photometric_test {
 namespace {
 
 Patch level_patch(glm::vec3 center_m, float area_m2) { return {center_m, {0, area_m2, 0}, 0}; }
@@ -35,4 +35,4 @@ TEST(Photometric, WithoutLightTheFactorIs1) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::photometric_test

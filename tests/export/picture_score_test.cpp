@@ -7,7 +7,7 @@
 #include "engine/core/srgb.h"
 #include "tools/report/drawing.h"
 
-namespace patina {
+namespace patina::picture_score_test {
 namespace {
 
 TEST(PictureScore, IsThePsnrOverWhatIsPredicted) {
@@ -69,4 +69,4 @@ TEST(PictureScore, LinearColourIsTheInverseOfTheEncoding) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::picture_score_test

@@ -6,7 +6,7 @@
 
 #include "tests/export/throws.h"
 
-namespace patina {
+namespace patina::plot_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -157,4 +157,4 @@ TEST(Plot, LegendHasTheRolesThatOccur) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::plot_test

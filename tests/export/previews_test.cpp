@@ -7,7 +7,7 @@
 
 #include "tests/export/throws.h"
 
-namespace patina {
+namespace patina::previews_test {
 namespace {
 
 using test::throws_error_with;
@@ -141,4 +141,4 @@ TEST(Previews, SaysWhichPictureDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::previews_test

@@ -8,7 +8,7 @@
 #include "tests/export/small_scene.h"
 #include "tests/export/temporary_folder.h"
 
-namespace patina {
+namespace patina::report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -190,4 +190,4 @@ TEST(Report, LeavesOutWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::report_test

@@ -6,7 +6,7 @@
 
 #include "tests/export/full_summary.h"
 
-namespace patina {
+namespace patina::run_summary_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -147,4 +147,4 @@ TEST(RunSummary, StaysJsonWhateverItHolds) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::run_summary_test

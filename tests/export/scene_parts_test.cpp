@@ -14,7 +14,7 @@
 
 // A scene.glb that is read back, and written again with changes.
 
-namespace patina {
+namespace patina::scene_parts_test {
 namespace {
 
 using test::bytes_of;
@@ -189,4 +189,4 @@ TEST_F(RewriteGlb, UpIsWhereItIsSaidToBe) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::scene_parts_test

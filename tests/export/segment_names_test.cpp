@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina {
+namespace patina::segment_names_test {
 namespace {
 
 using testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(SegmentNames, ColoursHaveWords) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::segment_names_test

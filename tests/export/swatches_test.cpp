@@ -6,7 +6,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tools/report/plan.h"
 
-namespace patina {
+namespace patina::swatches_test {
 namespace {
 
 using testing::HasSubstr;
@@ -74,4 +74,4 @@ TEST(Plan, ShowsLampsAndTheCamerasWay) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::swatches_test

@@ -10,7 +10,7 @@
 
 #include "tests/export/test_meshes.h"
 
-namespace patina {
+namespace patina::tidy_surface_test {
 namespace {
 
 using test::wavy_sheet;
@@ -178,4 +178,4 @@ TEST(TidySurface, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::tidy_surface_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::tracking_summary_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST(TrackingSummary, TheTableEscapesReasonsAndIsEmptyWithoutFrames) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::tracking_summary_test

@@ -8,7 +8,7 @@
 
 #include "tests/export/throws.h"
 
-namespace patina {
+namespace patina::trajectory_test {
 namespace {
 
 using test::throws_error_with;
@@ -73,4 +73,4 @@ TEST(Trajectory, RefusesWhatIsNoPose) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::trajectory_test

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina {
+namespace patina::upright_test {
 namespace {
 
 constexpr glm::dvec3 kUp(0, 1, 0);
@@ -220,4 +220,4 @@ TEST(SurfaceSurvey, OfManyTrianglesIsASampleOfAll) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::upright_test

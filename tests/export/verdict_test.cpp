@@ -4,7 +4,7 @@
 
 #include "tests/export/full_summary.h"
 
-namespace patina {
+namespace patina::verdict_test {
 namespace {
 
 using testing::Contains;
@@ -83,4 +83,4 @@ TEST(Verdict, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::verdict_test

@@ -7,7 +7,7 @@
 #include "tests/export/throws.h"
 #include "tests/support/file_size_limit.h"
 
-namespace patina {
+namespace patina::video_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ TEST(Video, SaysWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::video_test

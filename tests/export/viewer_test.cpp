@@ -12,7 +12,7 @@
 
 // The viewer in one HTML file: what it holds, and where Chromium is installed, what it shows.
 
-namespace patina {
+namespace patina::viewer_test {
 namespace {
 
 using test::small_scene;
@@ -160,4 +160,4 @@ TEST(Viewer, ABrowserShowsIt) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::viewer_test

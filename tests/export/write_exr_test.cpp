@@ -11,7 +11,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
 
-namespace patina {
+namespace patina::write_exr_test {
 namespace {
 
 using test::bytes_of;
@@ -119,4 +119,4 @@ TEST(WriteExr, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::write_exr_test

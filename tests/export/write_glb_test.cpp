@@ -13,7 +13,7 @@
 #include "tests/export/throws.h"
 #include "tests/support/file_size_limit.h"
 
-namespace patina {
+namespace patina::write_glb_test {
 namespace {
 
 using test::bytes_of;
@@ -283,4 +283,4 @@ TEST(WriteGlb, SaysThatTheDiskRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::write_glb_test

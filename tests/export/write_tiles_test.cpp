@@ -12,7 +12,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
 
-namespace patina {
+namespace patina::write_tiles_test {
 namespace {
 
 using nlohmann::json;
@@ -233,4 +233,4 @@ TEST(WriteTiles, WithoutTrianglesThereIsATilesetAlone) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::write_tiles_test

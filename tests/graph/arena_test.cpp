@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patina::graph {
+namespace patina::graph::arena_test {
 namespace {
 
 using testing::ElementsAre;
@@ -48,4 +48,4 @@ TEST(ArenaOccupancy, NamesTheLastUsersOfEachByte) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::arena_test

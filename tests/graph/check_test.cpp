@@ -5,7 +5,7 @@
 #include "engine/graph/plan/plan.h"
 #include "tests/graph/frame_builder.h"
 
-namespace patina::graph {
+namespace patina::graph::check_test {
 namespace {
 
 using testing::Contains;
@@ -268,4 +268,4 @@ TEST(FindUnneededBarriers, ListsThoseWhoseDeletionChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::check_test

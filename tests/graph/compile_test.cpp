@@ -4,7 +4,7 @@
 #include "engine/graph/plan/plan.h"
 #include "tests/graph/frame_builder.h"
 
-namespace patina::graph {
+namespace patina::graph::compile_test {
 namespace {
 
 using testing::ElementsAre;
@@ -255,4 +255,4 @@ TEST(Compile, LetsAKeptTransientLiveToTheEndOfTheFrame) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::compile_test

@@ -5,7 +5,7 @@
 #include "engine/graph/plan/plan.h"
 #include "tests/graph/frame_builder.h"
 
-namespace patina::graph {
+namespace patina::graph::dump_test {
 namespace {
 
 using nlohmann::json;
@@ -81,4 +81,4 @@ TEST(ToDot, DrawsPassesVersionsAndBarriers) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::dump_test

@@ -5,7 +5,7 @@
 #include "engine/graph/plan/plan.h"
 #include "tests/graph/random_frame.h"
 
-namespace patina::graph {
+namespace patina::graph::property_test {
 namespace {
 
 using testing::IsEmpty;
@@ -121,4 +121,4 @@ TEST(RandomFrames, HaveLifetimesFromFirstToLastUse) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::property_test

@@ -4,7 +4,7 @@
 #include "engine/graph/plan/plan.h"
 #include "tests/graph/frame_builder.h"
 
-namespace patina::graph {
+namespace patina::graph::wiring_test {
 namespace {
 
 /// The message with which compile() refuses a frame of an imported 'map' (0) and a transient 'list' (1).
@@ -97,4 +97,4 @@ TEST(Wiring, RefusesATransientThatAsksForNoMemory) {
 }
 
 }  // namespace
-}  // namespace patina::graph
+}  // namespace patina::graph::wiring_test

@@ -9,7 +9,7 @@
 #include "engine/core/error.h"
 #include "tests/simulated_kinect2/pages.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::calibration_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(Kinect2Calibration, SerialNumberOfControlCharactersIsHarmless) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::calibration_test

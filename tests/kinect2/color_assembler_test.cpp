@@ -8,7 +8,7 @@
 #include "tests/simulated_kinect2/color_signal.h"
 #include "tests/simulated_kinect2/flat_jpeg.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::color_assembler_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -168,4 +168,4 @@ TEST(Kinect2Color, NumbersWrapWithoutLoss) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::color_assembler_test

@@ -9,7 +9,7 @@
 #include "sensor/kinect2/device.h"
 #include "tests/kinect2/rig.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::command_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -92,4 +92,4 @@ TEST(Kinect2Device, DamagedCalibrationIsRefused) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::command_test

@@ -9,7 +9,7 @@
 #include "tests/simulated_kinect2/flat_jpeg.h"
 #include "tests/simulated_kinect2/pages.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::device_test {
 namespace {
 
 using ::testing::AllOf;
@@ -180,4 +180,4 @@ TEST(Kinect2Device, OverrunIsCountedAndMixesNoFrames) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::device_test

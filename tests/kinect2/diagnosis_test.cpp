@@ -7,7 +7,7 @@
 
 #include "tests/export/temporary_folder.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::diagnosis_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST(Kinect2Diagnosis, MemoryOfTheSystemIsRead) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::diagnosis_test

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::flat_jpeg_test {
 namespace {
 
 TEST(FlatJpeg, EveryPixelHasTheGrey) {
@@ -19,4 +19,4 @@ TEST(FlatJpeg, EveryPixelHasTheGrey) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::flat_jpeg_test

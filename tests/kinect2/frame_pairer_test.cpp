@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::frame_pairer_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -115,4 +115,4 @@ TEST(Kinect2Pairing, BuffersCirculate) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::frame_pairer_test

@@ -6,7 +6,7 @@
 
 #include "engine/core/error.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::frame_queue_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -61,4 +61,4 @@ TEST(Kinect2Queue, BuffersCirculate) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::frame_queue_test

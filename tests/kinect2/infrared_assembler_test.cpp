@@ -6,7 +6,7 @@
 
 #include "tests/simulated_kinect2/infrared_signal.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::infrared_assembler_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -270,4 +270,4 @@ TEST(Kinect2Infrared, GarbageIsNoFrame) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::infrared_assembler_test

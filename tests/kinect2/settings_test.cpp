@@ -9,7 +9,7 @@
 
 #include "tests/kinect2/rig.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::settings_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(Kinect2Device, SettingsOutOfRangeAreRefusedBeforeTheDeviceSeesThem) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::settings_test

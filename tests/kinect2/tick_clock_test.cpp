@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::tick_clock_test {
 namespace {
 
 TEST(Kinect2TickClock, EightThousandTicksAreASecondAcrossTheWrap) {
@@ -30,4 +30,4 @@ TEST(Kinect2TickClock, CountsDaysExactly) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::tick_clock_test

@@ -7,7 +7,7 @@
 #include "sensor/kinect2/device.h"
 #include "tests/kinect2/rig.h"
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::unplug_test {
 namespace {
 
 using ::testing::AnyOf;
@@ -119,4 +119,4 @@ TEST(Kinect2DeviceUnplugged, FramesBeforeItAreStillReturned) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::unplug_test

@@ -11,7 +11,7 @@
 // The driver over libusb's own API, in a process that loads the stand-in. The bus runs at a third of its speed, so that
 // a busy machine loses nothing.
 
-namespace patina::sensor::kinect2::testing {
+namespace patina::sensor::kinect2::testing::usb_test {
 namespace {
 
 using ::testing::AllOf;
@@ -105,4 +105,4 @@ TEST(Kinect2Usb, WhatKeepsItFromOpeningIsSaidInOneLine) {
 }
 
 }  // namespace
-}  // namespace patina::sensor::kinect2::testing
+}  // namespace patina::sensor::kinect2::testing::usb_test

@@ -15,7 +15,7 @@
 #include "scenes/files/scene_file.h"
 #include "tests/scenes/part_box.h"
 
-namespace patina::scenes {
+namespace patina::scenes::builtin_scenes_test {
 namespace {
 
 constexpr double kContact_m = 1e-3;  // what stands on something touches it up to the rounding of written positions
@@ -304,4 +304,4 @@ TEST(PartBoxes, OverlapIsTheLeastPushThatPartsThem) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::builtin_scenes_test

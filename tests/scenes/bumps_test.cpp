@@ -7,7 +7,7 @@
 #include "engine/core/error.h"
 #include "scenes/description/mesh.h"
 
-namespace patina::scenes {
+namespace patina::scenes::bumps_test {
 namespace {
 
 constexpr double kRadius_m = 0.5;
@@ -90,4 +90,4 @@ TEST(Bumps, NeedTrianglesThatAreFineEnough) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::bumps_test

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patina::scenes {
+namespace patina::scenes::bvh_test {
 namespace {
 
 constexpr uint32_t kMaxLeaf = 4;
@@ -134,4 +134,4 @@ TEST(Bvh, SeparatesClustersSoThatFewBoxesAreMet) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::bvh_test

@@ -10,7 +10,7 @@
 
 #include "engine/core/error.h"
 
-namespace patina::scenes {
+namespace patina::scenes::environment_table_test {
 namespace {
 
 Image<glm::vec3> random_picture(Extent2D extent) {
@@ -96,4 +96,4 @@ TEST(EnvironmentTable, RefusesWhatIsNoLight) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::environment_table_test

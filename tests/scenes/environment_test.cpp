@@ -11,7 +11,7 @@
 #include "engine/core/latitude_longitude.h"
 #include "tests/data_folder.h"
 
-namespace patina::scenes {
+namespace patina::scenes::environment_test {
 namespace {
 
 constexpr Extent2D kExtent{128, 64};
@@ -142,4 +142,4 @@ TEST(EnvironmentFile, RecordedOnesHaveTheirPublishedMean) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::environment_test

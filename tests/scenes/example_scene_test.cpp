@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patina::scenes {
+namespace patina::scenes::example_scene_test {
 namespace {
 
 bool same(const ExampleScene& a, const ExampleScene& b) {
@@ -85,4 +85,4 @@ TEST(ExampleScene, NearlyAllVoxelsAreFacedByEnoughViews) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::example_scene_test

@@ -8,7 +8,7 @@
 
 #include "engine/core/undistort.h"
 
-namespace patina::scenes::kinect2 {
+namespace patina::scenes::kinect2::infrared_frame_test {
 namespace {
 
 /// The CRC-32 of zlib, bit by bit.
@@ -72,7 +72,7 @@ TEST(InfraredFrame, ARowIsPackedAsDocumented) {
     for (size_t x = 0; x < codes.size(); ++x) codes[x] = static_cast<uint16_t>(4 * x % 2048);
     const auto row = pack_row(codes);
     const std::vector<uint8_t> start(row.begin(), row.begin() + 8);
-    EXPECT_THAT(start, testing::ElementsAre(0x00, 0x80, 0x00, 0x08, 0x60, 0x00, 0x04, 0x28));
+    EXPECT_THAT(start, ::testing::ElementsAre(0x00, 0x80, 0x00, 0x08, 0x60, 0x00, 0x04, 0x28));
     for (uint32_t x = 1; x < 511; ++x) EXPECT_EQ(unpacked(row, x), 4 * x % 2048) << x;
     EXPECT_EQ(unpacked(row, 511), 0) << "the last column carries no data";
     // The documented checksum is of the row with that column's code.
@@ -87,7 +87,7 @@ TEST(InfraredFrame, ARowIsPackedAsDocumented) {
 TEST(InfraredFrame, TheWorkedExampleGivesItsCodes) {
     const std::vector<uint8_t> frame = infrared_frame(example_sensor(), plane(1.0f, 300));
     ASSERT_EQ(frame.size(), 2984960u);
-    EXPECT_THAT(codes_at(frame, 256, 212), testing::ElementsAre(1214, 1130, 276, 263, 1272, 1046, 1298, 209, 82));
+    EXPECT_THAT(codes_at(frame, 256, 212), ::testing::ElementsAre(1214, 1130, 276, 263, 1272, 1046, 1298, 209, 82));
 }
 
 TEST(InfraredFrame, TravelIsTheInverseOfTheDecodersGeometry) {
@@ -105,9 +105,9 @@ TEST(InfraredFrame, WhatDoesNotReturnIsDarkAndWhatIsTooBrightIsSaturated) {
     scene.depth_m.at(100, 50) = 0;
     scene.amplitude.at(101, 400) = 1e5f;
     const std::vector<uint8_t> frame = infrared_frame(example_sensor(), scene);
-    EXPECT_THAT(codes_at(frame, 100, 50), testing::Each(0));
-    EXPECT_THAT(codes_at(frame, 101, 400), testing::Contains(kSaturatedCode));
-    EXPECT_THAT(codes_at(frame, 102, 400), testing::Not(testing::Contains(kSaturatedCode)));
+    EXPECT_THAT(codes_at(frame, 100, 50), ::testing::Each(0));
+    EXPECT_THAT(codes_at(frame, 101, 400), ::testing::Contains(kSaturatedCode));
+    EXPECT_THAT(codes_at(frame, 102, 400), ::testing::Not(::testing::Contains(kSaturatedCode)));
 }
 
 TEST(InfraredFrame, NoiseFollowsItsSeedAndItsVariance) {
@@ -148,7 +148,7 @@ TEST(InfraredFrame, ARenderedPictureIsMirroredAndDistorted) {
 
 TEST(InfraredFrame, LightFallsWithTheSquareOfTheDistance) {
     const Image<float> depth_m({3, 1}, {1, 2, 0}), white({3, 1}, 0.5f);
-    EXPECT_THAT(lit_amplitude(depth_m, white, 400).pixels(), testing::ElementsAre(200, 50, 0));
+    EXPECT_THAT(lit_amplitude(depth_m, white, 400).pixels(), ::testing::ElementsAre(200, 50, 0));
     EXPECT_THROW(lit_amplitude(depth_m, Image<float>({2, 1}), 400), Error);
 }
 
@@ -181,4 +181,4 @@ TEST(Undistort, BeyondTheFoldThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace patina::scenes::kinect2
+}  // namespace patina::scenes::kinect2::infrared_frame_test

@@ -14,7 +14,7 @@
 #include "tests/scenes/scene_json.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::scenes {
+namespace patina::scenes::mesh_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ TEST(WildMesh, DegenerateTrianglesAreFound) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::mesh_file_test

@@ -11,7 +11,7 @@
 #include "scenes/files/mesh_file.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::scenes {
+namespace patina::scenes::mesh_readers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -322,4 +322,4 @@ TEST_F(GltfReader, ManyNodesInARowAndDeepJsonOverflowNothing) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::mesh_readers_test

@@ -8,7 +8,7 @@
 
 #include "engine/core/error.h"
 
-namespace patina::scenes {
+namespace patina::scenes::mesh_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(Joined, SharesWhatIsEqualAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::mesh_test

@@ -8,7 +8,7 @@
 #include "scenes/description/clearance.h"
 #include "scenes/files/scene_file.h"
 
-namespace patina::scenes {
+namespace patina::scenes::never_recorded_test {
 namespace {
 
 constexpr uint32_t kViews = 24;
@@ -59,4 +59,4 @@ TEST(NeverRecorded, LampsAreElsewhereAndGiveAsMuchLight) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::never_recorded_test

@@ -6,24 +6,26 @@
 namespace patina::scenes {
 namespace {
 
-struct Bounds {
+struct ShapeBounds {
     glm::dvec3 low{INFINITY};
     glm::dvec3 high{-INFINITY};
 };
 
-Bounds bounds_of(const Shape& shape) {
+ShapeBounds bounds_of(const Shape& shape) {
     struct {
-        Bounds operator()(const RectangleShape& s) const { return around({s.half_size_m, 0}); }
-        Bounds operator()(const BoxShape& s) const { return around(s.half_size_m); }
-        Bounds operator()(const SphereShape& s) const { return around(glm::dvec3(s.radius_m)); }
-        Bounds operator()(const CylinderShape& s) const { return around({s.radius_m, s.half_height_m, s.radius_m}); }
-        Bounds operator()(const MeshShape& s) const {
-            Bounds bounds;
+        ShapeBounds operator()(const RectangleShape& s) const { return around({s.half_size_m, 0}); }
+        ShapeBounds operator()(const BoxShape& s) const { return around(s.half_size_m); }
+        ShapeBounds operator()(const SphereShape& s) const { return around(glm::dvec3(s.radius_m)); }
+        ShapeBounds operator()(const CylinderShape& s) const {
+            return around({s.radius_m, s.half_height_m, s.radius_m});
+        }
+        ShapeBounds operator()(const MeshShape& s) const {
+            ShapeBounds bounds;
             for (const glm::vec3& p : s.mesh->positions_m)
                 bounds = {glm::min(bounds.low, glm::dvec3(p)), glm::max(bounds.high, glm::dvec3(p))};
             return bounds;
         }
-        static Bounds around(glm::dvec3 half_size_m) { return {-half_size_m, half_size_m}; }
+        static ShapeBounds around(glm::dvec3 half_size_m) { return {-half_size_m, half_size_m}; }
     } visitor;
     return std::visit(visitor, shape);
 }
@@ -58,7 +60,7 @@ std::vector<glm::dvec3> PartBox::corners() const {
 }
 
 PartBox box_around(const Part& part) {
-    const Bounds bounds = bounds_of(part.shape);
+    const ShapeBounds bounds = bounds_of(part.shape);
     const glm::dvec3 middle = (bounds.low + bounds.high) / 2.0;
     return {glm::dvec3(part.world_from_part * glm::dvec4(middle, 1)), glm::dmat3(part.world_from_part),
             (bounds.high - bounds.low) / 2.0};

@@ -7,7 +7,7 @@
 #include "scenes/description/lighting_sequence.h"
 #include "scenes/description/pose_noise.h"
 
-namespace patina::scenes {
+namespace patina::scenes::recording_test {
 namespace {
 
 /// Root mean square of one component of many vectors.
@@ -92,4 +92,4 @@ TEST(LightingSequence, NeedsAPathAndALampThatIsSeen) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::recording_test

@@ -14,7 +14,7 @@
 #include "tests/scenes/scene_json.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::scenes {
+namespace patina::scenes::scene_file_test {
 namespace {
 
 using nlohmann::json;
@@ -492,4 +492,4 @@ TEST(SceneFile, AnEnvironmentThatIsNoHdrFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::scene_file_test

@@ -12,7 +12,7 @@
 #include "scenes/files/scene_file.h"
 #include "tests/scenes/part_box.h"
 
-namespace patina::scenes {
+namespace patina::scenes::scene_test {
 namespace {
 
 constexpr int kFrames = 1000;
@@ -117,4 +117,4 @@ TEST(SyntheticScene, UnknownNameIsAnErrorThatListsTheKnown) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::scene_test

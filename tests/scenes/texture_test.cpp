@@ -10,7 +10,7 @@
 #include "scenes/description/periodic_noise.h"
 #include "sensor/files/picture_file.h"
 
-namespace patina::scenes {
+namespace patina::scenes::texture_test {
 namespace {
 
 using ::testing::AllOf;
@@ -157,4 +157,4 @@ TEST(TextureFile, CodesAreDecodedToLinearAlbedo) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::texture_test

@@ -15,7 +15,7 @@
 #include "tests/scenes/scene_json.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::scenes {
+namespace patina::scenes::vary_test {
 namespace {
 
 using sensor::testing::TemporaryFolder;
@@ -235,4 +235,4 @@ TEST(Clearance, AMeshCountsAsItsFilledBox) {
 }
 
 }  // namespace
-}  // namespace patina::scenes
+}  // namespace patina::scenes::vary_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina::sensor {
+namespace patina::sensor::associate_test {
 namespace {
 
 using Partners = std::vector<std::optional<size_t>>;
@@ -88,4 +88,4 @@ TEST(Associate, LongListsOfTheSameTimeTakeNoLongerThanOthers) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::associate_test

@@ -14,7 +14,7 @@
 
 // A camera whose depth and colour come apart, as a live source.
 
-namespace patina::sensor {
+namespace patina::sensor::camera_source_test {
 namespace {
 
 using namespace testing;
@@ -203,4 +203,4 @@ TEST(CameraSource, ThatWasStoppedBeforeItsFirstFrameDoesNotStart) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::camera_source_test

@@ -22,7 +22,7 @@
 
 // Every reader, on files that chance has damaged: it reads them or throws an Error that names a file, and nothing else.
 
-namespace patina::sensor {
+namespace patina::sensor::hostile_files_test {
 namespace {
 
 using namespace testing;
@@ -244,4 +244,4 @@ TEST_F(HostileFiles, Meshes) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::hostile_files_test

@@ -14,7 +14,7 @@
 #include "sensor/truth.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::input_file_test {
 namespace {
 
 using namespace testing;
@@ -121,4 +121,4 @@ TEST(InputFile, AnHourOfLinesIsReadAtOnce) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::input_file_test

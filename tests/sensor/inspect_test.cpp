@@ -6,7 +6,7 @@
 #include "sensor/open.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::inspect_test {
 namespace {
 
 using namespace testing;
@@ -154,4 +154,4 @@ TEST(Inspect, TheTextShowsTheNumbers) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::inspect_test

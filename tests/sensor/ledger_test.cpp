@@ -4,7 +4,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::ledger_test {
 namespace {
 
 using namespace testing;
@@ -89,4 +89,4 @@ TEST(Ledger, OfASourceWithoutALengthWhatWasReadIsAll) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::ledger_test

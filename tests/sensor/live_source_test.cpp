@@ -12,7 +12,7 @@
 
 // What a live source yields to a consumer that is late: the newest frame, and word of the others.
 
-namespace patina::sensor {
+namespace patina::sensor::live_source_test {
 namespace {
 
 using namespace testing;
@@ -146,4 +146,4 @@ TEST(PlayedSource, StopEndsAWait) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::live_source_test

@@ -4,7 +4,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::look_ahead_source_test {
 namespace {
 
 /// Five readings, the third skipped, and no known length.
@@ -41,4 +41,4 @@ TEST(LookAheadSource, WhatIsLookedAtIsStillRead) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::look_ahead_source_test

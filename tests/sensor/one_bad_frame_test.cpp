@@ -11,7 +11,7 @@
 
 // What one frame's files may cost: that frame. What a sequence says of itself is compared with its files.
 
-namespace patina::sensor {
+namespace patina::sensor::one_bad_frame_test {
 namespace {
 
 using namespace testing;
@@ -89,4 +89,4 @@ TEST(TumReader, ANameThatIsTooLongCostsItsFrame) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::one_bad_frame_test

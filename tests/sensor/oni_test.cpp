@@ -10,7 +10,7 @@
 
 // Recordings of OpenNI, read without it.
 
-namespace patina::sensor {
+namespace patina::sensor::oni_test {
 namespace {
 
 using namespace testing;
@@ -225,4 +225,4 @@ TEST_F(OniTest, WhatIsMissingIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::oni_test

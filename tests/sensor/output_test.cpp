@@ -15,7 +15,7 @@
 
 // How the bytes of results reach the disk.
 
-namespace patina::sensor {
+namespace patina::sensor::output_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +211,4 @@ TEST(PartialFolder, ADiskThatShowsAllFilesAsAnotherUsersIsWrittenTo) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::output_test

@@ -12,7 +12,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::picture_file_test {
 namespace {
 
 using namespace testing;
@@ -250,4 +250,4 @@ TEST(PictureFile, AnExrThatNoCameraTakesIsRefusedByItsHeader) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::picture_file_test

@@ -10,7 +10,7 @@
 #include "sensor/inspect.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::pose_convention_test {
 namespace {
 
 using namespace testing;
@@ -111,4 +111,4 @@ TEST(PoseConvention, AWorldFarFromItsOriginIsToldOf) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::pose_convention_test

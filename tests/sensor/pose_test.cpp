@@ -5,7 +5,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::pose_test {
 namespace {
 
 using namespace testing;
@@ -37,4 +37,4 @@ TEST(Pose, ATrajectoryReadsBackTheSamePoses) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::pose_test

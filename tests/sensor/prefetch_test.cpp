@@ -8,7 +8,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::prefetch_test {
 namespace {
 
 using namespace testing;
@@ -87,4 +87,4 @@ TEST(Prefetch, StopsPromptlyWhenDestroyed) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::prefetch_test

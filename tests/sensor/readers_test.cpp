@@ -6,7 +6,7 @@
 #include "sensor/write_sequence.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::readers_test {
 namespace {
 
 using namespace testing;
@@ -497,4 +497,4 @@ TEST(Open3dReader, PairsPicturesByNameAndReadsTheMatrixByColumns) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::readers_test

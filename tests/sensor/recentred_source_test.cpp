@@ -4,7 +4,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::recentred_source_test {
 namespace {
 
 TEST(RecentredSource, WorldsNearTheirOriginStay) {
@@ -27,4 +27,4 @@ TEST(RecentredSource, TakesTheOffsetFromPosesAlone) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::recentred_source_test

@@ -21,7 +21,7 @@
 // What kills and damage leave of a recording. PATINA_KILLS and PATINA_FLIPS set how many there are: a few here, a
 // thousand by hand.
 
-namespace patina::sensor {
+namespace patina::sensor::recording_faults_test {
 namespace {
 
 using namespace testing;
@@ -186,4 +186,4 @@ TEST(RecordingFaults, FlippedBitsGiveAnErrorOrTheIntactPart) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::recording_faults_test

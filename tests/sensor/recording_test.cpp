@@ -21,7 +21,7 @@
 
 // One file that holds what a camera saw, whatever ended the recording.
 
-namespace patina::sensor {
+namespace patina::sensor::recording_test {
 namespace {
 
 using namespace testing;
@@ -420,4 +420,4 @@ TEST(ExposureCheck, SaysWhatToChange) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::recording_test

@@ -6,7 +6,7 @@
 #include "sensor/prefetch.h"
 #include "tests/data_folder.h"
 
-namespace patina::sensor {
+namespace patina::sensor::red_kitchen_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -48,4 +48,4 @@ TEST(RedKitchen, TheFirstPoseIsTheFilesMadeOrthonormal) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::red_kitchen_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina::sensor {
+namespace patina::sensor::repeated_test {
 namespace {
 
 using ::testing::Optional;
@@ -43,4 +43,4 @@ TEST(Repeated, PicturesOfAnotherKindOrExtentDiffer) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::repeated_test

@@ -4,7 +4,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::resample_test {
 namespace {
 
 using namespace testing;
@@ -60,4 +60,4 @@ TEST(Resample, SkippedFramesPassAndEmptySizesAreErrors) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::resample_test

@@ -6,7 +6,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::text_file_test {
 namespace {
 
 using namespace testing;
@@ -53,4 +53,4 @@ TEST(TextFile, ShortestReadsBackTheSameNumber) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::text_file_test

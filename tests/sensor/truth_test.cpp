@@ -5,7 +5,7 @@
 
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::truth_test {
 namespace {
 
 using namespace testing;
@@ -94,4 +94,4 @@ TEST(Truth, SaysWhatIsWrongInMaterials) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::truth_test

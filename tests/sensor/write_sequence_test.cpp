@@ -11,7 +11,7 @@
 #include "sensor/open.h"
 #include "tests/sensor/sequences.h"
 
-namespace patina::sensor {
+namespace patina::sensor::write_sequence_test {
 namespace {
 
 using namespace testing;
@@ -188,4 +188,4 @@ TEST(SequenceWriter, AFolderFilledMeanwhileIsNotReplaced) {
 }
 
 }  // namespace
-}  // namespace patina::sensor
+}  // namespace patina::sensor::write_sequence_test

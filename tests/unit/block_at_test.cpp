@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::block_at_test {
 namespace {
 
 TEST(BlockAt, PointsLieInTheBlockBelowThem) {
@@ -18,4 +18,4 @@ TEST(BlockAt, FarPointsLieInTheFarthestBlockWhoseVoxelsHaveCoordinates) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::block_at_test

@@ -13,7 +13,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/support/file_size_limit.h"
 
-namespace patina {
+namespace patina::block_store_test {
 namespace {
 
 constexpr size_t kWords = gpu::kBlockVoxels;
@@ -444,4 +444,4 @@ TEST(StreamRegion, ACubeMeetsItWhereOneOfItsBlocksMay) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::block_store_test

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace patina::tools {
+namespace patina::tools::bright_surfaces_test {
 namespace {
 
 constexpr uint32_t kTaken = 61;  // of so many pixels one is taken, the first of a row here
@@ -70,4 +70,4 @@ TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::bright_surfaces_test

@@ -5,7 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::camera_test {
 namespace {
 
 TEST(Camera, ProjectsTheOpticalAxisToThePrincipalPoint) {
@@ -61,4 +61,4 @@ TEST(RigidTransform, DefectTellsReflectionsAndNonFiniteEntries) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::camera_test

@@ -8,7 +8,7 @@
 
 #include "shared/surface/extract_surface.h"
 
-namespace patina::surface {
+namespace patina::surface::case_table_test {
 namespace {
 
 constexpr uint32_t kCases = 256;
@@ -140,4 +140,4 @@ TEST(CaseTable, PackedTableHoldsEveryTriangle) {
 }
 
 }  // namespace
-}  // namespace patina::surface
+}  // namespace patina::surface::case_table_test

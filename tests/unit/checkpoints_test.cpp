@@ -6,7 +6,7 @@
 
 #include "engine/store/database.h"
 
-namespace patina::tools {
+namespace patina::tools::checkpoints_test {
 namespace {
 
 /// One frame a second is fused; a state holds `bytes`, and takes `took_s` to keep.
@@ -125,4 +125,4 @@ TEST(Checkpoints, AFileThatCouldNotBeWrittenIsGivenUp) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::checkpoints_test

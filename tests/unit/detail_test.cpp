@@ -6,7 +6,7 @@
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/choose_settings.h"
 
-namespace patina {
+namespace patina::detail_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST(Detail, RecordsFollowTheLevel) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::detail_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::did_you_mean_test {
 namespace {
 
 TEST(DidYouMean, DistanceCountsTheFourMistakesOfTyping) {
@@ -35,4 +35,4 @@ TEST(DidYouMean, WhatIsLikeNoneIsNotGuessed) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::did_you_mean_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::distribution_test {
 namespace {
 
 TEST(Distribution, NineInTenSamplesAreAtMostP90) {
@@ -24,4 +24,4 @@ TEST(Distribution, NineInTenSamplesAreAtMostP90) {
 TEST(Distribution, OfNothingIsZero) { EXPECT_EQ(bench::distribution({}).count, 0u); }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::distribution_test

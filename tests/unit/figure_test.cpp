@@ -14,7 +14,7 @@
 #include "tools/figure/polygonise.h"
 #include "tools/figure/write_ply.h"
 
-namespace patina::figure {
+namespace patina::figure::figure_test {
 namespace {
 
 const std::filesystem::path kShipped = PATINA_SOURCE_DIR "/assets/scenes/figure.ply";
@@ -120,4 +120,4 @@ TEST(Figure, IsTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace patina::figure
+}  // namespace patina::figure::figure_test

@@ -7,7 +7,7 @@
 #include "reconstruction/lights/search_lights.h"
 #include "reconstruction/lights/unseen_light.h"
 
-namespace patina {
+namespace patina::fit_lights_test {
 namespace {
 
 struct Lamp {
@@ -214,4 +214,4 @@ TEST(SearchLights, NothingSeenNothingFound) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fit_lights_test

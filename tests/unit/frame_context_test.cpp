@@ -7,7 +7,7 @@
 
 #include "patina/error.h"
 
-namespace patina {
+namespace patina::frame_context_test {
 namespace {
 
 const Intrinsics kDepthCamera{{8, 6}, 9, 9, 3.5, 2.5, {}}, kColorCamera{{16, 12}, 18, 17, 7.5, 5.5, {}};
@@ -151,4 +151,4 @@ TEST(FrameContext, FramesThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::frame_context_test

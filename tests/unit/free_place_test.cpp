@@ -4,7 +4,7 @@
 
 #include "engine/core/error.h"
 
-namespace patina::tools {
+namespace patina::tools::free_place_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -24,4 +24,4 @@ TEST(FreePlace, WhatTheSystemDoesNotSayIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::free_place_test

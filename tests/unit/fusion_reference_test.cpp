@@ -11,7 +11,7 @@
 #include "tests/reference/fusion/visible_blocks.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina::reference {
+namespace patina::reference::fusion_reference_test {
 namespace {
 
 const Intrinsics kCamera{{64, 48}, 60, 60, 31.5, 23.5, {}};
@@ -142,4 +142,4 @@ TEST(ShadeColorReference, MeansTheColouredVoxelsByTheirShares) {
 }
 
 }  // namespace
-}  // namespace patina::reference
+}  // namespace patina::reference::fusion_reference_test

@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::kept_pictures_test {
 namespace {
 
 constexpr Extent2D kExtent{16, 12};
@@ -138,4 +138,4 @@ TEST(KeptPictures, ASessionThatGoesOnKeepsTheSame) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::kept_pictures_test

@@ -4,7 +4,7 @@
 
 #include "tests/reference/tracking/keyframes.h"
 
-namespace patina::reference {
+namespace patina::reference::keyframes_reference_test {
 namespace {
 
 TEST(KeyframesReference, AStepOfDepthIsBlurredAsTheErrorFunctionSays) {
@@ -33,4 +33,4 @@ TEST(KeyframesReference, DissimilarityIsAShareOfWhatBothKnow) {
 }
 
 }  // namespace
-}  // namespace patina::reference
+}  // namespace patina::reference::keyframes_reference_test

@@ -7,7 +7,7 @@
 #include "engine/core/shader_light.h"
 #include "patina/error.h"
 
-namespace patina {
+namespace patina::lights_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST(Lights, WhatCannotShineIsRefusedAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::lights_test

@@ -11,7 +11,7 @@
 #include "engine/core/error.h"
 #include "tests/export/temporary_folder.h"
 
-namespace patina {
+namespace patina::map_file_test {
 namespace {
 
 using ::testing::AllOf;
@@ -194,4 +194,4 @@ TEST_F(MapFileTest, AFullDiskChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::map_file_test

@@ -13,7 +13,7 @@
 #include "tests/support/tensor_bytes.h"
 #include "tools/bench/random_network.h"
 
-namespace patina::tools {
+namespace patina::tools::network_file_test {
 namespace {
 
 using nlohmann::json;
@@ -200,4 +200,4 @@ TEST_F(NetworkFile, LayersThatCannotFollowOneAnotherAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::network_file_test

@@ -3,7 +3,7 @@
 #include "tests/export/throws.h"
 #include "tools/bench/random_network.h"
 
-namespace patina {
+namespace patina::network_test {
 namespace {
 
 using test::throws_error_with;
@@ -53,4 +53,4 @@ TEST(NetworkShapes, WeightsThatAreTooFewOrTooManyAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::network_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace patina::reference {
+namespace patina::reference::observation_set_test {
 namespace {
 
 Direction at_degrees(double degrees, uint32_t id) {
@@ -102,4 +102,4 @@ TEST(ObservationSet, CoversWhatWasSeenAsWellAsFarthestPointsOfAll) {
 }
 
 }  // namespace
-}  // namespace patina::reference
+}  // namespace patina::reference::observation_set_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::perceptual_test {
 namespace {
 
 TEST(Perceptual, LabOfKnownColorsIsKnown) {
@@ -61,4 +61,4 @@ TEST(Perceptual, WhatNoMaterialHasIsBroughtBackToOne) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::perceptual_test

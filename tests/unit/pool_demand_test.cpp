@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::pool_demand_test {
 namespace {
 
 PoolCount counted(uint32_t capacity, uint32_t free, uint32_t refused = 0, uint32_t deleted = 0) {
@@ -103,4 +103,4 @@ TEST(PoolDemand, BlocksThatWereGivenBackWereAskedFor) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::pool_demand_test

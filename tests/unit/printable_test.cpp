@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::printable_test {
 namespace {
 
 TEST(Printable, TextStaysAsItIs) {
@@ -43,4 +43,4 @@ TEST(Printable, WhatIsNoUtf8IsWrittenAsItsBytes) {
 TEST(Printable, LinesKeepTheirEndsAlone) { EXPECT_EQ(printable_lines("a\033b\nc\r\n"), "a\\x1bb\nc\\x0d\n"); }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::printable_test

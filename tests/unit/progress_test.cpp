@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina::tools {
+namespace patina::tools::progress_test {
 namespace {
 
 TEST(Progress, TimeLeftIsForAPerson) {
@@ -20,4 +20,4 @@ TEST(Progress, NothingIsSaidOfWhatIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::progress_test

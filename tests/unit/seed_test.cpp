@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::seed_test {
 namespace {
 
 TEST(SeedOfDraw, IsItsOwnForARunOfSeedZero) {
@@ -26,4 +26,4 @@ TEST(SeedOfDraw, DiffersForEverySeedOfARun) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::seed_test

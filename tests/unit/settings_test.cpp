@@ -14,7 +14,7 @@
 #include "patina/error.h"
 #include "reconstruction/setting_table.h"
 
-namespace patina {
+namespace patina::settings_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -203,4 +203,4 @@ TEST(Settings, ThePageOfTheDocumentsIsTheTable) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::settings_test

@@ -4,7 +4,7 @@
 
 #include "tools/program/outcome.h"
 
-namespace patina {
+namespace patina::shortfalls_test {
 namespace {
 
 using enum TrackingState;
@@ -41,4 +41,4 @@ TEST(Outcome, IsShortOnceAnythingIs) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::shortfalls_test

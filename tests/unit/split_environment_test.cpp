@@ -9,7 +9,7 @@
 #include "engine/core/error.h"
 #include "shared/reflectance/far_field.h"
 
-namespace patina {
+namespace patina::split_environment_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -137,4 +137,4 @@ TEST(SplitEnvironment, FinePicturesAreAveraged) {
 TEST(SplitEnvironment, NothingIsRefused) { EXPECT_THROW(split_environment({}, glm::dmat3(1)), Error); }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::split_environment_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patina {
+namespace patina::split_triangles_test {
 namespace {
 
 /// A triangle of a plane that leans, with what each vertex has; edges of 0.3, 0.4 and 0.5 m.
@@ -85,4 +85,4 @@ TEST(WithShortEdges, SmallTrianglesAndSurfacesOfColoursAloneStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::split_triangles_test

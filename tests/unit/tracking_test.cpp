@@ -11,7 +11,7 @@
 #include "tests/reference/scenes/analytic_scene.h"
 #include "tests/reference/tracking/track.h"
 
-namespace patina {
+namespace patina::tracking_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -148,4 +148,4 @@ TEST(TrackReference, FindsTheMotionBeforeACornerOfARoom) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::tracking_test

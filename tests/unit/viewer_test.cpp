@@ -11,7 +11,7 @@
 #include "tools/viewer/layers.h"
 #include "tools/viewer/light_handles.h"
 
-namespace patina::tools {
+namespace patina::tools::viewer_test {
 namespace {
 
 constexpr double kExact = 1e-9;
@@ -192,4 +192,4 @@ TEST(FreePlace, IsOneThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::viewer_test

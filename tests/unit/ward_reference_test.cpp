@@ -6,7 +6,7 @@
 
 #include "tests/reference/scenes/sampling.h"
 
-namespace patina::reference {
+namespace patina::reference::ward_reference_test {
 namespace {
 
 constexpr glm::dvec3 kNormal(0, 0, 1);
@@ -71,4 +71,4 @@ TEST(WardReference, IsZeroAtAndBelowTheHorizon) {
 }
 
 }  // namespace
-}  // namespace patina::reference
+}  // namespace patina::reference::ward_reference_test

@@ -30,7 +30,7 @@ constexpr double kPoseLimit_s = 0.02;      // TUM's own limit for its trajectori
 constexpr unsigned kMostFramesAtOnce = 8;  // each holds some 40 MB at 512 x 424
 
 /// A frame's two files.
-struct FramePair {
+struct FrameFiles {
     uint32_t index = 0;
     fs::path truth;
     fs::path run;
@@ -41,13 +41,13 @@ std::string range_of(const std::map<uint32_t, fs::path>& frames) {
 }
 
 /// Files of two folders that have the same numbers; at least one.
-std::vector<FramePair> common_frames(const fs::path& truth_folder, const fs::path& run_folder) {
+std::vector<FrameFiles> common_frames(const fs::path& truth_folder, const fs::path& run_folder) {
     const auto truth_frames = exr_frames(truth_folder), run_frames = exr_frames(run_folder);
     if (truth_frames.empty()) {
         throw Error(truth_folder.string(), " holds no frames: record the sequence with --truth-every N");
     }
     if (run_frames.empty()) throw Error(run_folder.string(), " holds no frames: run with --dump-every N");
-    std::vector<FramePair> pairs;
+    std::vector<FrameFiles> pairs;
     for (const auto& [index, file] : truth_frames) {
         if (const auto found = run_frames.find(index); found != run_frames.end()) {
             pairs.push_back({index, file, found->second});
@@ -60,15 +60,15 @@ std::vector<FramePair> common_frames(const fs::path& truth_folder, const fs::pat
     return pairs;
 }
 
-std::vector<uint32_t> indices_of(std::span<const FramePair> pairs) {
+std::vector<uint32_t> indices_of(std::span<const FrameFiles> pairs) {
     std::vector<uint32_t> indices;
-    for (const FramePair& pair : pairs) indices.push_back(pair.index);
+    for (const FrameFiles& pair : pairs) indices.push_back(pair.index);
     return indices;
 }
 
-std::map<uint32_t, fs::path> truth_files(std::span<const FramePair> pairs) {
+std::map<uint32_t, fs::path> truth_files(std::span<const FrameFiles> pairs) {
     std::map<uint32_t, fs::path> files;
-    for (const FramePair& pair : pairs) files.emplace(pair.index, pair.truth);
+    for (const FrameFiles& pair : pairs) files.emplace(pair.index, pair.truth);
     return files;
 }
 
@@ -115,7 +115,7 @@ struct Reference {
     std::optional<SeenPixels> seen;                 ///< empty where every pixel counts as seen
 };
 
-Reference reference_of(const FramePair& first, std::span<const PosePair> poses, std::string run_id) {
+Reference reference_of(const FrameFiles& first, std::span<const PosePair> poses, std::string run_id) {
     const ExrPlanes frame = ExrPlanes::read(first.run);
     Reference reference{std::move(run_id), frame.extent(), groups_of(frame), frame.file(), {}, {}};
     if (!reference.groups.contains("valid")) throw Error(frame.file(), " has no channel valid");
@@ -134,7 +134,7 @@ void expect_run(const ExrPlanes& frame, const std::string& run_id) {
     throw Error(frame.file(), " is ", named(frame.run_id()), ", but its run.json is ", named(run_id));
 }
 
-FrameMeasurement measure(const FramePair& pair, const Reference& reference) {
+FrameMeasurement measure(const FrameFiles& pair, const Reference& reference) {
     const ExrPlanes truth = ExrPlanes::read(pair.truth), run = ExrPlanes::read(pair.run);
     for (const ExrPlanes* frame : {&truth, &run}) {
         if (frame->extent() == reference.extent) continue;
@@ -204,7 +204,7 @@ class Totals {
     PixelErrorSum normal_deg_;
 };
 
-void measure_frames(std::span<const FramePair> pairs, const Reference& reference, const Settings& settings,
+void measure_frames(std::span<const FrameFiles> pairs, const Reference& reference, const Settings& settings,
                     Totals& totals) {
     const size_t at_once = std::clamp(std::thread::hardware_concurrency(), 1u, kMostFramesAtOnce);
     std::deque<std::future<FrameMeasurement>> pending;
@@ -231,10 +231,10 @@ void name_objects(const fs::path& materials_file, std::vector<ObjectResult>& obj
 }  // namespace
 
 Views evaluate_views(const fs::path& sequence, const fs::path& pictures, const glm::dmat3& truth_from_run) {
-    const std::vector<FramePair> pairs = common_frames(sequence / "truth" / "frames", pictures);
+    const std::vector<FrameFiles> pairs = common_frames(sequence / "truth" / "frames", pictures);
     const ExrPlanes first = ExrPlanes::read(pairs.front().run);
     Reference reference = reference_of(pairs.front(), {}, first.run_id());
-    for (const FramePair& pair : pairs) reference.truth_from_run[pair.index] = truth_from_run;
+    for (const FrameFiles& pair : pairs) reference.truth_from_run[pair.index] = truth_from_run;
     Totals totals;
     measure_frames(pairs, reference, {}, totals);
     Evaluation result;
@@ -256,7 +256,7 @@ Evaluation evaluate(const fs::path& sequence, const fs::path& run, const Setting
     result.sequence = sequence.string();
     result.run = run.string();
     const fs::path truth_folder = sequence / "truth" / "frames", run_folder = run / "frames";
-    const std::vector<FramePair> pairs = common_frames(truth_folder, run_folder);
+    const std::vector<FrameFiles> pairs = common_frames(truth_folder, run_folder);
     result.frames = indices_of(pairs);
     result.truth_frames = exr_frames(truth_folder).size();
     result.run_frames = exr_frames(run_folder).size();

@@ -81,7 +81,7 @@ Image<Pixel> cropped(const std::vector<Pixel>& plane, Extent2D extent, const Box
 }
 
 /// Two frames and what is read from them once.
-struct Frames {
+struct ComparedFrames {
     const ExrPlanes& truth;
     const ExrPlanes& run;
     Image<uint8_t> truth_valid;
@@ -104,7 +104,8 @@ std::vector<Image<float>> cropped_channels(const ExrPlanes& frame, const std::st
     return channels;
 }
 
-ObjectPictures pictures_of(const Frames& frames, uint32_t object, const Box& box, const QuantityChannels& channels) {
+ObjectPictures pictures_of(const ComparedFrames& frames, uint32_t object, const Box& box,
+                           const QuantityChannels& channels) {
     ObjectPictures pictures;
     const Image<uint32_t> objects = cropped(frames.objects.pixels(), frames.objects.extent(), box);
     pictures.region = Image<uint8_t>(box.extent());
@@ -132,14 +133,14 @@ FramePoint measure_object(uint32_t index, const ObjectPictures& pictures) {
 }
 
 /// By object.
-std::map<uint32_t, uint64_t> seen_pixels_of(const Frames& frames) {
+std::map<uint32_t, uint64_t> seen_pixels_of(const ComparedFrames& frames) {
     std::map<uint32_t, uint64_t> seen;
     for (size_t i = 0; i < frames.objects.pixels().size(); ++i)
         seen[frames.objects.pixels()[i]] += frames.seen.empty() ? 1 : frames.seen.pixels()[i];
     return seen;
 }
 
-void measure_objects(uint32_t index, const Frames& frames, FrameMeasurement& result) {
+void measure_objects(uint32_t index, const ComparedFrames& frames, FrameMeasurement& result) {
     const std::set<std::string> groups = groups_of(frames.run);
     std::map<uint32_t, uint64_t> seen = seen_pixels_of(frames);
     for (const auto& [id, region] : regions_in(frames.objects)) {
@@ -155,7 +156,7 @@ void measure_objects(uint32_t index, const Frames& frames, FrameMeasurement& res
     }
 }
 
-void measure_labels(const Frames& frames, LabelOverlap& overlap) {
+void measure_labels(const ComparedFrames& frames, LabelOverlap& overlap) {
     const Image<uint32_t> labels = labels_in(frames.run, frames.run_valid);
     const std::vector<uint32_t>&objects = frames.objects.pixels(), &of_run = labels.pixels();
     for (size_t begin = 0, end = 0; begin < objects.size(); begin = end) {
@@ -164,7 +165,7 @@ void measure_labels(const Frames& frames, LabelOverlap& overlap) {
     }
 }
 
-std::vector<float> depth_errors_mm(const Frames& frames) {
+std::vector<float> depth_errors_mm(const ComparedFrames& frames) {
     const std::vector<float>&truth_m = frames.truth.plane("depth"), &run_m = frames.run.plane("depth");
     std::vector<float> errors;
     for (size_t i = 0; i < truth_m.size(); ++i) {
@@ -188,7 +189,7 @@ struct Normals {
     const std::vector<float>&x, &y, &z;
 };
 
-std::vector<float> normal_errors_deg(const Frames& frames, const glm::dmat3& truth_from_run) {
+std::vector<float> normal_errors_deg(const ComparedFrames& frames, const glm::dmat3& truth_from_run) {
     const Normals truth(frames.truth), run(frames.run);
     std::vector<float> errors;
     for (size_t i = 0; i < frames.truth.extent().area(); ++i) {
@@ -205,7 +206,7 @@ std::vector<float> normal_errors_deg(const Frames& frames, const glm::dmat3& tru
 
 FrameMeasurement measure_frame(uint32_t index, const ExrPlanes& truth, const ExrPlanes& run, const Image<uint8_t>& seen,
                                const glm::dmat3& truth_from_run) {
-    Frames frames{truth, run, validity(truth), validity(run), {}, seen};
+    ComparedFrames frames{truth, run, validity(truth), validity(run), {}, seen};
     expect_finite(truth, frames.truth_valid);
     frames.objects = labels_in(truth, frames.truth_valid);
     FrameMeasurement result;

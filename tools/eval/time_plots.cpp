@@ -10,7 +10,7 @@ namespace patina::eval {
 namespace {
 
 /// What a row of plots shows: a quantity, and what it became by refinement.
-struct RowKind {
+struct PlotKind {
     const char* title;
     const char* channel;  ///< which one stands for all
     const char* symbol;
@@ -18,10 +18,11 @@ struct RowKind {
     std::optional<Quantity> refined;
 };
 
-const std::array kRowKinds = {RowKind{"Diffuse albedo kd", ", red channel", "kd", Quantity::kKdBefore, Quantity::kKd},
-                              RowKind{"Specular albedo ks", ", red channel", "ks", Quantity::kKs, {}},
-                              RowKind{"Roughness alpha", "", "alpha", Quantity::kAlpha, {}},
-                              RowKind{"Re-rendered RGB", ", red channel", "RGB", Quantity::kRgbBefore, Quantity::kRgb}};
+const std::array kRowKinds = {
+    PlotKind{"Diffuse albedo kd", ", red channel", "kd", Quantity::kKdBefore, Quantity::kKd},
+    PlotKind{"Specular albedo ks", ", red channel", "ks", Quantity::kKs, {}},
+    PlotKind{"Roughness alpha", "", "alpha", Quantity::kAlpha, {}},
+    PlotKind{"Re-rendered RGB", ", red channel", "RGB", Quantity::kRgbBefore, Quantity::kRgb}};
 
 using ValueOf = std::function<std::optional<double>(const FramePoint&)>;
 
@@ -51,7 +52,7 @@ Plot empty_plot(const Evaluation& evaluation, size_t object) {
 }
 
 /// Lines of the estimate and of what it was refined into, as far as the object has them.
-void add_lines(Plot& plot, const Evaluation& evaluation, const ObjectResult& object, const RowKind& kind,
+void add_lines(Plot& plot, const Evaluation& evaluation, const ObjectResult& object, const PlotKind& kind,
                const ValueOf& value_of) {
     if (const auto& estimate = object.quantities[kind.estimate]) {
         plot.lines.push_back({"reconstruction", LineRole::kEstimate, over_frames(evaluation, *estimate, value_of)});
@@ -62,7 +63,7 @@ void add_lines(Plot& plot, const Evaluation& evaluation, const ObjectResult& obj
     }
 }
 
-void add_truth(Plot& plot, const Evaluation& evaluation, const ObjectResult& object, const RowKind& kind) {
+void add_truth(Plot& plot, const Evaluation& evaluation, const ObjectResult& object, const PlotKind& kind) {
     const auto& estimate = object.quantities[kind.estimate];
     const auto& measured = estimate || !kind.refined ? estimate : object.quantities[*kind.refined];
     if (!measured) return;
@@ -83,7 +84,7 @@ std::vector<Plot> plots_of(const Evaluation& evaluation, const std::function<voi
 
 std::vector<PlotRow> value_plots(const Evaluation& evaluation) {
     std::vector<PlotRow> rows;
-    for (const RowKind& kind : kRowKinds) {
+    for (const PlotKind& kind : kRowKinds) {
         PlotRow row{std::string(kind.title) + kind.channel, plots_of(evaluation, [&](Plot& plot, const auto& object) {
                         plot.y_label = std::string(kind.symbol) + kind.channel;
                         add_truth(plot, evaluation, object, kind);
@@ -98,7 +99,7 @@ std::vector<PlotRow> value_plots(const Evaluation& evaluation) {
 
 std::vector<PlotRow> error_plots(const Evaluation& evaluation) {
     std::vector<PlotRow> rows;
-    for (const RowKind& kind : kRowKinds) {
+    for (const PlotKind& kind : kRowKinds) {
         PlotRow row{kind.title, plots_of(evaluation, [&](Plot& plot, const auto& object) {
                         plot.y_label = std::string("Mean absolute deviation of ") + kind.symbol;
                         add_lines(plot, evaluation, object, kind, deviation);

@@ -10,7 +10,7 @@ namespace {
 
 // The slider lies over the whole picture and is not seen itself: where the pictures meet is. Its thumb has no width, so
 // that the border is where the pointer is. A finger that moves up or down still scrolls the page.
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kComparisonStyle = R"css(
 .pairs > input { position: absolute; opacity: 0; }
 .pairs > label { display: inline-block; margin: 0 .4rem .6rem 0; padding: .1rem .7rem; border: 1px solid var(--line); border-radius: 1rem; color: var(--quiet); font-size: .85rem; cursor: pointer; }
 .pairs > input:checked + label { color: var(--text); border-color: var(--bar); font-weight: 600; }
@@ -64,6 +64,6 @@ std::string comparison_html(std::span<const PicturePair> pairs) {
     return html + " { display: block; }</style></div>\n";
 }
 
-std::string comparison_style() { return std::string(kStyle); }
+std::string comparison_style() { return std::string(kComparisonStyle); }
 
 }  // namespace patina

@@ -17,7 +17,7 @@ namespace {
 constexpr double kWidth_px = 640, kMost_px = 640;
 constexpr double kMargin_m = 0.1;
 
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kPlanStyle = R"css(
 svg.plan { display: block; width: 100%; max-width: 40rem; height: auto; }
 .plan .path { fill: none; stroke: #d81b60; stroke-width: 2; stroke-linejoin: round; }
 .plan .start { fill: #d81b60; }
@@ -152,6 +152,6 @@ std::string plan_svg(const SceneParts& scene, std::span<const glm::dvec3> path_m
            "</svg>\n";
 }
 
-std::string_view plan_style() { return kStyle; }
+std::string_view plan_style() { return kPlanStyle; }
 
 }  // namespace patina

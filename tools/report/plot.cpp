@@ -23,7 +23,7 @@ constexpr int kMostStepsX = 5, kMostStepsY = 5;
 constexpr std::array<std::string_view, 3> kClasses{"truth", "estimate", "refined"};
 
 // Hues: Okabe and Ito's palette, which the colour-blind can tell apart, with its lightest ones darkened on white.
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kPlotStyle = R"css(
 :root { --hue0: #0072b2; --hue1: #c65600; --hue2: #00835f; --hue3: #a8528a; --hue4: #2b87b8; --hue5: #a87000; }
 @media (prefers-color-scheme: dark) {
   :root { --hue0: #56a8e0; --hue1: #f08a45; --hue2: #34c397; --hue3: #dd93bd; --hue4: #8cc9ee; --hue5: #e6b040; }
@@ -243,6 +243,6 @@ std::string plot_grid(std::span<const Plot> plots) {
     return html + "</div>\n";
 }
 
-std::string_view plot_style() { return kStyle; }
+std::string_view plot_style() { return kPlotStyle; }
 
 }  // namespace patina

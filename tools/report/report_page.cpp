@@ -7,7 +7,7 @@
 namespace patina {
 namespace {
 
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kPageStyle = R"css(
 :root { --ground: #ffffff; --text: #1d2126; --quiet: #5d6670; --line: #d9dde2; --bar: #2f6fb5; --range: #a9c5e3; --warn: #9a4d00; --warn-ground: #fff4e3; }
 @media (prefers-color-scheme: dark) {
   :root { --ground: #16191d; --text: #e3e6ea; --quiet: #98a2ad; --line: #333a42; --bar: #6aa9ea; --range: #34506d; --warn: #ffbe73; --warn-ground: #33260f; }
@@ -54,7 +54,7 @@ std::string report_page(std::string_view title, std::string_view body_html, std:
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{} &middot; Patina</title>\n"
         "<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        html_escaped(title), kStyle, style, body_html);
+        html_escaped(title), kPageStyle, style, body_html);
 }
 
 std::string report_section(std::string_view title, std::string_view content_html) {

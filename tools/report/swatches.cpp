@@ -19,7 +19,7 @@ constexpr uint32_t kSize_px = 112;
 constexpr double kPi = std::numbers::pi, kWhite = 0.8;
 constexpr double kNearest_m = 0.3;  // lamps count as if they were so far away at least
 
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kSwatchStyle = R"css(
 .swatches { display: grid; grid-template-columns: repeat(auto-fill, minmax(8.5rem, 1fr)); gap: 1rem; margin-top: .8rem; }
 .swatches figure { margin: 0; text-align: center; }
 .swatches img { width: 6rem; height: 6rem; border-radius: 50%; margin: 0 auto; }
@@ -116,6 +116,6 @@ std::string swatch_grid(std::span<const SegmentSummary> segments, const Lighting
     return html + "</div>\n";
 }
 
-std::string_view swatch_style() { return kStyle; }
+std::string_view swatch_style() { return kSwatchStyle; }
 
 }  // namespace patina

@@ -26,8 +26,6 @@
 namespace patina::graph {
 namespace {
 
-constexpr uint32_t kAllWrites = kAccessStorageWrite | kAccessTransferWrite;
-
 uint32_t accesses_of(uint32_t stages) {
     uint32_t accesses = kAccessNone;
     if (stages & kStageCompute) {

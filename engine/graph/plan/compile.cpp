@@ -8,8 +8,6 @@
 namespace patina::graph {
 namespace {
 
-constexpr uint32_t kAllWrites = kAccessStorageWrite | kAccessTransferWrite;
-
 /// What any earlier frame may have done: its reads need only be waited for, its writes made available too.
 constexpr Scope kEarlierFrames{kStageCompute | kStageTransfer | kStageIndirect, kAllWrites};
 

@@ -24,6 +24,8 @@ enum AccessBits : uint32_t {
     kAccessTransferWrite = 64,
 };
 
+constexpr uint32_t kAllWrites = kAccessStorageWrite | kAccessTransferWrite;
+
 /// Stages and accesses on one side of a barrier.
 struct Scope {
     uint32_t stages = kStageNone;

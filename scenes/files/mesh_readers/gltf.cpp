@@ -247,9 +247,9 @@ void for_each_triangle(int mode, size_t count, Use use) {
     }  // points and lines have no surface
 }
 
-class Reader {
+class GltfReader {
   public:
-    explicit Reader(const tinygltf::Model& model) : model_(model), reached_(model.nodes.size()) {}
+    explicit GltfReader(const tinygltf::Model& model) : model_(model), reached_(model.nodes.size()) {}
 
     TriangleMesh read() {
         for (const std::string& extension : model_.extensionsRequired) {
@@ -358,7 +358,7 @@ class Reader {
 
 TriangleMesh read_gltf(const fs::path& file, std::span<const uint8_t> bytes) {
     const tinygltf::Model model = load(file, bytes);
-    return Reader(model).read();
+    return GltfReader(model).read();
 }
 
 }  // namespace patina::scenes

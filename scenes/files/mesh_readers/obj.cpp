@@ -32,9 +32,9 @@ class Words {
     std::string_view rest_;
 };
 
-class Reader {
+class ObjReader {
   public:
-    explicit Reader(std::span<const uint8_t> bytes)
+    explicit ObjReader(std::span<const uint8_t> bytes)
         : rest_(reinterpret_cast<const char*>(bytes.data()), bytes.size()) {}
 
     TriangleMesh read() {
@@ -155,6 +155,6 @@ class Reader {
 
 }  // namespace
 
-TriangleMesh read_obj(std::span<const uint8_t> bytes) { return Reader(bytes).read(); }
+TriangleMesh read_obj(std::span<const uint8_t> bytes) { return ObjReader(bytes).read(); }
 
 }  // namespace patina::scenes

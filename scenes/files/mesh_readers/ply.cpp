@@ -46,11 +46,11 @@ struct Header {
 
 std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
-    constexpr std::string_view kSpaces = " \t\r";
-    for (size_t begin = line.find_first_not_of(kSpaces); begin != std::string_view::npos;) {
-        const size_t end = std::min(line.find_first_of(kSpaces, begin), line.size());
+    constexpr std::string_view kBlanks = " \t\r";
+    for (size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+        const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
         words.emplace_back(line.substr(begin, end - begin));
-        begin = line.find_first_not_of(kSpaces, end);
+        begin = line.find_first_not_of(kBlanks, end);
     }
     return words;
 }
@@ -256,9 +256,9 @@ class Body {
 };
 
 /// Takes the vertices and faces from the body.
-class Reader {
+class PlyReader {
   public:
-    Reader(const Header& header, std::span<const uint8_t> bytes)
+    PlyReader(const Header& header, std::span<const uint8_t> bytes)
         : header_(header), body_(header.encoding, bytes.subspan(header.bytes)) {}
 
     TriangleMesh read() {
@@ -396,7 +396,7 @@ class Reader {
 
 TriangleMesh read_ply(std::span<const uint8_t> bytes) {
     const Header header = HeaderReader(bytes).read();
-    return Reader(header, bytes).read();
+    return PlyReader(header, bytes).read();
 }
 
 }  // namespace patina::scenes

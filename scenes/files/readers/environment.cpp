@@ -76,7 +76,7 @@ Extent2D read_extent(const sensor::JsonValue& value) {
     return {2 * height, height};
 }
 
-Image<glm::vec3> read_file(const sensor::JsonValue& name) {
+Image<glm::vec3> read_radiance_file(const sensor::JsonValue& name) {
     const std::filesystem::path file = beside_file(name);
     return located(name, [&] { return read_environment(file); });
 }
@@ -88,7 +88,7 @@ Image<glm::vec3> read_picture(const std::string& kind, const sensor::JsonValue& 
     if (kind == "uniform") return draw(read_uniform(source));
     if (kind == "sky") return draw(read_sky(source));
     if (kind == "studio") return draw(read_studio(source));
-    return read_file(source);
+    return read_radiance_file(source);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ Image<glm::vec3> with_offset(const Image<glm::vec3>& picture, glm::dvec2 offset,
     return rolled(picture, glm::ivec2(glm::round(texels)));
 }
 
-Image<glm::vec3> read_file(const sensor::JsonValue& name) {
+Image<glm::vec3> read_texture_file(const sensor::JsonValue& name) {
     const std::filesystem::path file = beside_file(name);
     return located(name, [&] { return read_texture(file); });
 }
@@ -63,7 +63,7 @@ Texture read_texture(const sensor::JsonValue& value) {
     kinds.emplace_back("file");
     const auto [kind, source] = read_kind(value, kinds, {"repeat", "offset"});
     Texture texture;
-    Image<glm::vec3> picture = kind == "file" ? read_file(source) : read_pattern(kind, source);
+    Image<glm::vec3> picture = kind == "file" ? read_texture_file(source) : read_pattern(kind, source);
     if (const auto repeat = value.find("repeat")) {
         const std::vector<sensor::JsonValue> elements = repeat->elements_of(2);
         texture.repeat = {read_positive(elements[0]), read_positive(elements[1])};

@@ -8,7 +8,7 @@
 #include "spirv/shaders.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::runner_test {
 namespace {
 
 using RunnerTest = GpuTest;
@@ -280,4 +280,4 @@ TEST_F(RunnerTest, TransfersKnowOneChunkAlone) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::runner_test

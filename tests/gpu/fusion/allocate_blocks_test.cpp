@@ -7,7 +7,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/fusion/allocate_blocks.h"
 
-namespace patina {
+namespace patina::allocate_blocks_test {
 namespace {
 
 using ::testing::IsSubsetOf;
@@ -137,4 +137,4 @@ TEST_F(AllocateBlocksTest, SettingsThatVoxelsCannotHoldAreErrors) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::allocate_blocks_test

@@ -8,7 +8,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::grow_voxels_test {
 namespace {
 
 class GrowVoxelsTest : public GpuTest {
@@ -153,4 +153,4 @@ TEST_F(GrowVoxelsTest, WithoutMemoryTheMapStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::grow_voxels_test

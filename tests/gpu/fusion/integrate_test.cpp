@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::integrate_test {
 namespace {
 
 using reference::Observation;
@@ -339,4 +339,4 @@ TEST_F(IntegrateTest, EveryChunkHoldsItsBlocks) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::integrate_test

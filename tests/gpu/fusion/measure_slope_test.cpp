@@ -5,7 +5,7 @@
 #include "tests/reference/fusion/measure_slope.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::measure_slope_test {
 namespace {
 
 using reference::Slope;
@@ -112,4 +112,4 @@ TEST_F(MeasureSlopeTest, AnImageOfAnotherCameraIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::measure_slope_test

@@ -9,7 +9,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/fusion/raycast.h"
 
-namespace patina {
+namespace patina::raycast_test {
 namespace {
 
 const Intrinsics kCamera{{320, 240}, 300, 300, 159.5, 119.5, {}};
@@ -220,4 +220,4 @@ TEST_F(RaycastTest, ChunksDoNotShow) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::raycast_test

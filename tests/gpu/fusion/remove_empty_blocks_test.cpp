@@ -8,7 +8,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::remove_empty_blocks_test {
 namespace {
 
 using Blocks = std::set<reference::BlockCoordinates>;
@@ -184,4 +184,4 @@ TEST_F(RemoveEmptyBlocksTest, AStaleListFreesNothingTwice) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::remove_empty_blocks_test

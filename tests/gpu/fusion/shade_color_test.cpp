@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/fusion/shade_color.h"
 
-namespace patina {
+namespace patina::shade_color_test {
 namespace {
 
 const Intrinsics kCamera{{160, 120}, 150, 150, 79.5, 59.5, {}};
@@ -102,4 +102,4 @@ TEST_F(ShadeColorTest, WhatNoColourCameraSawHasNone) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::shade_color_test

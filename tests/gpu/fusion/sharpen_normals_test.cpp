@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/fusion/sharpen_normals.h"
 
-namespace patina {
+namespace patina::sharpen_normals_test {
 namespace {
 
 using reference::SeenSurface;
@@ -171,4 +171,4 @@ TEST_F(SharpenNormals, MatchesTheReferenceOnWholeGroupsAndTails) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sharpen_normals_test

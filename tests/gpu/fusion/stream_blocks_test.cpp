@@ -9,7 +9,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::stream_blocks_test {
 namespace {
 
 /// Blocks on the host, by key.
@@ -218,4 +218,4 @@ TEST_F(StreamBlocksTest, AKeyThatHasABlockGetsTheVoxelsThatComeBack) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::stream_blocks_test

@@ -9,7 +9,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/fusion/visible_blocks.h"
 
-namespace patina {
+namespace patina::visible_blocks_test {
 namespace {
 
 constexpr int kTile = gpu::kTileEdge;
@@ -152,4 +152,4 @@ TEST_F(VisibleBlocksTest, CamerasBeyondAllCoordinatesSeeNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::visible_blocks_test

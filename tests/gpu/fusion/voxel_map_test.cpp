@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::voxel_map_test {
 namespace {
 
 class VoxelMapTest : public GpuTest {
@@ -239,4 +239,4 @@ TEST_F(VoxelMapTest, CapacitiesOutOfRangeAreErrors) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::voxel_map_test

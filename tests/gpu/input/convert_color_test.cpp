@@ -9,7 +9,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/input/convert_color.h"
 
-namespace patina {
+namespace patina::convert_color_test {
 namespace {
 
 using gpu::kColorClipped;
@@ -159,4 +159,4 @@ TEST_F(ConvertColorTest, AWrongNumberOfPixelsIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::convert_color_test

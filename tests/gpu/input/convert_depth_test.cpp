@@ -6,7 +6,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/input/convert_depth.h"
 
-namespace patina {
+namespace patina::convert_depth_test {
 namespace {
 
 class ConvertDepthTest : public GpuTest {
@@ -157,4 +157,4 @@ TEST_F(ConvertDepthTest, InputWithoutUseIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::convert_depth_test

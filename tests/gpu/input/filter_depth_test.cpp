@@ -4,7 +4,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/input/filter_depth.h"
 
-namespace patina {
+namespace patina::filter_depth_test {
 namespace {
 
 class FilterDepthTest : public GpuTest {
@@ -107,4 +107,4 @@ TEST_F(FilterDepthTest, ASigmaOfZeroIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::filter_depth_test

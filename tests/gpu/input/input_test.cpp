@@ -6,7 +6,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::input_test {
 namespace {
 
 using InputTest = GpuTest;
@@ -73,4 +73,4 @@ TEST_F(InputTest, PassesWithoutAUserAreCulled) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::input_test

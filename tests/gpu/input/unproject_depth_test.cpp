@@ -8,7 +8,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/input/unproject_depth.h"
 
-namespace patina {
+namespace patina::unproject_depth_test {
 namespace {
 
 /// Half floats round a component of a unit vector by at most 2^-11, or 2^-10 where the device rounds towards zero.
@@ -136,4 +136,4 @@ TEST_F(UnprojectDepthTest, AnotherExtentThanTheCamerasIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::unproject_depth_test

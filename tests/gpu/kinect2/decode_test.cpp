@@ -2,7 +2,7 @@
 
 #include "tests/gpu/kinect2/kinect2_test.h"
 
-namespace patina {
+namespace patina::decode_test {
 namespace {
 
 using kinect2::DecodeSettings;
@@ -93,4 +93,4 @@ TEST_F(DecodeTest, TheSameFrameGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::decode_test

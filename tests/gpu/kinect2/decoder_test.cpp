@@ -11,7 +11,7 @@
 #include "tests/gpu/kinect2/kinect2_test.h"
 #include "tests/simulated_kinect2/pages.h"
 
-namespace patina {
+namespace patina::decoder_test {
 namespace {
 
 using sensor::kinect2::RawFrame;
@@ -208,4 +208,4 @@ TEST_F(Kinect2DecoderTest, ARenderedSceneBecomesPhaseImagesAndDepthAgain) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::decoder_test

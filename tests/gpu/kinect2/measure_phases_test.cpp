@@ -4,7 +4,7 @@
 
 #include "tests/gpu/kinect2/kinect2_test.h"
 
-namespace patina {
+namespace patina::measure_phases_test {
 namespace {
 
 class MeasurePhasesTest : public Kinect2Test {
@@ -90,4 +90,4 @@ TEST_F(MeasurePhasesTest, ShortFramesAreAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::measure_phases_test

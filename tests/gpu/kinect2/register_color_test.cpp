@@ -2,7 +2,7 @@
 
 #include "tests/gpu/kinect2/kinect2_test.h"
 
-namespace patina {
+namespace patina::register_color_test {
 namespace {
 
 class RegisterColorTest : public Kinect2Test {
@@ -143,4 +143,4 @@ TEST_F(RegisterColorTest, APictureOfAnotherSizeIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::register_color_test

@@ -3,7 +3,7 @@
 #include "passes/kinect2/unwrap_phases.h"
 #include "tests/gpu/kinect2/kinect2_test.h"
 
-namespace patina {
+namespace patina::undistort_depth_test {
 namespace {
 
 using kinect2::DecodeSettings;
@@ -151,4 +151,4 @@ TEST_F(UndistortDepthTest, ARangeWithoutUseIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::undistort_depth_test

@@ -4,7 +4,7 @@
 
 #include "tests/gpu/kinect2/kinect2_test.h"
 
-namespace patina {
+namespace patina::unwrap_phases_test {
 namespace {
 
 using kinect2::DecodeSettings;
@@ -165,4 +165,4 @@ TEST_F(UnwrapPhasesTest, AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::unwrap_phases_test

@@ -18,7 +18,7 @@
 #include "scenes/render/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::find_lights_test {
 namespace {
 
 struct Lamp {
@@ -312,4 +312,4 @@ TEST_F(FindLights, SameInputGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::find_lights_test

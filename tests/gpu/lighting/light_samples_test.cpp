@@ -13,7 +13,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observed_scene.h"
 
-namespace patina {
+namespace patina::light_samples_test {
 namespace {
 
 constexpr uint32_t kRecords = 4096;
@@ -202,4 +202,4 @@ TEST_F(LightSamples, AnotherSeedDrawsOthers) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::light_samples_test

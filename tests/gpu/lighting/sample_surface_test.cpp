@@ -11,7 +11,7 @@
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/reference/lighting/light_samples.h"
 
-namespace patina {
+namespace patina::sample_surface_test {
 namespace {
 
 const Intrinsics kCamera{{128, 96}, 107, 107, 63.5, 47.5, {}};
@@ -207,4 +207,4 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween)
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sample_surface_test

@@ -7,7 +7,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observed_scene.h"
 
-namespace patina {
+namespace patina::collect_observations_test {
 namespace {
 
 using namespace observed_scene;
@@ -371,4 +371,4 @@ TEST_F(CollectObservations, SettingsOutOfRangeAreErrors) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::collect_observations_test

@@ -9,7 +9,7 @@
 
 // The collection of observations against its reference, on a cluttered scene.
 
-namespace patina {
+namespace patina::collected_reference_test {
 namespace {
 
 using namespace observed_scene;
@@ -122,4 +122,4 @@ TEST_F(CollectedReference, IsAgreedWithWhileTheCameraMoves) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::collected_reference_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observed_scene.h"
 
-namespace patina {
+namespace patina::grow_observations_test {
 namespace {
 
 using namespace observed_scene;
@@ -133,4 +133,4 @@ TEST_F(GrowObservationsTest, NothingIsUpToDateOfNewRecords) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::grow_observations_test

@@ -7,7 +7,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/observation/observation_set.h"
 
-namespace patina {
+namespace patina::insert_observation_test {
 namespace {
 
 /// A random word that stands for a direction of its own (not one on the rim of the octahedron's unfolded square), which
@@ -109,4 +109,4 @@ TEST_F(InsertObservationTest, KeepsTheSameSetAsBruteForceOnRandomStreams) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::insert_observation_test

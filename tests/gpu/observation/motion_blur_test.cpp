@@ -8,7 +8,7 @@
 
 // Observations stay out where motion smears the picture.
 
-namespace patina {
+namespace patina::motion_blur_test {
 namespace {
 
 const Intrinsics kCamera{{160, 120}, 150, 150, 79.5, 59.5, {}};
@@ -84,4 +84,4 @@ TEST_F(MotionBlur, RotationAboutTheAxisLeavesTheMiddleSharp) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::motion_blur_test

@@ -12,7 +12,7 @@
 #include "tests/gpu/observation/observed_scene.h"
 #include "tests/reference/observation/reclaim_records.h"
 
-namespace patina {
+namespace patina::reclaim_records_test {
 namespace {
 
 using namespace observed_scene;
@@ -324,4 +324,4 @@ TEST_F(ReclaimRecordsTest, NothingIsUpToDateOfWhatWasGivenBack) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::reclaim_records_test

@@ -16,7 +16,7 @@
 #include "tests/gpu/observation/observed_scene.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::stream_records_test {
 namespace {
 
 using namespace observed_scene;
@@ -436,4 +436,4 @@ TEST_F(StreamRecordsTest, SumsFollowTheRootsOfTheirLabelsPartByPart) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::stream_records_test

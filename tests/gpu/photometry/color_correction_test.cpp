@@ -6,7 +6,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::color_correction_test {
 namespace {
 
 constexpr uint32_t kFrames = 8;
@@ -125,4 +125,4 @@ TEST_F(ColorCorrectionTest, GainsWithoutFusedColourAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::color_correction_test

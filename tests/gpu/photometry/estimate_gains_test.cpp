@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/photometry/estimate_gains.h"
 
-namespace patina {
+namespace patina::estimate_gains_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -191,4 +191,4 @@ TEST_F(EstimateGains, ApplyingThemDividesAndKeepsMarks) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::estimate_gains_test

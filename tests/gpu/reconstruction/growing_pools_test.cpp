@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/support/same_bytes.h"
 
-namespace patina {
+namespace patina::growing_pools_test {
 namespace {
 
 using ::testing::Each;
@@ -207,4 +207,4 @@ TEST_F(GrowingPoolsTest, MemoryThatRunsOutIsNamedAndTheRunGoesOn) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::growing_pools_test

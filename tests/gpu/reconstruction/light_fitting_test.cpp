@@ -7,7 +7,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::light_fitting_test {
 namespace {
 
 class LightFitting : public GpuTest {
@@ -52,4 +52,4 @@ TEST_F(LightFitting, TheirIntensityFollowsFromWhiteAndTooLargeAMisfitMeansNone) 
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::light_fitting_test

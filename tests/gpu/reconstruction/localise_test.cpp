@@ -3,7 +3,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/scenes/small_office.h"
 
-namespace patina {
+namespace patina::localise_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST_F(Localise, WhatShowsAnotherPlaceIsNotFound) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::localise_test

@@ -9,7 +9,7 @@
 
 // Frames of low exposure before the first one.
 
-namespace patina {
+namespace patina::low_exposure_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -128,4 +128,4 @@ TEST_F(LowExposureTest, AfterTheFirstFrameItTellsNoGeometry) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::low_exposure_test

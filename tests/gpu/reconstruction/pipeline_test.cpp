@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tools/bench/random_network.h"
 
-namespace patina {
+namespace patina::pipeline_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -453,4 +453,4 @@ TEST_F(PipelineTest, EveryBlockTakesColourWhateverFramesAreHeldOut) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::pipeline_test

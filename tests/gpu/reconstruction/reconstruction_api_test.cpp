@@ -6,7 +6,7 @@
 
 #include "patina/reconstruction.h"
 
-namespace patina {
+namespace patina::reconstruction_api_test {
 namespace {
 
 using ::testing::Contains;
@@ -122,4 +122,4 @@ TEST_F(ReconstructionApiTest, WhatCannotBeMetIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::reconstruction_api_test

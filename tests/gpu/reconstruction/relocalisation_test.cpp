@@ -3,7 +3,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/scenes/small_office.h"
 
-namespace patina {
+namespace patina::relocalisation_test {
 namespace {
 
 constexpr uint32_t kFrames = 40;
@@ -118,4 +118,4 @@ TEST_F(Relocalisation, TheSameFramesGiveTheSamePoses) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::relocalisation_test

@@ -7,7 +7,7 @@
 #include "tests/gpu/reconstruction/office_session.h"
 #include "tools/run/run.h"
 
-namespace patina {
+namespace patina::run_undo_test {
 namespace {
 
 /// Frames of the small office; the first is damaged.
@@ -80,4 +80,4 @@ TEST_F(RunUndoTest, HeldOutPicturesAreThoseThatWereNotUndone) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::run_undo_test

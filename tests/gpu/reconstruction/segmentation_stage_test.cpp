@@ -9,7 +9,7 @@
 #include "scenes/render/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::segmentation_stage_test {
 namespace {
 
 /// The built-in scene, small, with what each pixel shows.
@@ -140,4 +140,4 @@ TEST_F(SegmentationStageTest, SegmentationTakesFewDispatches) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::segmentation_stage_test

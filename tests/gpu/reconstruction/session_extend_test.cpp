@@ -11,7 +11,7 @@
 
 // A session that begins from the map of another one.
 
-namespace patina {
+namespace patina::session_extend_test {
 namespace {
 
 using ::testing::AllOf;
@@ -125,4 +125,4 @@ TEST_F(SessionExtendTest, GoesOnAfterABreakItself) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::session_extend_test

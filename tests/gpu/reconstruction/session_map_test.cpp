@@ -16,7 +16,7 @@
 
 // A session that goes on from a map yields what one without a break does.
 
-namespace patina {
+namespace patina::session_map_test {
 namespace {
 
 using ::testing::AllOf;
@@ -176,4 +176,4 @@ TEST_F(SessionMapTest, ACheckpointThatFailsIsAShortfall) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::session_map_test

@@ -5,7 +5,7 @@
 #include "sensor/pose.h"
 #include "tests/export/temporary_folder.h"
 
-namespace patina {
+namespace patina::session_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -186,4 +186,4 @@ TEST_F(SessionTest, WhatCannotBeMetIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::session_test

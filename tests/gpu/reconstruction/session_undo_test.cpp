@@ -11,7 +11,7 @@
 
 // A session that goes back to a model that it kept: what was fused since is as if it had never been.
 
-namespace patina {
+namespace patina::session_undo_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(SessionUndoTest, ADamagedFileIsRefusedBeforeAnythingChanges) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::session_undo_test

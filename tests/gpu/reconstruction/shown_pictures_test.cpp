@@ -9,7 +9,7 @@
 #include "scenes/render/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::shown_pictures_test {
 namespace {
 
 class ShownPicturesTest : public GpuTest {
@@ -128,4 +128,4 @@ TEST_F(ShownPicturesTest, OfMoreThanFitSomeAreShown) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::shown_pictures_test

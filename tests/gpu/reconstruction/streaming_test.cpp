@@ -17,7 +17,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/support/same_bytes.h"
 
-namespace patina {
+namespace patina::streaming_test {
 namespace {
 
 constexpr uint32_t kFrames = 60, kFarEnd = kFrames / 2;
@@ -452,4 +452,4 @@ TEST_F(StreamingTest, WhatAGraphThatWasNotSubmittedWasToBringIsStillAway) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::streaming_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/shading/shading_rig.h"
 
-namespace patina {
+namespace patina::average_segments_test {
 namespace {
 
 using reference::ShadedRecord;
@@ -65,4 +65,4 @@ TEST_F(AverageSegments, AgreesWithTheReferenceAndWithItself) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::average_segments_test

@@ -13,7 +13,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::collect_far_field_test {
 namespace {
 
 const Intrinsics kCamera{{96, 80}, 60, 60, 47.5, 39.5, {}};
@@ -137,4 +137,4 @@ TEST_F(CollectFarFieldTest, PixelsWithoutAColourDoNotCount) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::collect_far_field_test

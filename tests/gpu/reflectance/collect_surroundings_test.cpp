@@ -13,7 +13,7 @@
 #include "tests/gpu/reflectance/surroundings_inputs.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::collect_surroundings_test {
 namespace {
 
 const Intrinsics kCamera{{96, 80}, 60, 60, 47.5, 39.5, {}};
@@ -200,4 +200,4 @@ TEST_F(CollectSurroundingsTest, AFullTableTakesNoNewCells) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::collect_surroundings_test

@@ -7,7 +7,7 @@
 #include "tests/gpu/observation/entered_records.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
 
-namespace patina {
+namespace patina::due_window_test {
 namespace {
 
 class DueWindowTest : public GpuTest {
@@ -84,4 +84,4 @@ TEST_F(DueWindowTest, AboutAsManyHaveATurnAsShould) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::due_window_test

@@ -10,7 +10,7 @@
 #include "tests/reference/reflectance/refine_albedo.h"
 #include "tools/bench/filled_records.h"
 
-namespace patina {
+namespace patina::find_visibility_test {
 namespace {
 
 const Intrinsics kCamera{{192, 144}, 160, 160, 95.5, 71.5, {}};
@@ -381,4 +381,4 @@ TEST_F(FindVisibilityTest, KdOfAGlossySceneWithShadowsIsFoundThroughTheWholePipe
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::find_visibility_test

@@ -7,7 +7,7 @@
 
 #include "tests/gpu/reflectance/radiant_room.h"
 
-namespace patina {
+namespace patina::gather_irradiance_test {
 namespace {
 
 constexpr uint32_t kRaysAtTheEnd = 8, kRays = 8 * kRaysAtTheEnd;
@@ -208,4 +208,4 @@ TEST_F(GatherIrradianceTest, RaysAddUpToASlidingMean) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::gather_irradiance_test

@@ -7,7 +7,7 @@
 
 #include "tests/gpu/reflectance/radiant_room.h"
 
-namespace patina {
+namespace patina::mark_regions_test {
 namespace {
 
 using MarkRegions = RadiantRoomTest;
@@ -65,4 +65,4 @@ TEST_F(MarkRegions, RaysFindTheSameAsWhereEveryRegionIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::mark_regions_test

@@ -11,7 +11,7 @@
 #include "tests/gpu/reflectance/reflectance_rig.h"
 #include "tools/bench/filled_records.h"
 
-namespace patina {
+namespace patina::refine_albedo_test {
 namespace {
 
 using reference::ReceivedLight;
@@ -402,4 +402,4 @@ TEST_F(RefineAlbedoTest, OneObservationIsEnough) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::refine_albedo_test

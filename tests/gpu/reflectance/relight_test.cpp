@@ -6,7 +6,7 @@
 #include "tests/gpu/reflectance/radiant_room.h"
 #include "tests/reference/reflectance/recolor_surfaces.h"
 
-namespace patina {
+namespace patina::relight_test {
 namespace {
 
 constexpr double kKd = 0.5;          // of the room that sends grey() under this light
@@ -134,4 +134,4 @@ TEST_F(RelightTest, ColoursAreThoseOfTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::relight_test

@@ -11,7 +11,7 @@
 #include "tests/gpu/reflectance/reflectance_rig.h"
 #include "tools/bench/filled_records.h"
 
-namespace patina {
+namespace patina::surface_albedo_test {
 namespace {
 
 const glm::dvec3 kWhite(0.8, 0.75, 0.7), kDark(0.2, 0.18, 0.15), kLight(0.5, 0.45, 0.35);
@@ -186,4 +186,4 @@ TEST_F(SurfaceAlbedoTest, TheOrderOfRecordsChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::surface_albedo_test

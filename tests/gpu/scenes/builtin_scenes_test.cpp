@@ -11,7 +11,7 @@
 #include "scenes/render/render.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::builtin_scenes_test {
 namespace {
 
 using namespace scenes;
@@ -113,4 +113,4 @@ TEST_P(BuiltinScenesOnGpu, LightingPathSeesEveryLamp) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::builtin_scenes_test

@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/scenes/encode.h"
 
-namespace patina {
+namespace patina::encode_test {
 namespace {
 
 using scenes::NoiseKey;
@@ -242,4 +242,4 @@ TEST_F(EncodeTest, ColorCodesAreThoseOfSrgbAndClip) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::encode_test

@@ -8,7 +8,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/shading/ward.h"
 
-namespace patina::tools {
+namespace patina::tools::example_renderer_test {
 namespace {
 
 using scenes::ExampleScene;
@@ -234,4 +234,4 @@ TEST_F(ExampleRendererTest, ImagesShowWhatWasReadOfTheirVoxels) {
 }
 
 }  // namespace
-}  // namespace patina::tools
+}  // namespace patina::tools::example_renderer_test

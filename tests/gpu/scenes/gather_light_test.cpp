@@ -10,7 +10,7 @@
 #include "tests/reference/scenes/gather_light.h"
 #include "tests/reference/scenes/sampling.h"
 
-namespace patina {
+namespace patina::gather_light_test {
 namespace {
 
 using scenes::RenderSettings;
@@ -363,4 +363,4 @@ TEST_F(GatherLightTest, RefusesToSampleWithoutSamples) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::gather_light_test

@@ -10,7 +10,7 @@
 #include "spirv/shaders.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::sampling_test {
 namespace {
 
 using gpu::SamplingAnswer;
@@ -329,4 +329,4 @@ TEST_F(SamplingTest, WardSamplesFollowTheirDensity) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sampling_test

@@ -20,7 +20,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tools/synth/truth_frame.h"
 
-namespace patina {
+namespace patina::synth_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ TEST_F(SynthTest, LeavesNothingBehindWhenItFails) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::synth_test

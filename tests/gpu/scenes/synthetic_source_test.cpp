@@ -12,7 +12,7 @@
 #include "scenes/files/scene_file.h"
 #include "tests/gpu/scenes/trace_rig.h"
 
-namespace patina {
+namespace patina::synthetic_source_test {
 namespace {
 
 using scenes::SyntheticScene;
@@ -267,4 +267,4 @@ TEST_F(SyntheticSourceTest, MostObjectsOfCubesShowAHighlight) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::synthetic_source_test

@@ -6,7 +6,7 @@
 #include "scenes/files/scene_file.h"
 #include "tests/gpu/scenes/trace_rig.h"
 
-namespace patina {
+namespace patina::trace_scene_test {
 namespace {
 
 using scenes::RenderSettings;
@@ -157,4 +157,4 @@ TEST_F(TraceSceneTest, RefusesWhatItCannotTrace) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::trace_scene_test

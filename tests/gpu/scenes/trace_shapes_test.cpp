@@ -6,7 +6,7 @@
 
 #include "tests/gpu/scenes/trace_rig.h"
 
-namespace patina {
+namespace patina::trace_shapes_test {
 namespace {
 
 using scenes::SyntheticScene;
@@ -209,4 +209,4 @@ TEST_F(TraceShapesTest, TrianglesWithoutAreaAreNotSeen) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::trace_shapes_test

@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/segmentation/segment_table.h"
 
-namespace patina {
+namespace patina::assign_labels_test {
 namespace {
 
 using reference::SeenSegment;
@@ -343,4 +343,4 @@ TEST_F(AssignLabels, AgreesWithTheReferenceOverManyFrames) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::assign_labels_test

@@ -9,7 +9,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/reference/segmentation/claim_edges.h"
 
-namespace patina {
+namespace patina::claim_edges_test {
 namespace {
 
 using reference::ContactSum;
@@ -238,4 +238,4 @@ TEST_F(JoinFolds, AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::claim_edges_test

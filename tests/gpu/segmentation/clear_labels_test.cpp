@@ -4,7 +4,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::clear_labels_test {
 namespace {
 
 class ClearLabels : public GpuTest {
@@ -67,4 +67,4 @@ TEST_F(ClearLabels, KeysThatFindThePoolFullClearNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::clear_labels_test

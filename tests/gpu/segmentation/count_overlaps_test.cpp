@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/input/input_pictures.h"
 
-namespace patina {
+namespace patina::count_overlaps_test {
 namespace {
 
 class CountOverlaps : public GpuTest {
@@ -114,4 +114,4 @@ TEST_F(CountOverlaps, CollectsTheChromaticityOfLabels) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::count_overlaps_test

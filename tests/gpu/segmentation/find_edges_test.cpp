@@ -8,7 +8,7 @@
 #include "tests/reference/scenes/analytic_scene.h"
 #include "tests/reference/segmentation/frame_segments.h"
 
-namespace patina {
+namespace patina::find_edges_test {
 namespace {
 
 const RigidTransform kHere(1.0);
@@ -186,4 +186,4 @@ TEST_F(FindEdges, AgreeWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::find_edges_test

@@ -5,7 +5,7 @@
 #include "engine/graph/enlargement.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::grow_labels_test {
 namespace {
 
 /// A ring of free labels: `free` of them from `head` on.
@@ -75,4 +75,4 @@ TEST_F(GrowLabelsTest, NewLabelsStandBehindThoseThatWereFreeBefore) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::grow_labels_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/segmentation/frame_segments.h"
 
-namespace patina {
+namespace patina::label_components_test {
 namespace {
 
 /// Every pixel inside with this chance; some of them farther away, which separates them.
@@ -160,4 +160,4 @@ TEST_F(LabelComponents, TheSameBytesEveryTime) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::label_components_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::label_pixels_test {
 namespace {
 
 class LabelPixels : public GpuTest {};
@@ -75,4 +75,4 @@ TEST_F(LabelPixels, LabelsOfAnotherExtentAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::label_pixels_test

@@ -9,7 +9,7 @@
 #include "shared/segmentation/segments.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::list_due_blocks_test {
 namespace {
 
 class ListDueBlocks : public GpuTest {
@@ -132,4 +132,4 @@ TEST_F(ListDueBlocks, NothingInViewIsAnEmptyList) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::list_due_blocks_test

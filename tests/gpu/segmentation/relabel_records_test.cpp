@@ -8,7 +8,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::relabel_records_test {
 namespace {
 
 /// Blocks with records as the observation passes leave them, but for their labels, which are random.
@@ -112,4 +112,4 @@ TEST_F(RelabelRecords, EachBlockHasOneTurnInWhichItsRecordsGetTheRootsOfTheirLab
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::relabel_records_test

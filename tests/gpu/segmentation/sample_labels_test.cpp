@@ -7,7 +7,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::sample_labels_test {
 namespace {
 
 class SampleLabels : public GpuTest {
@@ -125,4 +125,4 @@ TEST_F(SampleLabels, TheSideBehindComesBeforeTheSideInFront) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sample_labels_test

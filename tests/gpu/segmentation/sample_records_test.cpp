@@ -9,7 +9,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/entered_records.h"
 
-namespace patina {
+namespace patina::sample_records_test {
 namespace {
 
 /// Records as the observation passes leave them, by label and number of observations.
@@ -270,4 +270,4 @@ TEST_F(SampleRecords, MoreDrawsThanLargeSegmentsKeepAreRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sample_records_test

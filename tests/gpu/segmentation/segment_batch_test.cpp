@@ -4,7 +4,7 @@
 
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::segment_batch_test {
 namespace {
 
 class SegmentBatchTest : public GpuTest {
@@ -38,4 +38,4 @@ TEST_F(SegmentBatchTest, ABatchThatCannotBeDispatchedIsRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::segment_batch_test

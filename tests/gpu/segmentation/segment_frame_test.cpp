@@ -16,7 +16,7 @@
 #include "tests/reference/scenes/analytic_scene.h"
 #include "tests/reference/segmentation/frame_segments.h"
 
-namespace patina {
+namespace patina::segment_frame_test {
 namespace {
 
 using reference::DistanceField;
@@ -336,4 +336,4 @@ TEST_F(SegmentFrame, SettingsOutOfRangeAreErrors) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::segment_frame_test

@@ -3,7 +3,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::sweep_away_test {
 namespace {
 
 using SweepAway = GpuTest;
@@ -38,4 +38,4 @@ TEST_F(SweepAway, VoxelsThatAreAwayCountForTheRootsOfTheirLabels) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sweep_away_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::sweep_labels_test {
 namespace {
 
 class SweepLabels : public GpuTest {
@@ -85,4 +85,4 @@ TEST_F(SweepLabels, EachBlockHasOneTurnInWhichLabelsAreReplacedByRootsAndCounted
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sweep_labels_test

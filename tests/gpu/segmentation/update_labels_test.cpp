@@ -7,7 +7,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/segmentation/label_rig.h"
 
-namespace patina {
+namespace patina::update_labels_test {
 namespace {
 
 constexpr uint32_t kSegments = 40;
@@ -267,4 +267,4 @@ TEST_F(UpdateLabels, InFourTurnsEveryVoxelOfASettledBlockHasOne) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::update_labels_test

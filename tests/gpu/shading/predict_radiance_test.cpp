@@ -13,7 +13,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/shading/shading_rig.h"
 
-namespace patina {
+namespace patina::predict_radiance_test {
 namespace {
 
 using reference::ShadedRecord;
@@ -486,4 +486,4 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::predict_radiance_test

@@ -19,7 +19,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/shading/reflect_surroundings.h"
 
-namespace patina {
+namespace patina::reflect_surroundings_test {
 namespace {
 
 constexpr double kHalf_m = 0.4;
@@ -185,4 +185,4 @@ TEST_F(ReflectSurroundings, WithHardlyAnyGlossTheGatheredLightIsEnough) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::reflect_surroundings_test

@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/shading/restore_detail.h"
 
-namespace patina {
+namespace patina::restore_detail_test {
 namespace {
 
 using reference::DetailView;
@@ -196,4 +196,4 @@ TEST_F(RestoreDetail, AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::restore_detail_test

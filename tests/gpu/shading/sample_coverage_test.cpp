@@ -6,7 +6,7 @@
 #include "tests/gpu/shading/shading_rig.h"
 #include "tests/reference/shading/sample_coverage.h"
 
-namespace patina {
+namespace patina::sample_coverage_test {
 namespace {
 
 const RigidTransform kPose{1.0};
@@ -78,4 +78,4 @@ TEST_F(SampleCoverage, AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sample_coverage_test

@@ -10,7 +10,7 @@
 #include "tests/gpu/shading/shading_rig.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::sample_reflectance_test {
 
 namespace {
 
@@ -137,4 +137,4 @@ TEST_F(SampleReflectance, AgreesWithTheReferenceOnRandomRecords) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::sample_reflectance_test

@@ -11,7 +11,7 @@
 #include "tests/gpu/specular/fit_ward_rig.h"
 #include "tests/reference/specular/bound_materials.h"
 
-namespace patina {
+namespace patina::bound_materials_test {
 namespace {
 
 using reference::BoundedMaterial;
@@ -210,4 +210,4 @@ TEST_F(BoundMaterials, OfFittedSegmentsHoldTheTruth) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::bound_materials_test

@@ -8,7 +8,7 @@
 #include "shared/segmentation/segments.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::choose_segments_test {
 namespace {
 
 class ChooseSegmentsTest : public GpuTest {
@@ -172,4 +172,4 @@ TEST_F(ChooseSegmentsTest, ALabelThatIsHandedOutAnewForgets) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::choose_segments_test

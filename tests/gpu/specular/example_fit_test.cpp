@@ -4,7 +4,7 @@
 
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::example_fit_test {
 namespace {
 
 using scenes::ExampleScene;
@@ -61,4 +61,4 @@ TEST_F(ExampleFitTest, FindsTheMaterialsOfCleanScenes) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::example_fit_test

@@ -13,7 +13,7 @@
 #include "tests/gpu/specular/fit_ward_rig.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
-namespace patina {
+namespace patina::fit_mirrors_test {
 namespace {
 
 constexpr double kWall_m = 1.5;       // in front of the plane z = 0
@@ -245,4 +245,4 @@ TEST_F(FitMirrorsTest, TheOrderOfVoxelsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fit_mirrors_test

@@ -4,7 +4,7 @@
 #include "passes/specular/fit_ward.h"
 #include "tests/gpu/specular/fit_ward_rig.h"
 
-namespace patina {
+namespace patina::fit_ward_clipping_test {
 namespace {
 
 using reference::Ward;
@@ -150,4 +150,4 @@ TEST_F(FitWardTest, WhatWasSummedUpOfAForgottenObjectDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fit_ward_clipping_test

@@ -6,7 +6,7 @@
 #include "tests/gpu/observation/entered_records.h"
 #include "tests/gpu/specular/fit_ward_rig.h"
 
-namespace patina {
+namespace patina::fit_ward_test {
 namespace {
 
 using reference::Ward;
@@ -280,4 +280,4 @@ TEST_F(FitWardTest, AMaterialsVersionChangesOnlyWithTheMaterial) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fit_ward_test

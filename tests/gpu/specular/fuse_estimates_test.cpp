@@ -8,7 +8,7 @@
 #include "passes/specular/perceptual.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::fuse_estimates_test {
 namespace {
 
 class FuseEstimates : public GpuTest {
@@ -136,4 +136,4 @@ TEST_F(FuseEstimates, WhatSaysNothingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::fuse_estimates_test

@@ -13,7 +13,7 @@
 #include "tests/reference/specular/hemi_image.h"
 #include "tools/bench/filled_records.h"
 
-namespace patina {
+namespace patina::hemi_images_test {
 namespace {
 
 constexpr size_t kSide = gpu::kHemiSide, kPixels = gpu::kHemiPixels, kSamples = gpu::kHemiSamples;
@@ -213,4 +213,4 @@ TEST_F(HemiImagesTest, EveryVoxelIsAsLikelyToBeDrawn) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::hemi_images_test

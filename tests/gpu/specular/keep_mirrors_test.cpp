@@ -3,7 +3,7 @@
 #include "shared/reflectance/reflectance.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::keep_mirrors_test {
 namespace {
 
 constexpr uint32_t kLabels = 70, kMaterials = 69;  // no multiples of a group
@@ -46,4 +46,4 @@ TEST_F(KeepMirrorsTest, OnlySureMirrorsStay) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::keep_mirrors_test

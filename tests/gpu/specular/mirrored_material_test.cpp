@@ -6,7 +6,7 @@
 #include "passes/specular/bound_materials.h"
 #include "tests/gpu/specular/fit_ward_rig.h"
 
-namespace patina {
+namespace patina::mirrored_material_test {
 namespace {
 
 constexpr uint32_t kLabel = 2;
@@ -109,4 +109,4 @@ TEST_F(MirroredMaterial, ItsIntervalIsThatOfWhatSurroundingsTell) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::mirrored_material_test

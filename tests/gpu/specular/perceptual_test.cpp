@@ -7,7 +7,7 @@
 #include "spirv/shaders.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::perceptual_test {
 namespace {
 
 class PerceptualShader : public GpuTest {};
@@ -49,4 +49,4 @@ TEST_F(PerceptualShader, AgreesWithTheProcessorAndReturnsToTheMaterial) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::perceptual_test

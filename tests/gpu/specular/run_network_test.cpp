@@ -8,7 +8,7 @@
 #include "tests/reference/specular/network.h"
 #include "tools/bench/random_network.h"
 
-namespace patina {
+namespace patina::run_network_test {
 namespace {
 
 using reference::Activations;
@@ -282,4 +282,4 @@ TEST_F(RunNetwork, WhatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::run_network_test

@@ -5,7 +5,7 @@
 
 // Materials that the device estimated, in a table that grows.
 
-namespace patina {
+namespace patina::segment_materials_test {
 namespace {
 
 constexpr uint32_t kBefore = 4, kAfter = 8;
@@ -81,4 +81,4 @@ TEST_F(SegmentMaterialsTest, WhatWasSetBeyondTheCapacityComesWithTheGrowth) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::segment_materials_test

@@ -11,7 +11,7 @@
 #include "shared/specular/specular_estimates.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::trained_network_test {
 namespace {
 
 const std::filesystem::path kFile = PATINA_SOURCE_DIR "/assets/hemicnn.safetensors";
@@ -79,4 +79,4 @@ TEST_F(TrainedNetwork, GivesNearlyThatInHalves) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::trained_network_test

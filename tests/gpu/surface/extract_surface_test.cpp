@@ -15,7 +15,7 @@
 #include "tests/reference/surface/mesh_facts.h"
 #include "tests/support/same_bytes.h"
 
-namespace patina {
+namespace patina::extract_surface_test {
 namespace {
 
 const Intrinsics kCamera{{320, 240}, 300, 300, 159.5, 119.5, {}};
@@ -386,4 +386,4 @@ TEST_F(ExtractSurfaceTest, SameBytesWhereverInTheChunksTheBlocksLie) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::extract_surface_test

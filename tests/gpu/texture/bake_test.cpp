@@ -18,7 +18,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/texture/balance.h"
 
-namespace patina {
+namespace patina::bake_test {
 namespace {
 
 using reference::BakePicture;
@@ -364,4 +364,4 @@ TEST_F(BakeTest, ANearPictureCountsForMuchMoreThanAFarOne) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::bake_test

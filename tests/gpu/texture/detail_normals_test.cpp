@@ -10,7 +10,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/reference/texture/detail.h"
 
-namespace patina {
+namespace patina::detail_normals_test {
 namespace {
 
 using reference::PlacedTriangle;
@@ -112,4 +112,4 @@ TEST_F(DetailNormalsTest, WhatIsNotKnownIsFlat) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::detail_normals_test

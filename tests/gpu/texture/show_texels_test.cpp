@@ -15,7 +15,7 @@
 #include "tests/reference/texture/balance.h"
 #include "tests/reference/texture/view.h"
 
-namespace patina {
+namespace patina::show_texels_test {
 namespace {
 
 using reference::BakePicture;
@@ -269,4 +269,4 @@ TEST_F(ShowTexels, UnderOtherLightItIsTheAlbedoInThat) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::show_texels_test

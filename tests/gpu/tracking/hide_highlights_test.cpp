@@ -8,7 +8,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/tracking/track_rig.h"
 
-namespace patina {
+namespace patina::hide_highlights_test {
 namespace {
 
 struct Pictures {
@@ -76,4 +76,4 @@ TEST_F(HideHighlightsTest, AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::hide_highlights_test

@@ -13,7 +13,7 @@
 #include "patina/camera.h"
 #include "tests/gpu/gpu_test.h"
 
-namespace patina {
+namespace patina::keyframes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -389,4 +389,4 @@ TEST_F(Keyframes, RefusesSettingsThatCannotBeMet) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::keyframes_test

@@ -4,7 +4,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/tracking/track_rig.h"
 
-namespace patina {
+namespace patina::pack_track_test {
 namespace {
 
 using reference::TrackReading;
@@ -184,4 +184,4 @@ TEST_F(PackTrackTest, HalvingNothingIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::pack_track_test

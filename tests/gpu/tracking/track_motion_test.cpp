@@ -8,7 +8,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/tracking/track_rig.h"
 
-namespace patina {
+namespace patina::track_motion_test {
 namespace {
 
 using reference::DistanceField;
@@ -240,4 +240,4 @@ TEST_F(TrackMotionTest, ANoiseOfNothingIsAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::track_motion_test

@@ -5,7 +5,7 @@
 #include "tests/gpu/input/input_pictures.h"
 #include "tests/gpu/tracking/track_rig.h"
 
-namespace patina {
+namespace patina::tracking_test {
 namespace {
 
 using reference::DistanceField;
@@ -290,4 +290,4 @@ TEST_F(TrackingTest, SettingsOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::tracking_test

@@ -11,7 +11,7 @@
 #include "tests/reference/viewer/draw_layer.h"
 #include "tools/viewer/layers.h"
 
-namespace patina {
+namespace patina::draw_layer_test {
 namespace {
 
 using reference::LayerPixel;
@@ -145,4 +145,4 @@ TEST_F(DrawLayer, ImagesOfDifferentExtentsAreAnError) {
 }
 
 }  // namespace
-}  // namespace patina
+}  // namespace patina::draw_layer_test

@@ -10,7 +10,7 @@ namespace patina::reference {
 
 namespace {
 
-using Cell = std::array<int, 7>;  // kind of sum, then what it is of
+using SumKey = std::array<int, 7>;  // kind of sum, then what it is of
 
 struct Mean {
     glm::dvec3 reflected{0}, light{0};
@@ -55,7 +55,7 @@ bool tells(const ToldAlbedo& record) {
 
 /// The mean over the corners of a cell of so many dimensions around a place, those that there are.
 template <size_t N>
-Mean interpolated(const std::map<Cell, Mean>& sums, const std::array<double, N>& at, Cell cell, size_t first) {
+Mean interpolated(const std::map<SumKey, Mean>& sums, const std::array<double, N>& at, SumKey cell, size_t first) {
     Mean all;
     for (size_t corner = 0; corner < size_t{1} << N; ++corner) {
         double share = 1;
@@ -81,7 +81,7 @@ constexpr int kLook = 0, kTint = 1, kLight = 2;
 }  // namespace
 
 std::vector<glm::dvec3> surface_albedo(const std::vector<ToldAlbedo>& records) {
-    std::map<Cell, Mean> sums;
+    std::map<SumKey, Mean> sums;
     for (const ToldAlbedo& record : records) {
         const Place place = place_of(record);
         const int x = nearest(place.at[0]), y = nearest(place.at[1]), z = nearest(place.at[2]);

@@ -13,28 +13,28 @@ namespace {
 
 using scenes::SceneObject;
 
-struct Owned {
+struct TracedShape {
     Primitive surface;
     const SceneObject* object;
 };
 
-using World = std::vector<Owned>;
+using TracedWorld = std::vector<TracedShape>;
 
 struct Hit {
     double distance_m = INFINITY;
-    const Owned* what = nullptr;
+    const TracedShape* what = nullptr;
 };
 
-Hit nearest(const World& world, glm::dvec3 origin_m, glm::dvec3 direction) {
+Hit nearest(const TracedWorld& world, glm::dvec3 origin_m, glm::dvec3 direction) {
     Hit best;
-    for (const Owned& owned : world) {
+    for (const TracedShape& owned : world) {
         const auto distance_m = intersect(owned.surface, origin_m, direction);
         if (distance_m && *distance_m < best.distance_m) best = {*distance_m, &owned};
     }
     return best;
 }
 
-bool occluded(const World& world, glm::dvec3 from_m, glm::dvec3 light_m) {
+bool occluded(const TracedWorld& world, glm::dvec3 from_m, glm::dvec3 light_m) {
     return nearest(world, from_m, glm::normalize(light_m - from_m)).distance_m < glm::distance(light_m, from_m);
 }
 
@@ -55,7 +55,7 @@ glm::dvec3 kd_at(const SceneObject& object, glm::dvec2 uv) {
            (1 - (x - left)) * (y - top) * texel(left, top + 1) + (x - left) * (y - top) * texel(left + 1, top + 1);
 }
 
-TracedPixel shade(const World& world, const scenes::SyntheticScene& scene, const Hit& hit, glm::dvec3 viewer_m,
+TracedPixel shade(const TracedWorld& world, const scenes::SyntheticScene& scene, const Hit& hit, glm::dvec3 viewer_m,
                   glm::dvec3 direction, bool shadows) {
     const glm::dvec3 point_m = viewer_m + hit.distance_m * direction;
     const Spot spot = spot_at(hit.what->surface, point_m, viewer_m);
@@ -93,7 +93,7 @@ std::optional<TracedPixel> see_lamp(const Light& light, glm::dvec3 origin_m, glm
 
 Image<TracedPixel> trace_scene(const scenes::SyntheticScene& scene, const Intrinsics& camera,
                                const RigidTransform& world_from_camera, bool shadows) {
-    World world;
+    TracedWorld world;
     for (const SceneObject& object : scene.objects)
         for (const scenes::Part& part : object.parts)
             for (const Primitive& surface : surfaces_of(part)) world.push_back({surface, &object});

@@ -12,7 +12,7 @@ namespace {
 double fall(double value, double all, double none) { return std::clamp((value - none) / (all - none), 0.0, 1.0); }
 
 /// A record near the point.
-struct Neighbour {
+struct NearRecord {
     const ShadedRecord* record;
     double weight;     ///< of its surface; 0: it is another one
     double share;      ///< in trilinear interpolation; below 0 where it has none
@@ -20,8 +20,8 @@ struct Neighbour {
 };
 
 /// The records of 2^3 voxels around the point, or, with margin 1, of 4^3.
-std::vector<Neighbour> neighbours(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, int margin) {
-    std::vector<Neighbour> result;
+std::vector<NearRecord> near_records(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, int margin) {
+    std::vector<NearRecord> result;
     const glm::dvec3 at = point_m / scene.voxel_m - 0.5;
     const glm::ivec3 low(glm::floor(at));
     for (int z = low.z - margin; z <= low.z + 1 + margin; ++z) {
@@ -46,10 +46,10 @@ bool is_known(const ShadedRecord& record) { return record.certainty != glm::dvec
 
 /// The nearest of the point's own surface, or, where there is none, of another.
 template <class Wanted>
-const ShadedRecord* nearest(const std::vector<Neighbour>& all, const Wanted& wanted) {
+const ShadedRecord* nearest(const std::vector<NearRecord>& all, const Wanted& wanted) {
     const ShadedRecord* best = nullptr;
     double least = std::numeric_limits<double>::max();
-    for (const Neighbour& neighbour : all) {
+    for (const NearRecord& neighbour : all) {
         const double distance2 = neighbour.distance2 + (neighbour.weight > 0 ? 0 : 100);
         if (!wanted(*neighbour.record) || distance2 >= least) continue;
         least = distance2;
@@ -64,10 +64,10 @@ struct Albedo {
     glm::dvec3 weight{0};
 };
 
-Albedo mean_kd(const std::vector<Neighbour>& around) {
+Albedo mean_kd(const std::vector<NearRecord>& around) {
     glm::dvec3 sum(0), weights(0);
     double shares = 0;
-    for (const Neighbour& neighbour : around) {
+    for (const NearRecord& neighbour : around) {
         const double share = neighbour.weight * neighbour.share;
         const glm::dvec3 weight = share * neighbour.record->certainty;
         sum += weight * neighbour.record->kd;
@@ -78,10 +78,10 @@ Albedo mean_kd(const std::vector<Neighbour>& around) {
 }
 
 /// The albedo of the surface around, of the records that know it.
-std::optional<glm::dvec3> mean_around(const std::vector<Neighbour>& near) {
+std::optional<glm::dvec3> mean_around(const std::vector<NearRecord>& near) {
     glm::dvec3 sum(0);
     double shares = 0;
-    for (const Neighbour& neighbour : near) {
+    for (const NearRecord& neighbour : near) {
         if (!neighbour.record->around) continue;
         const double share = neighbour.weight * neighbour.share;
         sum += share * *neighbour.record->around;
@@ -91,9 +91,9 @@ std::optional<glm::dvec3> mean_around(const std::vector<Neighbour>& near) {
 }
 
 /// The share of the surface around the point that light i reaches; nothing where no record knows.
-std::optional<double> share_lit(const std::vector<Neighbour>& around, size_t i) {
+std::optional<double> share_lit(const std::vector<NearRecord>& around, size_t i) {
     double lit = 0, all = 0;
-    for (const Neighbour& neighbour : around) {
+    for (const NearRecord& neighbour : around) {
         if (!neighbour.record->marched) continue;
         const double weight = neighbour.weight * neighbour.share;
         all += weight;
@@ -120,11 +120,11 @@ std::map<uint32_t, glm::dvec3> average_segments(const std::map<std::array<int, 3
 }
 
 ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 viewer_m) {
-    std::vector<Neighbour> around = neighbours(scene, point_m, normal, 0);
-    std::erase_if(around, [](const Neighbour& n) { return n.weight == 0; });
-    const std::vector<Neighbour> farther = neighbours(scene, point_m, normal, 1);
+    std::vector<NearRecord> around = near_records(scene, point_m, normal, 0);
+    std::erase_if(around, [](const NearRecord& n) { return n.weight == 0; });
+    const std::vector<NearRecord> farther = near_records(scene, point_m, normal, 1);
     const bool filled =
-        std::none_of(around.begin(), around.end(), [](const Neighbour& n) { return is_known(*n.record); });
+        std::none_of(around.begin(), around.end(), [](const NearRecord& n) { return is_known(*n.record); });
     const ShadedRecord* fill = filled ? nearest(farther, is_known) : nullptr;
     const auto labelled = [](const ShadedRecord& record) { return record.label != 0; };
     const ShadedRecord* segment = nearest(around, labelled);

@@ -10,7 +10,7 @@ namespace {
 
 double mean(glm::dvec3 v) { return (v.x + v.y + v.z) / 3; }
 
-struct Neighbour {
+struct NearPixel {
     double share;
     glm::dvec3 kd, picture_kd, apparent;
     double shadow;
@@ -31,10 +31,10 @@ glm::dvec3 apparent(const DetailView& view, Pixel p) {
 
 /// The pixels of every second place of a 5 x 5 pattern, two voxels wide, that show the same surface where it is lit and
 /// known.
-std::vector<Neighbour> neighbours(const DetailView& view, Pixel p) {
+std::vector<NearPixel> near_pixels(const DetailView& view, Pixel p) {
     const glm::dvec4 hit = view.position_m.at(p.x, p.y);
     const double step_px = std::max(view.voxel_m * view.focal_px / hit.w / 2, 1.0);
-    std::vector<Neighbour> found;
+    std::vector<NearPixel> found;
     for (int dy = -2; dy <= 2; ++dy) {
         for (int dx = -2; dx <= 2; ++dx) {
             if ((dx + dy) % 2 != 0) continue;
@@ -63,8 +63,8 @@ Albedos restored(const DetailView& view, Pixel p) {
     const glm::dvec3 known(view.kd.at(p.x, p.y)), of_picture(view.picture_kd.at(p.x, p.y));
     glm::dvec3 mean_kd(0), mean_picture_kd(0), mean_apparent(0);
     double shares = 0, brightness = 0, variance = 0, least = view.light.at(p.x, p.y).a, most = least;
-    const std::vector<Neighbour> around = neighbours(view, p);
-    for (const Neighbour& n : around) {
+    const std::vector<NearPixel> around = near_pixels(view, p);
+    for (const NearPixel& n : around) {
         shares += n.share;
         mean_kd += n.share * n.kd;
         mean_picture_kd += n.share * n.picture_kd;
@@ -74,7 +74,7 @@ Albedos restored(const DetailView& view, Pixel p) {
     }
     if (shares == 0) return {known, of_picture};
     brightness = mean(mean_apparent) / shares;
-    for (const Neighbour& n : around) variance += n.share * std::pow(mean(n.apparent) - brightness, 2) / shares;
+    for (const NearPixel& n : around) variance += n.share * std::pow(mean(n.apparent) - brightness, 2) / shares;
     const double contrast2 = variance / (brightness * brightness);
     const double doubt = 0.1 + 0.5 * mean(glm::dvec3(view.ks_alpha.at(p.x, p.y))) / std::max(mean(known), 0.01);
     const double border = std::clamp((most - least - 0.05) / 0.2, 0.0, 1.0);
