@@ -101,7 +101,7 @@ struct SessionOptions {
     std::filesystem::path map;
     uint32_t checkpoint_every = 0;  ///< the state is written to the map every so many frames, and at the end; 0: by
                                     ///< Session::checkpoint() alone
-    /// As `checkpoint_every`: at the end alone. Another session replaces such a map, also where this one was stopped.
+    /// As `checkpoint_every`: at the end alone. A session that does not come to it leaves the file as it was.
     static constexpr uint32_t kAtEnd = UINT32_MAX;
     /// The map of another session, which this one begins from, such as one of the same room on another day: its model,
     /// its world and its lights (`lighting` is not used). Given poses must be in that world. A camera that is tracked

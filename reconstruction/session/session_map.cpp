@@ -12,10 +12,8 @@ namespace patina {
 namespace {
 
 /// How far a session is, for people and for open_map().
-nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const SequenceInfo& info, bool ended,
-                                     bool replaceable) {
-    nlohmann::ordered_json json{
-        {"read", ledger.read()}, {"used", ledger.used()}, {"ended", ended}, {"replaceable", ended || replaceable}};
+nlohmann::ordered_json progress_json(const sensor::Ledger& ledger, const SequenceInfo& info, bool ended) {
+    nlohmann::ordered_json json{{"read", ledger.read()}, {"used", ledger.used()}, {"ended", ended}};
     if (info.frames) json["frames"] = *info.frames;
     return json;
 }
@@ -59,7 +57,7 @@ void SessionCore::open_map() {
     map_ = std::make_unique<MapFile>(options_.map);
     if (!map_->has_state()) return;
     const auto progress = map_->expect_json("progress");
-    if (progress.value("ended", false) || progress.value("replaceable", false)) return;
+    if (progress.value("ended", false)) return;
     throw Error(
         hinted(patina::text("'", options_.map.string(), "' holds a session that has not come to its end, after ",
                             progress.value("read", 0), " frames; go on with it, or remove the file"),
@@ -131,8 +129,7 @@ void SessionCore::checkpoint(const MoreState& more) {
     map_->set_text("session", text_of(identity_of(options_, info_, settings())));
     map_->set_text("detail", text_of(detail_json(detail_)));
     map_->set_text("lights", text_of(lights_json(illumination_)));
-    map_->set_text("progress",
-                   text_of(progress_json(ledger_, info_, ended_, options_.checkpoint_every == SessionOptions::kAtEnd)));
+    map_->set_text("progress", text_of(progress_json(ledger_, info_, ended_)));
     SessionLight light{illumination_, no_light_because_, shortfalls_};
     StateWriter writer(device_, *map_);
     patina::visit(writer, light);
@@ -154,8 +151,7 @@ void SessionCore::forget_empty_map() {
 
 void SessionCore::mark_ended() {
     Transaction change(map_->database());
-    map_->set_text("progress",
-                   text_of(progress_json(ledger_, info_, ended_, options_.checkpoint_every == SessionOptions::kAtEnd)));
+    map_->set_text("progress", text_of(progress_json(ledger_, info_, ended_)));
     change.commit();
 }
 

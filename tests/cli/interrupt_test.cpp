@@ -78,11 +78,11 @@ TEST_F(Interrupt, WhatWasFusedIsExtractedAndWritten) {
 }
 
 TEST_F(Interrupt, AnEarlierRunThatFinishedStays) {
-    fs::create_directory(out());
-    write_text(out() / "scene.glb", "an earlier scene");
-    write_text(out() / "run.json", R"({"format": "patina-run"})");
+    run_quietly(small_cubes(), {"--frames", "2", "--lighting", "none", "--detail", "coarse", "--texture", "off"});
     const auto earlier = files_in(out());
-    Program program(endless({"--lighting", "none", "--dump-every", "1"}));
+    EXPECT_TRUE(earlier.contains("map.sqlite"));
+    Program program({"run", "synthetic:cubes", "--frames", "100000", "--out", out(), "--detail", "coarse", "--texture",
+                     "off", "--lighting", "none", "--dump-every", "1"});
     await_frames(program);
     program.send(SIGINT);
     expect_unfinished(program.wait(), beside("out-unfinished"));

@@ -112,7 +112,7 @@ class Run {
             if (session_.ledger().used() == 0) throw;
             console_.end();
             ended_ = interrupted.what();
-            if (options_.checkpoint_every > 0) {
+            if (options_.checkpoint_every > 0 && options_.checkpoint_every != SessionOptions::kAtEnd) {
                 attempt("the state, to go on from",
                         [&] { session_.checkpoint([this](auto& visitor, MapFile& map) { keep(visitor, map); }); });
             }
