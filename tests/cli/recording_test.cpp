@@ -210,7 +210,9 @@ TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
 TEST_F(RecordingCommands, LiveFindsTheLightsThatTheRunOfItsFramesFinds) {
     expect_done(patina({"synth", "cubes", "--frames", "30", "--extent", "64x53", "--quiet", "--out", folder_}));
     // With the sequence of low exposure beside it.
-    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--texture", "off", "--no-map", "--quiet"}));
+    expect_done(patina({"live", "--simulate", folder_, "--out", out(), "--texture", "off", "--quiet"}));
+    EXPECT_THAT(patina({"info", out() / "map.sqlite"}).out, HasSubstr("the run came to its end"));
+    EXPECT_THAT(expect_failure(patina({"run", "--resume", out()})), HasSubstr("is of 'patina live'"));
     const nlohmann::json lights = summary_of(out())["lights"];
     EXPECT_EQ(lights["found_by"], "lighting sequence");
     std::set<int64_t> used_ms;

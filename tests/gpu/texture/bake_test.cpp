@@ -352,6 +352,17 @@ TEST_F(BakeTest, WhatIsHiddenTurnedAwayOrDarkIsNotSeen) {
     EXPECT_FALSE(seen_by(picture_of_wall(0.3, glm::dvec3(0.5), shiny))) << "brighter than any albedo";
 }
 
+TEST_F(BakeTest, APictureThatHasTheTexelInAPixelsMiddleCountsMost) {
+    const TextureLayout layout = facing_page(0.3, glm::vec3(0.3f), glm::vec3(0.3f));
+    BakePicture centred = picture_of_wall(0.3, glm::dvec3(0.5), [](auto, auto) { return glm::dvec3(0.2); });
+    centred.world_from_camera = glm::translate(RigidTransform(1.0), glm::dvec3(kTexel_m / 2, kTexel_m / 2, 0));
+    const BakePicture between = picture_of_wall(0.3, glm::dvec3(0.5), [](auto, auto) { return glm::dvec3(0.8); });
+    bake(layout, {centred, between});
+    // The other has the texel amid four pixels: its weight is the least, and all else is nearly alike.
+    const glm::vec4 sum = sums[at(37, 26)];
+    EXPECT_NEAR(sum.r / sum.a, (0.2 + 0.05 * 0.8) / 1.05, 1e-3);
+}
+
 TEST_F(BakeTest, ANearPictureCountsForMuchMoreThanAFarOne) {
     const TextureLayout layout = facing_page(0.3, glm::vec3(0.3f), glm::vec3(0.3f));
     const BakePicture near = picture_of_wall(0.3, glm::dvec3(0.5), [](auto, auto) { return glm::dvec3(0.2); });
