@@ -12,6 +12,8 @@ namespace {
 void wire_materials(graph::FrameGraph& graph, Stages& stages, const VoxelMapIds& voxels, const FrameContext& frame,
                     SegmentationInputs segmented, ObservationInputs observed) {
     if (stages.segmentation) {
+        if (stages.reflectance)
+            stages.segmentation->add_split(graph, voxels, stages.reflectance->observations(), frame);
         if (stages.specular) segmented.fits = stages.specular->fits(graph);
         observed.labels = stages.segmentation->add(graph, voxels, segmented, frame);
     }

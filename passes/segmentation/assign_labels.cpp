@@ -17,6 +17,8 @@ graph::BufferId add_assign_labels(graph::FrameGraph& frame, SegmentTableIds& tab
     const graph::BufferId assigned =
         pass.modify("SegmentLabels", zeros("segmentation.segment_labels", kEntries * sizeof(uint32_t)));
     table.parents = pass.modify("Parents", table.parents);
+    table.partners = pass.modify("Partners", table.partners);
+    table.rules = pass.modify("Rules", table.rules);
     table.labels = pass.modify("Labels", table.labels);
     table.pairs = pass.modify("Pairs", table.pairs);
     table.free_labels = pass.modify("FreeLabels", table.free_labels);

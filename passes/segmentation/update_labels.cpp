@@ -15,7 +15,8 @@ void add_update_labels(graph::FrameGraph& frame, const VoxelMap& map, const Voxe
     auto pass = frame.compute("segmentation.update_labels", texel ? spirv::update_labels_texel : spirv::update_labels);
     pass.read("Due", due.list).read("BlockKeys", ids.block_keys).read("View", surface.view);
     pass.read("position_m", surface.position_m).read("normal", surface.normal).read("segment", segments.segment);
-    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Tsdf", ids.tsdf);
+    pass.read("SegmentLabels", segment_labels).read("Parents", table.parents).read("Partners", table.partners);
+    pass.read("Tsdf", ids.tsdf);
     pass.read("Visible", surface.blocks).specialise("kVoxelChunks", map.chunks());
     pass.specialise("kSegmentStride", segments.stride);
     labels.words = pass.modify("Words", labels.words);

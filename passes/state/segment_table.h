@@ -13,6 +13,8 @@ namespace patina {
 /// Versions of the table's buffers within one frame.
 struct SegmentTableIds {
     graph::BufferId parents;      ///< u32 per label: the label it was merged into, itself while it is in use, 0 if not
+    graph::BufferId partners;     ///< u32 per label: that whose colours were its own until it was split; 0: none
+    graph::BufferId rules;        ///< gpu::SplitRule per label that has a partner
     graph::BufferId labels;       ///< gpu::SegmentLabel per label
     graph::BufferId pairs;        ///< gpu::SegmentPair[gpu::kPairBuckets * gpu::kPairWays]
     graph::BufferId free_labels;  ///< u32 ring of the labels not in use
@@ -48,7 +50,7 @@ class SegmentTable {
 
   private:
     uint32_t capacity_;
-    vulkan::BufferRef parents_, labels_, pairs_, free_labels_, counters_;
+    vulkan::BufferRef parents_, partners_, rules_, labels_, pairs_, free_labels_, counters_;
 };
 
 }  // namespace patina

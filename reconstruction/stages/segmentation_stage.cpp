@@ -12,6 +12,7 @@
 #include "passes/segmentation/relabel_records.h"
 #include "passes/segmentation/sample_labels.h"
 #include "passes/segmentation/sample_records.h"
+#include "passes/segmentation/split_labels.h"
 #include "passes/segmentation/sweep_away.h"
 #include "passes/segmentation/sweep_labels.h"
 #include "passes/segmentation/update_labels.h"
@@ -121,6 +122,17 @@ FrameSegments SegmentationStage::segments(graph::FrameGraph& graph, const Segmen
         return add_given_segments(graph, upload_labels(graph, frame), inputs.depth_m, settings.capacity);
     return add_segment_frame(graph, inputs.surface.position_m, inputs.depth_m, frame.depth.gpu,
                              {inputs.color_linear, frame.color.gpu}, settings);
+}
+
+void SegmentationStage::add_split(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationMap& map,
+                                  const FrameContext& frame) const {
+    if (settings_.given || settings_.split_chroma == 0 || !chooses_samples(frame.index)) return;
+    LabelMapIds labels = labels_.import(graph);
+    ObservationMapIds records = map.import(graph);
+    SegmentTableIds table = table_.import(graph);
+    SegmentSampleIds samples = samples_.import(graph);
+    add_split_labels(graph, map_, voxels, labels, map, records, table, samples, table_.capacity(),
+                     {settings_.split_chroma, settings_.split_ratio, frame.index + 1});
 }
 
 graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels,

@@ -33,8 +33,10 @@ struct SegmentationSettings {
     float merge_brightness = 1.4f;  ///< nor those whose kd's luminances have a larger ratio
     float merge_ks = 0.1f;          ///< nor those whose ks differs by more, in any channel
     float merge_alpha = 2;          ///< or whose alpha's ratio is larger
-    uint32_t prune_voxels = 10;     ///< labels with fewer voxels are given up
-    uint32_t prune_frames = 30;     ///< when they were not seen for so many frames
+    float split_chroma = 0.12f;  ///< a label is split whose colours are two with chromaticities so far apart; 0: never
+    float split_ratio = 4;       ///< and so many times as far as they spread
+    uint32_t prune_voxels = 10;  ///< labels with fewer voxels are given up
+    uint32_t prune_frames = 30;  ///< when they were not seen for so many frames
     /// Frames after which each segment's records are chosen anew, at first sooner; 0: never
     uint32_t sample_every = 16;
     /// Records with fewer are chosen only where there are too few others.
@@ -98,6 +100,11 @@ class SegmentationStage {
 
     /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::FrameGraph& graph, const VoxelMapIds& voxels) const;
+
+    /// Splits labels whose records have two colours, in frames that choose the segments' records anew. To be called
+    /// before add(), and before records are given back.
+    void add_split(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationMap& map,
+                   const FrameContext& frame) const;
 
     /// Divides a frame, and carries its segments over to the map. Returns the label of each pixel: W x H r32ui, 0 where
     /// none is known.

@@ -25,39 +25,21 @@ layout(std430, binding = 10) coherent buffer FreeLabels { uint free_labels[]; };
 layout(std430, binding = 11) coherent buffer Counters { SegmentCounters counters; };
 layout(std430, binding = 12) coherent buffer SegmentKds { SegmentKd kds[]; };
 layout(std430, binding = 13) readonly buffer Fits { WardFit fits[]; };
+layout(std430, binding = 14) coherent buffer Partners { uint partners[]; };
+layout(std430, binding = 15) coherent buffer Rules { SplitRule rules[]; };
 
 const uint kGroup = kAssignLabelsGroup;
 const uint kNone = 0xffffffffu;
 const float kKdError = 0.01;  // of a segment's mean: light that was not accounted for does so much to dark surfaces
 const float kSureFit = 0.5;   // confidence of a specular fit that counts
 
-shared uint partial[kGroup];
+#include "lib/segments/in_order.glsl"
+
 shared uint merged;
 
 void join() {
     memoryBarrierBuffer();
     barrier();
-}
-
-// The range of `count` items, from 1 on, that this invocation takes: consecutive ones.
-uvec2 own_items(uint count) {
-    const uint each = (count + kGroup - 1u) / kGroup;
-    const uint first = min(gl_LocalInvocationIndex * each, count);
-    return uvec2(1u + first, 1u + min(first + each, count));
-}
-
-// The sum of what the invocations before this one have; `total` is that of all.
-uint sum_before(uint mine, out uint total) {
-    partial[gl_LocalInvocationIndex] = mine;
-    barrier();
-    uint before = 0u;
-    total = 0u;
-    for (uint i = 0u; i < kGroup; ++i) {
-        before += i < gl_LocalInvocationIndex ? partial[i] : 0u;
-        total += partial[i];
-    }
-    barrier();
-    return before;
 }
 
 void find_best(uint entries) {
@@ -110,6 +92,7 @@ void start_label(uint label) {
     labels[label] = SegmentLabel(kLiveLabel, frame.stamp, frame.stamp, 0u, 0u, 0u, 0u, 0u);
     kds[label] = SegmentKd(0u, 0u, 0u, 0u);
     parents[label] = label;
+    partners[label] = kNoLabel;
     atomicMax(counters.high_water, label + 1u);
 }
 
@@ -220,14 +203,28 @@ bool same_gloss(uint a, uint b) {
            max(one.a, two.a) <= frame.merge_alpha * min(one.a, two.a);
 }
 
-// What is known of both has to agree.
+// What is known of both has to agree. A label and its partner, whose colours differ, need albedos that do not:
+// highlights were what differed.
 bool same_material(uint a, uint b) {
+    if (partners[a] == b && !(is_kd_known(a) && is_kd_known(b))) return false;
     if (is_gloss_known(a) && is_gloss_known(b) && !same_gloss(a, b)) return false;
     return is_kd_known(a) && is_kd_known(b) ? same_kd(a, b) : same_chroma(a, b);
 }
 
+// A label keeps its partner under its new name, unless that has one. What was split in vain is its own partner: it is
+// not split again.
+void keep_partner(uint into, uint label) {
+    const uint partner = partners[label];
+    if (partner == into) partners[into] = into;
+    if (partner == kNoLabel || partners[into] != kNoLabel) return;
+    partners[into] = partner;
+    rules[into] = rules[label];
+    if (partners[partner] == label) partners[partner] = into;
+}
+
 void merge_labels(uint into, uint label) {
     parents[label] = into;
+    keep_partner(into, label);
     kds[into].samples += kds[label].samples;
     kds[into].r += kds[label].r;
     kds[into].g += kds[label].g;
@@ -311,6 +308,11 @@ void end_sweep() {
             ++pruned;
         }
         labels[label] = known;
+    }
+    join();
+    // What was given up is nobody's partner.
+    for (uint label = own.x; label < own.y; ++label) {
+        if (partners[label] != kNoLabel && parents[partners[label]] != partners[label]) partners[label] = kNoLabel;
     }
     uint all_freed, all_pruned;
     uint next = counters.free_head + counters.free_labels + sum_before(freed, all_freed);

@@ -19,6 +19,7 @@ layout(binding = 4, rgba16f) uniform readonly image2D normal;
 layout(binding = 5, r32ui) uniform readonly uimage2D segment;
 layout(binding = 6, r32ui) uniform readonly uimageBuffer SegmentLabels;
 layout(binding = 7, r32ui) uniform readonly uimageBuffer Parents;
+layout(binding = 21, r32ui) uniform readonly uimageBuffer Partners;
 layout(std430, binding = 13) buffer Words { uint words[]; }
 labels[kMaxVoxelChunks];
 layout(std430, binding = 18) buffer Counters { SegmentCounters counters; };
@@ -79,6 +80,8 @@ uint seen_label(vec3 center_m, float near_vox) {
 uint updated(uint word, uint label, inout uint votes, inout uint flips) {
     if (label == kNoLabel) return word;
     const uint root = imageLoad(Parents, int(voxel_label(word))).x;
+    // Of a label and its partner the frame cannot tell which is meant: their colours can.
+    if (imageLoad(Partners, int(root)).x == label) label = root;
     const uint known = root == kNoLabel ? 0u : label_word(root, word >> 16);
     const uint next = voted_word(known, label);
     ++votes;

@@ -94,6 +94,7 @@ void add_segment_totals(RunSummary& summary, const PipelineCounters& counters) {
     const LabelStability& stability = counters.label_stability;
     summary.totals.emplace_back("segments", segments.live);
     summary.totals.emplace_back("labels made", segments.created);
+    summary.totals.emplace_back("labels split", segments.split);
     summary.totals.emplace_back("labels merged", segments.merged);
     summary.totals.emplace_back("labels pruned", segments.pruned);
     summary.totals.emplace_back("votes for labels of voxels after the first frames", stability.voxels);

@@ -53,6 +53,14 @@ struct SegmentLabel {
     uint chroma_g;
 };
 
+// A line in the plane of chromaticities (r and g over r + g + b) that parts the colours of two labels.
+struct SplitRule {
+    float axis_r;  // of unit length
+    float axis_g;
+    float threshold;  // along it
+    uint beyond;      // 1: the label's own colours lie beyond it, those of its partner do not; 0: the other way round
+};
+
 // How often the segments of a frame said that two labels are one.
 struct SegmentPair {
     uint labels;  // the smaller | the larger << 16
@@ -89,6 +97,7 @@ struct SegmentCounters {
     uint merged;        // likewise
     uint pruned;        // likewise
     uint refused;       // likewise: segments that found all labels in use
+    uint split;         // likewise: labels whose colours were two
     uint overflows;     // likewise: frames whose overlap table was too small; they change nothing
     uint frame_merged;  // in this frame
     uint frame_voxels;  // voxels that this frame's segments voted on

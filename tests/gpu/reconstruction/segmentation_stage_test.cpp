@@ -1,5 +1,7 @@
 #include "reconstruction/stages/segmentation_stage.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -126,6 +128,69 @@ TEST_F(SegmentationStageTest, WithoutDepthThereAreNoSegments) {
     const std::vector<uint32_t> seen = view(pipeline, 0).pixels();
     EXPECT_EQ(std::set<uint32_t>(seen.begin(), seen.end()), std::set<uint32_t>{0});
     EXPECT_EQ(pipeline.counters().segments.created, 0u);
+}
+
+/// A brown wall with a grey disc on it, and the camera before its middle.
+class DiscOnAWall {
+  public:
+    static constexpr double kDistanceM = 1, kRadiusM = 0.25, kBlendM = 0.01;
+
+    RgbdFrame frame() const {
+        RgbdFrame frame;
+        frame.depth = {std::span<const uint16_t>(depth_mm_), camera_};
+        frame.color = {std::span<const glm::vec3>(color_), camera_};
+        return frame;
+    }
+
+    const Intrinsics& camera() const { return camera_; }
+
+    /// From the disc's rim, metres; negative within it.
+    double beside_m(size_t pixel) const {
+        const glm::dvec2 at(static_cast<double>(pixel % camera_.extent.width), pixel / camera_.extent.width);
+        return glm::length((at - glm::dvec2(camera_.cx, camera_.cy)) / camera_.fx) * kDistanceM - kRadiusM;
+    }
+
+  private:
+    Intrinsics camera_{{160, 120}, 140, 140, 79.5, 59.5};
+    std::vector<uint16_t> depth_mm_ = std::vector<uint16_t>(camera_.extent.area(), 1000);
+    std::vector<glm::vec3> color_ = [this] {
+        std::vector<glm::vec3> color;
+        for (size_t i = 0; i < camera_.extent.area(); ++i) {
+            const double share = std::clamp(0.5 + beside_m(i) / kBlendM, 0.0, 1.0);
+            color.push_back(
+                glm::mix(glm::vec3(0.20f, 0.19f, 0.16f), glm::vec3(0.24f, 0.12f, 0.05f), static_cast<float>(share)));
+        }
+        return color;
+    }();
+};
+
+TEST_F(SegmentationStageTest, WhatOnlyItsColorTellsFromItsSurroundingsGetsALabelOfItsOwnAndKeepsIt) {
+    const DiscOnAWall wall;
+    for (const bool splits : {true, false}) {
+        ReconstructionSettings chosen = settings(false);
+        chosen.reflectance.emplace();
+        chosen.segmentation->frame.edges.cut_chroma = 10;  // no edge of colour parts them in a frame
+        if (!splits) chosen.segmentation->split_chroma = 0;
+        Pipeline pipeline(device(), chosen);
+        for (int i = 0; i < 24; ++i) pipeline.add(wall.frame());
+        const ViewReadback pending = pipeline.view(wall.camera(), RigidTransform(1.0));
+        pipeline.wait();
+        const std::vector<uint32_t> seen = pending.get().label.pixels();
+        std::map<uint32_t, int> within, around;
+        for (size_t i = 0; i < seen.size(); ++i) {
+            if (std::abs(wall.beside_m(i)) > 2 * chosen.map.voxel_m)
+                ++(wall.beside_m(i) < 0 ? within : around)[seen[i]];
+        }
+        const auto most = [](const std::map<uint32_t, int>& labels) {
+            return std::ranges::max_element(labels, {}, [](const auto& item) { return item.second; })->first;
+        };
+        const uint32_t inner = most(within), outer = most(around);
+        EXPECT_EQ(inner != outer, splits);
+        EXPECT_EQ(pipeline.counters().segments.split, splits ? 1u : 0u);
+        if (!splits) continue;
+        EXPECT_EQ(within[outer], 0);
+        EXPECT_EQ(around[inner], 0);
+    }
 }
 
 TEST_F(SegmentationStageTest, SegmentationTakesFewDispatches) {

@@ -77,6 +77,29 @@ class AssignLabels : public GpuTest {
         run(std::move(frame));
     }
 
+    /// Makes partners of two labels, as a split does.
+    void pair(uint32_t own, uint32_t beyond) {
+        std::vector<uint32_t> partners = read(&SegmentTableIds::partners).as<uint32_t>();
+        auto rules = read(&SegmentTableIds::rules).as<gpu::SplitRule>();
+        partners[own] = beyond;
+        partners[beyond] = own;
+        rules[own] = {1, 0, 0.4f, 0};
+        rules[beyond] = {1, 0, 0.4f, 1};
+        graph::FrameGraph frame = runner().begin();
+        const SegmentTableIds ids = table_->import(frame);
+        frame.keep(frame.upload_bytes(ids.partners, 0, std::as_bytes(std::span(partners)), true));
+        frame.keep(frame.upload_bytes(ids.rules, 0, std::as_bytes(std::span(rules)), true));
+        run(std::move(frame));
+    }
+    std::vector<uint32_t> partners() { return read(&SegmentTableIds::partners).as<uint32_t>(); }
+
+    graph::Readback read(graph::BufferId SegmentTableIds::*buffer) {
+        graph::FrameGraph frame = runner().begin();
+        graph::Readback read = frame.read_back(table_->import(frame).*buffer);
+        run(std::move(frame));
+        return read;
+    }
+
     void paint_all(uint32_t r, uint32_t g) {
         change([&](uint32_t, gpu::SegmentLabel& label) {
             label.chroma_samples = 1;
@@ -213,6 +236,51 @@ TEST_F(AssignLabels, OfMergedLabelsTheOneThatMoreWasSeenOfRemains) {
         for (int i = 0; i < 3; ++i) label = assign({{1000, {{3 - more, 600}, {more, 300}}}})[0];
         EXPECT_EQ(label, more);
     }
+}
+
+TEST_F(AssignLabels, ALabelAndItsPartnerAreMergedOnlyIfTheirAlbedosAreKnownToAgree) {
+    for (const uint32_t samples : {0u, 7u, 8u}) {
+        start(64);
+        assign({{500, {}}, {500, {}}});
+        paint_all(300, 300);
+        pair(1, 2);
+        kd_[1] = kd_[2] = {samples, samples * 300, samples * 200, samples * 100};
+        for (int i = 0; i < 4; ++i) assign({{1000, {{1, 400}, {2, 500}}}});
+        const bool known = samples >= gpu::kLeastKdSamples;
+        EXPECT_EQ(counters_.merged, known ? 1u : 0u);
+        EXPECT_EQ(partners()[1], known ? 1u : 2u) << "what was split in vain is not split again";
+    }
+}
+
+TEST_F(AssignLabels, AMergedLabelsPartnerIsThatOfTheOneThatRemains) {
+    for (const bool has_one : {false, true}) {
+        start(64);
+        assign({{500, {}}, {500, {}}, {500, {}}, {500, {}}});
+        change([&](uint32_t label, gpu::SegmentLabel& known) { known.chroma_samples = label == 1 ? 40 : 30; });
+        pair(2, 3);
+        if (has_one) pair(1, 4);
+        for (int i = 0; i < 3; ++i) assign({{1000, {{1, 600}, {2, 300}}}});
+        ASSERT_EQ(counters_.merged, 1u);
+        const std::vector<uint32_t> partners = this->partners();
+        EXPECT_EQ(partners[1], has_one ? 4u : 3u);
+        EXPECT_EQ(partners[3], has_one ? 2u : 1u);
+        const auto rules = read(&SegmentTableIds::rules).as<gpu::SplitRule>();
+        EXPECT_EQ(rules[1].threshold, 0.4f);
+        EXPECT_EQ(rules[1].beyond, 0u);
+    }
+}
+
+TEST_F(AssignLabels, WhatWasGivenUpIsNobodysPartner) {
+    start(64);
+    assign({{500, {}}, {500, {}}, {500, {}}});
+    change([](uint32_t label, gpu::SegmentLabel& known) { known.tally = label == 2 ? 0 : 100; });
+    pair(1, 2);
+    while (params_.stamp < 2 * gpu::kSweepFrames + 1) {
+        change([](uint32_t label, gpu::SegmentLabel& known) { known.tally = label == 2 ? 0 : 100; });
+        assign({{500, {{1, 500}}}, {500, {{3, 500}}}});
+    }
+    EXPECT_EQ(counters_.pruned, 1u);
+    EXPECT_EQ(partners()[1], 0u);
 }
 
 TEST_F(AssignLabels, ASegmentThatManyLabelsCoverGetsNoLabelMore) {

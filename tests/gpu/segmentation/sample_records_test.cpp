@@ -8,6 +8,7 @@
 #include "reconstruction/streaming/stream_region.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/entered_records.h"
+#include "tests/gpu/segmentation/packed_albedo.h"
 
 namespace patina::sample_records_test {
 namespace {
@@ -125,13 +126,6 @@ TEST_F(SampleRecords, RecordsWithFewObservationsFillUpTheRoomThatOthersLeave) {
     EXPECT_EQ(sampled.counts[1].eligible, 3000u);
     EXPECT_EQ(sampled.kept[2].size(), 100u) << "where nothing was seen often, those few times";
     EXPECT_GT(sampled.kept[3].size(), 100u);
-}
-
-/// kd as the refinement packs it: a shared exponent of 5 bits, which puts a half at 256; and three times 10 bits.
-glm::uvec2 packed_albedo(glm::vec3 kd, float certainty) {
-    const glm::uvec3 m(glm::round(kd * 512.0f));
-    const auto c = static_cast<uint32_t>(certainty * 1023);
-    return {m.r | m.g << 9 | m.b << 18 | 15u << 27, c | c << 10 | c << 20};
 }
 
 TEST_F(SampleRecords, SumsUpTheAlbedoOfTheRecordsThatAreKept) {

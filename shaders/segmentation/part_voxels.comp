@@ -1,0 +1,60 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Gives voxels of labels that have a partner to that of the two whose colours are theirs. A group looks at kSweepGroup
+// block ids.
+#include "lib/map/voxel_chunks.glsl"
+#include "lib/map/voxel_labels.glsl"
+#include "lib/map/voxel_map.glsl"
+#include "lib/segments/split_rule.glsl"
+
+layout(local_size_x = kSweepGroup) in;
+layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };
+layout(std430, binding = 1) readonly buffer Counters { MapCounters counters; };
+layout(binding = 2, r32ui) uniform readonly uimageBuffer Parents;
+layout(binding = 3, r32ui) uniform readonly uimageBuffer Partners;
+layout(std430, binding = 4) readonly buffer Rules { SplitRule rules[]; };
+layout(std430, binding = 5) buffer Words { uvec4 quads[]; }
+words[kMaxVoxelChunks];
+layout(std430, binding = 10) readonly buffer Color { uvec4 quads[]; }
+color[kMaxVoxelChunks];
+layout(push_constant) uniform Push { SplitParams params; };
+
+shared uint used[kSweepGroup];
+shared uint used_count;
+
+uint parted(uint word, uint color_word) {
+    const uint root = imageLoad(Parents, int(voxel_label(word))).x;
+    const uint partner = imageLoad(Partners, int(root)).x;
+    const bool goes = partner != kNoLabel && color_word != 0u && is_partners(rules[root], voxel_color(color_word));
+    return goes ? label_word(partner, word >> 16) : word;
+}
+
+void part_quad(uint block, uint quad) {
+    uvec4 before, colors;
+#define LOAD_WORDS(C) before = words[C].quads[quad]
+#define LOAD_COLORS(C) colors = color[C].quads[quad]
+#define STORE_WORDS(C) words[C].quads[quad] = after
+    WITH_CHUNK(params.grid.chunk_shift, block, LOAD_WORDS)
+    if (before == uvec4(0u)) return;
+    WITH_CHUNK(params.grid.chunk_shift, block, LOAD_COLORS)
+    uvec4 after;
+    [[unroll]] for (int i = 0; i < 4; ++i) after[i] = parted(before[i], colors[i]);
+    if (after != before) {
+        WITH_CHUNK(params.grid.chunk_shift, block, STORE_WORDS)
+    }
+}
+
+void main() {
+    const uint lane = gl_LocalInvocationIndex;
+    if (lane == 0u) used_count = 0u;
+    barrier();
+    const uint id = gl_GlobalInvocationID.x;
+    if (id < counters.high_water && block_keys[id] != kEmptyKey) used[atomicAdd(used_count, 1u)] = id;
+    barrier();
+    const uint count = used_count;
+    for (uint i = 0u; i < count; ++i) {
+        const uint first = index_in_chunk(params.grid.chunk_shift, used[i]) * (kBlockVoxels / 4u);
+        for (uint quad = lane; quad < kBlockVoxels / 4u; quad += kSweepGroup) part_quad(used[i], first + quad);
+    }
+}
