@@ -212,8 +212,6 @@ constexpr std::array kRows = {
         "segmentation.split_chroma", "", 0, 2,
         "A label is split when its colours are two whose chromaticities differ by at least this; "
         "0: never."),
-    number<&Seg::split_ratio>("segmentation.split_ratio", "", 0, 1000,
-                              "And when they differ by at least this many times their spread."),
     number<&Seg::prune_voxels>("segmentation.prune_voxels", "voxels", 0, kAnyCount,
                                "Labels with fewer voxels are given up when they are not seen."),
     number<&Seg::prune_frames>("segmentation.prune_frames", "frames", 0, kAnyCount,

@@ -24,7 +24,7 @@ PartArguments add_start_splits(graph::FrameGraph& frame, const VoxelMapIds& voxe
     const graph::BufferId proposals =
         find.modify("Proposals", frame.fill(frame.create_buffer("segmentation.split_proposals", bytes), 0));
     find.push(gpu::FindSplitsParams{observations.grid(), observations.edge_shift(), labels, choice.least_apart,
-                                    choice.least_ratio, choice.stamp, 0, 0, 0});
+                                    choice.stamp});
     find.dispatch(gpu::kGroupsPerRow, (labels + gpu::kGroupsPerRow - 1) / gpu::kGroupsPerRow);
 
     auto start = frame.compute("segmentation.start_splits", spirv::start_splits);

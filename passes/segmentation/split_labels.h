@@ -12,7 +12,6 @@ namespace patina {
 /// When a label's colours are two.
 struct SplitChoice {
     float least_apart = 0.12f;  ///< of the means of their chromaticities, r and g over r + g + b; 0: never
-    float least_ratio = 4;      ///< of that over their spread
     uint32_t stamp = 1;         ///< the frame's index + 1
 };
 

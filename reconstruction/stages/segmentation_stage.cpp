@@ -132,7 +132,7 @@ void SegmentationStage::add_split(graph::FrameGraph& graph, const VoxelMapIds& v
     SegmentTableIds table = table_.import(graph);
     SegmentSampleIds samples = samples_.import(graph);
     add_split_labels(graph, map_, voxels, labels, map, records, table, samples, table_.capacity(),
-                     {settings_.split_chroma, settings_.split_ratio, frame.index + 1});
+                     {settings_.split_chroma, frame.index + 1});
 }
 
 graph::ImageId SegmentationStage::add(graph::FrameGraph& graph, const VoxelMapIds& voxels,

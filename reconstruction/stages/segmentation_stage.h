@@ -34,7 +34,6 @@ struct SegmentationSettings {
     float merge_ks = 0.1f;          ///< nor those whose ks differs by more, in any channel
     float merge_alpha = 2;          ///< or whose alpha's ratio is larger
     float split_chroma = 0.12f;  ///< a label is split whose colours are two with chromaticities so far apart; 0: never
-    float split_ratio = 4;       ///< and so many times as far as they spread
     uint32_t prune_voxels = 10;  ///< labels with fewer voxels are given up
     uint32_t prune_frames = 30;  ///< when they were not seen for so many frames
     /// Frames after which each segment's records are chosen anew, at first sooner; 0: never

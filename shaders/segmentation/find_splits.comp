@@ -23,9 +23,9 @@ colors[kMaxVoxelChunks];
 layout(push_constant) uniform Push { FindSplitsParams params; };
 #include "lib/records/mean_color.glsl"
 
-const float kMostMixed = 0.4;    // of nearest records of the other colour, over as many as there were by chance
-const float kMostBetween = 0.1;  // share of all that lies in the middle half of what is between the two means
-const float kAlbedoShare = 0.5;  // of the least difference of chromaticities, for those of the albedo
+const float kMostMixed = 0.4;     // of nearest records of the other colour, over as many as there were by chance
+const float kMostBetween = 0.17;  // share of all that lies in the middle half of what is between the two means
+const float kAlbedoShare = 0.5;   // of the least difference of chromaticities, for those of the albedo
 const uint kFar = 0xffffffffu;
 const ivec2 kUnknown = ivec2(-1);
 
@@ -36,8 +36,7 @@ shared uint listed;
 shared int sums[5];  // of r, g, and about the mean of r r, r g, g g
 shared int least, most;
 shared uint bin_counts[kSplitBins];
-shared int bin_sums[kSplitBins];      // of places along the axis,
-shared uint bin_squares[kSplitBins];  // and of their squares
+shared int bin_sums[kSplitBins];  // of places along the axis
 shared float threshold, mean_below, mean_beyond;
 shared uint count_beyond;
 shared uint crossing;
@@ -101,33 +100,25 @@ void fill_bins(vec2 axis, uint count) {
         const uint bin = min(uint(place) * kSplitBins / uint(range), kSplitBins - 1u);
         atomicAdd(bin_counts[bin], 1u);
         atomicAdd(bin_sums[bin], place);
-        atomicAdd(bin_squares[bin], uint(place * place));
     }
     barrier();
 }
 
 struct Part {
-    float count, sum, squares;
+    float count, sum;
 };
 float mean_of(Part part) { return part.sum / max(part.count, 1.0); }
-float spread_of(Part part) {
-    const float mean = mean_of(part);
-    return sqrt(max(part.squares / max(part.count, 1.0) - mean * mean, 0.0));
-}
 
 // The bins below `bin`, or all of them.
 Part part_below(uint bin) {
-    Part part = Part(0.0, 0.0, 0.0);
+    Part part = Part(0.0, 0.0);
     for (uint i = 0u; i < bin; ++i) {
         part.count += float(bin_counts[i]);
         part.sum += float(bin_sums[i]);
-        part.squares += float(bin_squares[i]);
     }
     return part;
 }
-Part rest_of(Part all, Part part) {
-    return Part(all.count - part.count, all.sum - part.sum, all.squares - part.squares);
-}
+Part rest_of(Part all, Part part) { return Part(all.count - part.count, all.sum - part.sum); }
 
 // How many lie about half-way between two places, in bins.
 float count_between(float low, float high) {
@@ -144,7 +135,7 @@ void find_threshold() {
     const Part all = part_below(kSplitBins);
     uint best = 0u;
     float best_between = 0.0;
-    Part below = Part(0.0, 0.0, 0.0);
+    Part below = Part(0.0, 0.0);
     for (uint bin = 1u; bin < kSplitBins; ++bin) {
         below.count += float(bin_counts[bin - 1u]);
         below.sum += float(bin_sums[bin - 1u]);
@@ -159,9 +150,8 @@ void find_threshold() {
     below = part_below(best);
     const Part beyond = rest_of(all, below);
     const float apart = (mean_of(beyond) - mean_of(below)) * kSplitStep;
-    const float spread = 0.5 * (spread_of(beyond) + spread_of(below)) * kSplitStep;
     const bool gap = count_between(mean_of(below), mean_of(beyond)) <= kMostBetween * all.count;
-    const bool two = gap && apart >= params.least_apart && apart >= params.least_ratio * spread &&
+    const bool two = gap && apart >= params.least_apart &&
                      min(below.count, beyond.count) >= max(float(kLeastSplitPart), kLeastSplitShare * all.count);
     // Half-way between the means: between them there is hardly anything.
     threshold = float(least) + 0.5 * (mean_of(beyond) + mean_of(below));
@@ -217,7 +207,7 @@ void main() {
     if (lane < 5u) sums[lane] = 0;
     if (lane < 2u) kd_sums[lane] = ivec3(0);
     for (uint bin = lane; bin < kSplitBins; bin += kSplitGroup) {
-        bin_counts[bin] = bin_squares[bin] = 0u;
+        bin_counts[bin] = 0u;
         bin_sums[bin] = 0;
     }
     barrier();

@@ -26,7 +26,7 @@ shared uint used_count;
 uint parted(uint word, uint color_word) {
     const uint root = imageLoad(Parents, int(voxel_label(word))).x;
     const uint partner = imageLoad(Partners, int(root)).x;
-    const bool goes = partner != kNoLabel && color_word != 0u && is_partners(rules[root], voxel_color(color_word));
+    const bool goes = partner != kNoLabel && is_partners(rules[root], voxel_color(color_word));
     return goes ? label_word(partner, word >> 16) : word;
 }
 

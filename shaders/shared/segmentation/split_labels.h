@@ -28,12 +28,8 @@ struct FindSplitsParams {
     VoxelGrid records;  // the observation map's grid
     uint edge_shift;
     uint labels;
-    float least_apart;  // chromaticities of the two colours, and
-    float least_ratio;  // that over their spread
+    float least_apart;  // chromaticities of the two colours
     uint stamp;         // the frame's index + 1
-    uint pad0;
-    uint pad1;
-    uint pad2;
 };
 
 struct SplitParams {

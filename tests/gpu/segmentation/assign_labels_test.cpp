@@ -171,6 +171,14 @@ TEST_F(AssignLabels, NewSegmentsGetLabelsInTheirOrderAndSmallOnesNone) {
     EXPECT_EQ(counters_.created, 3u);
 }
 
+TEST_F(AssignLabels, ANewLabelHasNoPartner) {
+    start(64);
+    pair(1, 2);
+    assign({{500, {}}, {500, {}}});
+    EXPECT_EQ(partners()[1], 0u);
+    EXPECT_EQ(partners()[2], 0u);
+}
+
 TEST_F(AssignLabels, ALabelThatCoversEnoughIsInheritedTheSmallerOneOfEqualOnes) {
     start(64);
     assign({{500, {}}, {500, {}}, {500, {}}});

@@ -25,13 +25,6 @@ double mean(std::span<const Placed> part) {
     return sum / static_cast<double>(part.size());
 }
 
-double deviation(std::span<const Placed> part) {
-    const double middle = mean(part);
-    double sum = 0;
-    for (const Placed& p : part) sum += (p.along - middle) * (p.along - middle);
-    return std::sqrt(sum / static_cast<double>(part.size()));
-}
-
 /// The direction of the greatest variance.
 glm::dvec2 principal_axis(const std::vector<glm::dvec2>& points) {
     glm::dvec2 middle(0);
@@ -94,7 +87,6 @@ std::optional<ColorSplit> best_color_split(const std::vector<ColoredVoxel>& voxe
     if (best == 0) return std::nullopt;
     const std::span<const Placed> low = std::span(placed).first(best), high = std::span(placed).subspan(best);
     split.apart = mean(high) - mean(low);
-    split.spread = (deviation(high) + deviation(low)) / 2;
     split.threshold = (mean(high) + mean(low)) / 2;
     const double first = mean(low) + split.apart / 4, last = mean(high) - split.apart / 4;
     const auto between =

@@ -18,7 +18,6 @@ struct ColorSplit {
     glm::dvec2 axis{0};  ///< of unit length, in the plane of r and g over r + g + b, toward the fewer
     double threshold = 0;
     double apart = 0;    ///< between the means of the two
-    double spread = 0;   ///< mean of their standard deviations
     double between = 0;  ///< share of all in the middle half of what is between the two means
     double mixed = 0;    ///< share of those whose nearest neighbour is of the other colour, over that by chance
     size_t fewer = 0;    ///< of the rarer colour
