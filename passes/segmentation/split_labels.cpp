@@ -38,7 +38,7 @@ PartArguments add_start_splits(graph::FrameGraph& frame, const VoxelMapIds& voxe
     samples.kd = start.modify("SegmentKds", samples.kd);
     const PartArguments arguments{start.create("VoxelArguments", 4 * sizeof(uint32_t)),
                                   start.create("RecordArguments", 4 * sizeof(uint32_t))};
-    start.push(gpu::SplitParams{{}, choice.stamp, labels, 0, 0});
+    start.push(gpu::StartSplitsParams{choice.stamp, labels, 0, 0});
     start.dispatch(1);
     return arguments;
 }
@@ -56,17 +56,19 @@ void add_split_labels(graph::FrameGraph& frame, const VoxelMap& map, const Voxel
     part_voxels.read("BlockKeys", voxels.block_keys).read("Counters", voxels.counters).read("Color", voxels.color);
     part_voxels.read("Parents", table.parents).read("Partners", table.partners).read("Rules", table.rules);
     labels.words = part_voxels.modify("Words", labels.words);
-    part_voxels.push(gpu::SplitParams{map.grid(), choice.stamp, capacity_labels, 0, 0});
+    part_voxels.push(map.grid());
     part_voxels.specialise("kVoxelChunks", map.chunks());
     part_voxels.dispatch_indirect(arguments.voxels);
 
     auto part_records = frame.compute("segmentation.part_records", spirv::part_records);
-    part_records.read("RecordCounters", records.record_counters).read("Colors", records.colors);
-    part_records.read("Parents", table.parents).read("Partners", table.partners).read("Rules", table.rules);
+    part_records.read("RecordCounters", records.record_counters).read("Words", labels.words);
+    part_records.read("Keys", voxels.keys).read("Blocks", voxels.blocks);
+    part_records.read("Parents", table.parents).read("Partners", table.partners);
     records.records = part_records.modify("Records", records.records);
     records.changed = part_records.modify("Changed", records.changed);
-    part_records.push(gpu::SplitParams{observations.grid(), choice.stamp, capacity_labels, 0, 0});
-    part_records.specialise("kVoxelChunks", observations.chunks());
+    part_records.push(
+        gpu::PartRecordsParams{map.grid(), observations.grid(), observations.edge_shift(), choice.stamp, 0, 0});
+    part_records.specialise("kVoxelChunks", map.chunks());
     part_records.dispatch_indirect(arguments.records);
 }
 

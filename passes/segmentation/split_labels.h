@@ -19,11 +19,11 @@ struct SplitChoice {
 /// edge of shape parts them, and that of colour had gaps. Of the records that a label keeps (sample_records.h) the
 /// chromaticities along their principal axis are parted by Otsu's threshold (1979). If both parts are narrow, far
 /// from each other and lie apart in space, the smaller becomes a label of its own, the first one's partner. Prints are
-/// no such thing: their colours lie among each other. In every call voxels and records of labels with a partner go to
-/// the one whose colour is theirs; between calls update_labels.h takes a vote for either as one for what they have. A
-/// label has one partner at most. What is known of the kd and the gloss of both begins anew. `samples` holds records
-/// that are still where they were. Replaces `labels`, `records`, `table` and SegmentSampleIds::kd. Nothing is split
-/// while no labels are free (gpu::SegmentCounters::refused).
+/// no such thing: their colours lie among each other. In every call voxels of labels with a partner go to the one whose
+/// colour is theirs, and records to that of the voxel at their surface; between calls update_labels.h takes a vote for
+/// either as one for what they have. A label has one partner at most. What is known of the kd and the gloss of both
+/// begins anew. `samples` holds records that are still where they were. Replaces `labels`, `records`, `table` and
+/// SegmentSampleIds::kd. Nothing is split while no labels are free (gpu::SegmentCounters::refused).
 void add_split_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels, LabelMapIds& labels,
                       const ObservationMap& observations, ObservationMapIds& records, SegmentTableIds& table,
                       SegmentSampleIds& samples, uint32_t capacity_labels, const SplitChoice& choice);

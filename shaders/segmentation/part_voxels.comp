@@ -18,7 +18,7 @@ layout(std430, binding = 5) buffer Words { uvec4 quads[]; }
 words[kMaxVoxelChunks];
 layout(std430, binding = 10) readonly buffer Color { uvec4 quads[]; }
 color[kMaxVoxelChunks];
-layout(push_constant) uniform Push { SplitParams params; };
+layout(push_constant) uniform Push { VoxelGrid grid; };
 
 shared uint used[kSweepGroup];
 shared uint used_count;
@@ -35,13 +35,13 @@ void part_quad(uint block, uint quad) {
 #define LOAD_WORDS(C) before = words[C].quads[quad]
 #define LOAD_COLORS(C) colors = color[C].quads[quad]
 #define STORE_WORDS(C) words[C].quads[quad] = after
-    WITH_CHUNK(params.grid.chunk_shift, block, LOAD_WORDS)
+    WITH_CHUNK(grid.chunk_shift, block, LOAD_WORDS)
     if (before == uvec4(0u)) return;
-    WITH_CHUNK(params.grid.chunk_shift, block, LOAD_COLORS)
+    WITH_CHUNK(grid.chunk_shift, block, LOAD_COLORS)
     uvec4 after;
     [[unroll]] for (int i = 0; i < 4; ++i) after[i] = parted(before[i], colors[i]);
     if (after != before) {
-        WITH_CHUNK(params.grid.chunk_shift, block, STORE_WORDS)
+        WITH_CHUNK(grid.chunk_shift, block, STORE_WORDS)
     }
 }
 
@@ -54,7 +54,7 @@ void main() {
     barrier();
     const uint count = used_count;
     for (uint i = 0u; i < count; ++i) {
-        const uint first = index_in_chunk(params.grid.chunk_shift, used[i]) * (kBlockVoxels / 4u);
+        const uint first = index_in_chunk(grid.chunk_shift, used[i]) * (kBlockVoxels / 4u);
         for (uint quad = lane; quad < kBlockVoxels / 4u; quad += kSweepGroup) part_quad(used[i], first + quad);
     }
 }

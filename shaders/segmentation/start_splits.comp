@@ -17,7 +17,7 @@ layout(std430, binding = 8) readonly buffer VoxelCounters { MapCounters voxel_co
 layout(std430, binding = 9) readonly buffer RecordCounters { MapCounters record_counters; };
 layout(std430, binding = 10) writeonly buffer VoxelArguments { uvec4 voxel_arguments; };    // 64 block ids a group
 layout(std430, binding = 11) writeonly buffer RecordArguments { uvec4 record_arguments; };  // 64 records a group
-layout(push_constant) uniform Push { SplitParams params; };
+layout(push_constant) uniform Push { StartSplitsParams params; };
 
 const uint kGroup = kSplitGroup;
 #include "lib/segments/in_order.glsl"

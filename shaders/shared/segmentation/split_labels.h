@@ -32,10 +32,18 @@ struct FindSplitsParams {
     uint stamp;         // the frame's index + 1
 };
 
-struct SplitParams {
-    VoxelGrid grid;  // of what is labelled: voxels or records
-    uint stamp;      // the frame's index + 1
+struct StartSplitsParams {
+    uint stamp;  // the frame's index + 1
     uint labels;
+    uint pad0;
+    uint pad1;
+};
+
+struct PartRecordsParams {
+    VoxelGrid voxels;
+    VoxelGrid records;
+    uint edge_shift;
+    uint stamp;
     uint pad0;
     uint pad1;
 };

@@ -31,9 +31,9 @@ class SplitLabels : public GpuTest {
         gpu::SegmentCounters counters{};
     };
 
-    /// Begins with live labels 1, 2, ... of these parts, whose records are all kept, and as many free ones.
-    void begin(const std::vector<Part>& parts, uint32_t free) {
-        std::vector<FilledRecord> records;
+    /// Begins with live labels 1, 2, ... of these parts, whose records are all kept, and as many free ones. Records
+    /// that no label keeps come first.
+    void begin(const std::vector<Part>& parts, uint32_t free, std::vector<FilledRecord> records = {}) {
         std::vector<std::vector<uint32_t>> kept(LabelRig::kLabels);
         for (uint32_t label = 1; label <= parts.size(); ++label) {
             for (const reference::ColoredVoxel& v : parts[label - 1]) {
@@ -100,7 +100,8 @@ class SplitLabels : public GpuTest {
         return result;
     }
 
-    ObservationMap map_{device(), {.voxel_m = kVoxelM, .capacity_blocks = 1024, .capacity_records = 8192}};
+    ObservationMap map_{
+        device(), {.voxel_m = kVoxelM, .block_m = 4 * kVoxelM, .capacity_blocks = 1024, .capacity_records = 8192}};
     SegmentTable table_{device(), LabelRig::kLabels};
     SegmentSamples samples_{device(), LabelRig::kLabels};
     LabelRig rig_{device(), runner()};
@@ -161,6 +162,11 @@ glm::dvec3 varied(glm::dvec3 color, std::mt19937& random, double spread) {
     return light * color * (1.0 + spread * glm::dvec3(around(random), around(random), around(random)));
 }
 
+bool is_beyond(const gpu::SplitRule& rule, glm::dvec3 color) {
+    const double sum = color.r + color.g + color.b;
+    return (rule.axis_r * color.r + rule.axis_g * color.g) / sum > rule.threshold;
+}
+
 TEST_F(SplitLabels, ADishOnABoardBecomesALabelOfItsOwn) {
     std::mt19937 random(1);
     const auto in_dish = [](int x, int y) { return std::hypot(x - 7.5, y - 7.5) < 5; };
@@ -183,11 +189,8 @@ TEST_F(SplitLabels, ADishOnABoardBecomesALabelOfItsOwn) {
         EXPECT_EQ(got.labels[label].chroma_samples, 0u);
         EXPECT_EQ(got.kd[label].samples, 0u);
     }
-    for (uint32_t i = 0; i < part.size(); ++i) {
-        const uint32_t label = in_dish(part[i].voxel.x, part[i].voxel.y) ? 2 : 1;
-        EXPECT_EQ(got.record_labels[i], label) << "record " << i;
-        EXPECT_EQ(got.changed[i], label == 2 ? 17u : 3u) << "record " << i;
-    }
+    for (const reference::ColoredVoxel& v : part)
+        EXPECT_EQ(is_beyond(got.rules[1], v.color), in_dish(v.voxel.x, v.voxel.y)) << v.voxel.x << ' ' << v.voxel.y;
 }
 
 TEST_F(SplitLabels, OneColorPrintsGradientsAndSpecksStayWhole) {
@@ -230,8 +233,8 @@ TEST_F(SplitLabels, AgreesWithTheReference) {
     const SplitChoice choice{.stamp = 17};
     const Result got = split(choice);
     int split = 0, whole = 0;
-    uint32_t first = 0, next = 25;
-    for (uint32_t label = 1; label <= parts.size(); ++label, first += 256) {
+    uint32_t next = 25;
+    for (uint32_t label = 1; label <= parts.size(); ++label) {
         const auto best = reference::best_color_split(parts[label - 1]);
         ASSERT_TRUE(best);
         // Of each condition, how far it is met; near 1 the bins of Otsu's threshold may decide otherwise.
@@ -248,7 +251,7 @@ TEST_F(SplitLabels, AgreesWithTheReference) {
         size_t other = 0;
         for (uint32_t i = 0; i < 256; ++i) {
             const bool goes = reference::is_of_fewer(*best, parts[label - 1][i].color);
-            other += (got.record_labels[first + i] == got.partners[label]) != goes ? 1 : 0;
+            other += is_beyond(got.rules[label], parts[label - 1][i].color) != goes ? 1 : 0;
         }
         EXPECT_LE(other, 2u) << "of 256 records of label " << label << ", beside the threshold";
     }
@@ -338,6 +341,41 @@ TEST_F(SplitLabels, ANewLabelIsNotYetSplit) {
     begin({plane(16, [&](int x, int) { return varied(x < 5 ? kGrey : kBrown, random, 0.05); })}, 5);
     EXPECT_EQ(split({.stamp = gpu::kLeastSplitAge}).counters.split, 0u) << "it is from frame 1";
     EXPECT_EQ(split({.stamp = gpu::kLeastSplitAge + 1}).counters.split, 1u);
+}
+
+TEST_F(SplitLabels, RecordsHaveTheLabelOfTheVoxelAtTheirSurface) {
+    std::mt19937 random(10);
+    rig_.set_random(random, 4);
+    std::vector<uint32_t> words = rig_.words();
+    for (uint32_t& word : words) word = word == 0 ? 0 : (word & ~0xffffu) | (1 + random() % 4);
+    rig_.set(words, std::vector<uint32_t>(LabelRig::kCapacity, 1));
+    colors_.assign(words.size(), 0);  // so that no voxel's label changes
+    std::vector<FilledRecord> around;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 at(random() % 900, random() % 600, random() % 100);  // mm, about the wall
+        around.push_back({at * 0.001f + glm::vec3(-0.45f, -0.3f, 0.95f), glm::normalize(at - 45.0f), 1 + i % 4u, {}});
+    }
+    begin({plane(16, [&](int x, int) { return varied(x < 5 ? kGrey : kBrown, random, 0.05); }),
+           plane(16, [&](int, int) { return varied(kBrown, random, 0.05); })},
+          5, around);
+    const Result got = split();
+    ASSERT_EQ(got.partners[1], 3u);
+    std::vector<uint32_t> roots(LabelRig::kLabels);
+    std::iota(roots.begin(), roots.end(), 0u);
+    roots[4] = 0;  // there is none
+    const reference::LabelVolume volume = rig_.volume();
+    int moved = 0, stayed = 0, other = 0;
+    for (uint32_t i = 0; i < around.size(); ++i) {
+        const uint32_t label = around[i].label, partner = label == 1 ? 3 : label == 3 ? 1 : 0;
+        const glm::dvec3 point_m(kept_point_m(map_, around[i]));
+        const bool moves =
+            partner != 0 && reference::sampled_label(volume, roots, point_m, glm::dvec3(around[i].normal)) == partner;
+        (moves ? moved : stayed) += 1;
+        other += got.record_labels[i] != (moves ? partner : label) || got.changed[i] != (moves ? 17u : 3u) ? 1 : 0;
+    }
+    EXPECT_GT(moved, 100);
+    EXPECT_GT(stayed, 100);
+    EXPECT_LE(other, 8) << "where a point lies between two voxels";
 }
 
 TEST_F(SplitLabels, WithoutAFreeLabelNothingIsSplitAndThatIsCounted) {
