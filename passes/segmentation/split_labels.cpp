@@ -54,7 +54,7 @@ void add_split_labels(graph::FrameGraph& frame, const VoxelMap& map, const Voxel
 
     auto part_voxels = frame.compute("segmentation.part_voxels", spirv::part_voxels);
     part_voxels.read("BlockKeys", voxels.block_keys).read("Counters", voxels.counters).read("Color", voxels.color);
-    part_voxels.read("Parents", table.parents).read("Partners", table.partners).read("Rules", table.rules);
+    part_voxels.read("Partners", table.partners).read("Rules", table.rules);
     labels.words = part_voxels.modify("Words", labels.words);
     part_voxels.push(map.grid());
     part_voxels.specialise("kVoxelChunks", map.chunks());

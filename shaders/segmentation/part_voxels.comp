@@ -11,22 +11,21 @@
 layout(local_size_x = kSweepGroup) in;
 layout(std430, binding = 0) readonly buffer BlockKeys { uint block_keys[]; };
 layout(std430, binding = 1) readonly buffer Counters { MapCounters counters; };
-layout(binding = 2, r32ui) uniform readonly uimageBuffer Parents;
-layout(binding = 3, r32ui) uniform readonly uimageBuffer Partners;
-layout(std430, binding = 4) readonly buffer Rules { SplitRule rules[]; };
-layout(std430, binding = 5) buffer Words { uvec4 quads[]; }
+layout(binding = 2, r32ui) uniform readonly uimageBuffer Partners;
+layout(std430, binding = 3) readonly buffer Rules { SplitRule rules[]; };
+layout(std430, binding = 4) buffer Words { uvec4 quads[]; }
 words[kMaxVoxelChunks];
-layout(std430, binding = 10) readonly buffer Color { uvec4 quads[]; }
+layout(std430, binding = 9) readonly buffer Color { uvec4 quads[]; }
 color[kMaxVoxelChunks];
 layout(push_constant) uniform Push { VoxelGrid grid; };
 
 shared uint used[kSweepGroup];
 shared uint used_count;
 
+// A merged label still has its partner and rule. To look up roots, too, would take half as long again; sweeps do it.
 uint parted(uint word, uint color_word) {
-    const uint root = imageLoad(Parents, int(voxel_label(word))).x;
-    const uint partner = imageLoad(Partners, int(root)).x;
-    const bool goes = partner != kNoLabel && is_partners(rules[root], voxel_color(color_word));
+    const uint label = voxel_label(word), partner = imageLoad(Partners, int(label)).x;
+    const bool goes = partner != kNoLabel && is_partners(rules[label], voxel_color(color_word));
     return goes ? label_word(partner, word >> 16) : word;
 }
 
