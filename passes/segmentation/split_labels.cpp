@@ -48,7 +48,6 @@ PartArguments add_start_splits(graph::FrameGraph& frame, const VoxelMapIds& voxe
 void add_split_labels(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels, LabelMapIds& labels,
                       const ObservationMap& observations, ObservationMapIds& records, SegmentTableIds& table,
                       SegmentSampleIds& samples, uint32_t capacity_labels, const SplitChoice& choice) {
-    if (choice.least_apart <= 0) return;
     const PartArguments arguments =
         add_start_splits(frame, voxels, observations, records, table, samples, capacity_labels, choice);
 
@@ -65,9 +64,7 @@ void add_split_labels(graph::FrameGraph& frame, const VoxelMap& map, const Voxel
     part_records.read("Keys", voxels.keys).read("Blocks", voxels.blocks);
     part_records.read("Parents", table.parents).read("Partners", table.partners);
     records.records = part_records.modify("Records", records.records);
-    records.changed = part_records.modify("Changed", records.changed);
-    part_records.push(
-        gpu::PartRecordsParams{map.grid(), observations.grid(), observations.edge_shift(), choice.stamp, 0, 0});
+    part_records.push(gpu::PartRecordsParams{map.grid(), observations.grid(), observations.edge_shift(), 0, 0, 0});
     part_records.specialise("kVoxelChunks", map.chunks());
     part_records.dispatch_indirect(arguments.records);
 }

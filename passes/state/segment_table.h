@@ -12,11 +12,12 @@ namespace patina {
 
 /// Versions of the table's buffers within one frame.
 struct SegmentTableIds {
-    graph::BufferId parents;      ///< u32 per label: the label it was merged into, itself while it is in use, 0 if not
-    graph::BufferId partners;     ///< u32 per label: that whose colours were its own until it was split; 0: none
-    graph::BufferId rules;        ///< gpu::SplitRule per label that has a partner
-    graph::BufferId labels;       ///< gpu::SegmentLabel per label
-    graph::BufferId pairs;        ///< gpu::SegmentPair[gpu::kPairBuckets * gpu::kPairWays]
+    graph::BufferId parents;   ///< u32 per label: the label it was merged into, itself while it is in use, 0 if not
+    graph::BufferId partners;  ///< u32 per label: that whose colours were its own until it was split; itself: that was
+                               ///< in vain, it is not split again; 0: none
+    graph::BufferId rules;     ///< gpu::SplitRule per label that has a partner other than itself
+    graph::BufferId labels;    ///< gpu::SegmentLabel per label
+    graph::BufferId pairs;     ///< gpu::SegmentPair[gpu::kPairBuckets * gpu::kPairWays]
     graph::BufferId free_labels;  ///< u32 ring of the labels not in use
     graph::BufferId counters;     ///< gpu::SegmentCounters
 };

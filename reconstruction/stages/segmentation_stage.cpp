@@ -126,7 +126,7 @@ FrameSegments SegmentationStage::segments(graph::FrameGraph& graph, const Segmen
 
 void SegmentationStage::add_split(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationMap& map,
                                   const FrameContext& frame) const {
-    if (settings_.given || settings_.split_chroma == 0 || !chooses_samples(frame.index)) return;
+    if (settings_.given || settings_.split_chroma <= 0 || !chooses_samples(frame.index + 1)) return;
     LabelMapIds labels = labels_.import(graph);
     ObservationMapIds records = map.import(graph);
     SegmentTableIds table = table_.import(graph);

@@ -100,8 +100,8 @@ class SegmentationStage {
     /// To be called after a frame's blocks were allocated, in the frame that add() is called for.
     void clear_new_blocks(graph::FrameGraph& graph, const VoxelMapIds& voxels) const;
 
-    /// Splits labels whose records have two colours, in frames that choose the segments' records anew. To be called
-    /// before add(), and before records are given back.
+    /// Splits labels whose records have two colours, in the frame before records are chosen anew: those that are kept
+    /// have neither been given back nor left the device since they were chosen. To be called before add().
     void add_split(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationMap& map,
                    const FrameContext& frame) const;
 

@@ -215,11 +215,16 @@ bool same_material(uint a, uint b) {
 // not split again.
 void keep_partner(uint into, uint label) {
     const uint partner = partners[label];
-    if (partner == into) partners[into] = into;
-    if (partner == kNoLabel || partners[into] != kNoLabel) return;
+    if (partner == kNoLabel || partner == label) return;
+    if (partner == into) {
+        partners[into] = into;
+        return;
+    }
+    const bool takes = partners[into] == kNoLabel;
+    if (partners[partner] == label) partners[partner] = takes ? into : kNoLabel;
+    if (!takes) return;
     partners[into] = partner;
     rules[into] = rules[label];
-    if (partners[partner] == label) partners[partner] = into;
 }
 
 void merge_labels(uint into, uint label) {
@@ -322,6 +327,7 @@ void end_sweep() {
         free_labels[next++ % frame.capacity] = label;
         labels[label] = SegmentLabel(kFreeLabel, frame.stamp, 0u, 0u, 0u, 0u, 0u, 0u);
         parents[label] = kNoLabel;
+        partners[label] = kNoLabel;
     }
     join();
     if (gl_LocalInvocationIndex == 0u) {

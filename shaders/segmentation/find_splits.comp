@@ -37,7 +37,8 @@ shared int sums[5];  // of r, g, and about the mean of r r, r g, g g
 shared int least, most;
 shared uint bin_counts[kSplitBins];
 shared int bin_sums[kSplitBins];  // of places along the axis
-shared float threshold, mean_below, mean_beyond;
+shared float threshold;
+shared bool is_apart;
 shared uint count_beyond;
 shared uint crossing;
 shared ivec3 kd_sums[2];  // of the chromaticities of kd below and beyond the threshold, and how many
@@ -130,8 +131,9 @@ float count_between(float low, float high) {
     return float(count);
 }
 
-// By one invocation: the threshold, and how many lie beyond it; 0 where the two sides are not two colours.
-void find_threshold() {
+// By one invocation: Otsu's two parts, and half-way between their means the threshold. Whether both are narrow and
+// apart.
+bool find_threshold() {
     const Part all = part_below(kSplitBins);
     uint best = 0u;
     float best_between = 0.0;
@@ -149,13 +151,20 @@ void find_threshold() {
     }
     below = part_below(best);
     const Part beyond = rest_of(all, below);
-    const float apart = (mean_of(beyond) - mean_of(below)) * kSplitStep;
-    const bool gap = count_between(mean_of(below), mean_of(beyond)) <= kMostBetween * all.count;
-    const bool two = gap && apart >= params.least_apart &&
-                     min(below.count, beyond.count) >= max(float(kLeastSplitPart), kLeastSplitShare * all.count);
-    // Half-way between the means: between them there is hardly anything.
     threshold = float(least) + 0.5 * (mean_of(beyond) + mean_of(below));
-    count_beyond = two ? uint(beyond.count) : 0u;
+    const bool gap = count_between(mean_of(below), mean_of(beyond)) <= kMostBetween * all.count;
+    return gap && (mean_of(beyond) - mean_of(below)) * kSplitStep >= params.least_apart;
+}
+
+// How many lie beyond the threshold; 0 where either part is too small.
+uint count_parts(vec2 axis, uint count) {
+    for (uint i = gl_LocalInvocationIndex; i < count; i += kSplitGroup) {
+        if (float(place_along(axis, chromas[i])) > threshold) atomicAdd(count_beyond, 1u);
+    }
+    barrier();
+    const uint beyond = count_beyond;
+    const float least_part = max(float(kLeastSplitPart), kLeastSplitShare * float(count));
+    return float(min(beyond, count - beyond)) >= least_part ? beyond : 0u;
 }
 
 // Whether the albedos are known to be less apart than the colours: highlights are what differs.
@@ -200,7 +209,7 @@ void main() {
         known.state == kLiveLabel && partners[label] == kNoLabel && params.stamp - known.since >= kLeastSplitAge;
     if (kept_count < kLeastSplitSamples || !may_split) return;
     if (lane == 0u) {
-        listed = crossing = 0u;
+        listed = crossing = count_beyond = 0u;
         least = 0x7fffffff;
         most = -0x7fffffff;
     }
@@ -217,9 +226,10 @@ void main() {
     if (count < kLeastSplitSamples) return;
     const vec2 axis = principal_axis(count);
     fill_bins(axis, count);
-    if (lane == 0u) find_threshold();
+    if (lane == 0u) is_apart = find_threshold();
     barrier();
-    const uint beyond = count_beyond;
+    if (!is_apart) return;
+    const uint beyond = count_parts(axis, count);
     if (beyond == 0u) return;
     if (is_one_albedo(axis, count)) return;
     count_crossing(axis, count);

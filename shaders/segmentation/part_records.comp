@@ -10,12 +10,11 @@
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) buffer Records { VoxelRecord records[]; };
-layout(std430, binding = 2) buffer Changed { uint changed[]; };
-layout(binding = 3, r32ui) uniform readonly uimageBuffer Parents;
-layout(binding = 4, r32ui) uniform readonly uimageBuffer Partners;
-layout(std430, binding = 5) readonly buffer Keys { uvec4 buckets[]; };
-layout(std430, binding = 6) readonly buffer Blocks { uint blocks[]; };
-layout(std430, binding = 7) readonly buffer Words { uint words[]; }
+layout(binding = 2, r32ui) uniform readonly uimageBuffer Parents;
+layout(binding = 3, r32ui) uniform readonly uimageBuffer Partners;
+layout(std430, binding = 4) readonly buffer Keys { uvec4 buckets[]; };
+layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
+layout(std430, binding = 6) readonly buffer Words { uint words[]; }
 labels[kMaxVoxelChunks];
 layout(push_constant) uniform Push { PartRecordsParams params; };
 #define KEYS(bucket) buckets[bucket]
@@ -49,7 +48,5 @@ void main() {
     uint label = label_at(point_m);
     if (label == kNoLabel) label = label_at(point_m - across_m);
     if (label == kNoLabel) label = label_at(point_m + across_m);
-    if (label != partner) return;
-    records[id].label = (record.label & ~0xffffu) | partner;
-    changed[id] = params.stamp;
+    if (label == partner) records[id].label = (record.label & ~0xffffu) | partner;
 }

@@ -8,15 +8,15 @@ layout(local_size_x = kSplitGroup) in;
 layout(std430, binding = 0) readonly buffer Proposals { SplitProposal proposals[]; };
 layout(std430, binding = 1) buffer Parents { uint parents[]; };
 layout(std430, binding = 2) buffer Labels { SegmentLabel labels[]; };
-layout(std430, binding = 3) buffer Partners { uint partners[]; };
+layout(std430, binding = 3) coherent buffer Partners { uint partners[]; };
 layout(std430, binding = 4) buffer Rules { SplitRule rules[]; };
 layout(std430, binding = 5) readonly buffer FreeLabels { uint free_labels[]; };
 layout(std430, binding = 6) buffer Counters { SegmentCounters counters; };
 layout(std430, binding = 7) buffer SegmentKds { SegmentKd kds[]; };
 layout(std430, binding = 8) readonly buffer VoxelCounters { MapCounters voxel_counters; };
 layout(std430, binding = 9) readonly buffer RecordCounters { MapCounters record_counters; };
-layout(std430, binding = 10) writeonly buffer VoxelArguments { uvec4 voxel_arguments; };    // 64 block ids a group
-layout(std430, binding = 11) writeonly buffer RecordArguments { uvec4 record_arguments; };  // 64 records a group
+layout(std430, binding = 10) writeonly buffer VoxelArguments { uvec4 voxel_arguments; };
+layout(std430, binding = 11) writeonly buffer RecordArguments { uvec4 record_arguments; };
 layout(push_constant) uniform Push { StartSplitsParams params; };
 
 const uint kGroup = kSplitGroup;
@@ -57,6 +57,10 @@ void main() {
     for (uint label = own.x; label < own.y; ++label) {
         if (proposals[label].beyond > 0u && next++ < available)
             split(label, free_labels[(head + next - 1u) % capacity], proposals[label].rule);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    for (uint label = own.x; label < own.y; ++label) {
         if (partners[label] != kNoLabel && partners[label] != label) atomicOr(paired, 1u);
     }
     barrier();
@@ -68,6 +72,6 @@ void main() {
     counters.created += granted;
     counters.split += granted;
     counters.refused += total - granted;
-    voxel_arguments = uvec4(paired * ((voxel_counters.high_water + 63u) / 64u), 1u, 1u, 0u);
-    record_arguments = uvec4(paired * ((record_counters.high_water + 63u) / 64u), 1u, 1u, 0u);
+    voxel_arguments = uvec4(paired * ((voxel_counters.high_water + kSweepGroup - 1u) / kSweepGroup), 1u, 1u, 0u);
+    record_arguments = uvec4(paired * ((record_counters.high_water + kRecordGroup - 1u) / kRecordGroup), 1u, 1u, 0u);
 }

@@ -41,7 +41,10 @@ void renew() {
     for (uint label = 1u + gl_LocalInvocationIndex; label < params.labels; label += kGroup) {
         const uint since = labels[label].since;
         if (labels[label].state != kLiveLabel || since <= progress[label].since) continue;
-        if (progress[label].since != 0u) forget(label);
+        if (progress[label].since != 0u) {
+            forget(label);
+            progress[label].changes = max(progress[label].changes, 1u);  // what was split may not be seen again
+        }
         progress[label].since = since;
         progress[label].estimated = 0u;
     }

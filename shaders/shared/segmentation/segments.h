@@ -96,7 +96,7 @@ struct SegmentCounters {
     uint created;       // over the whole run
     uint merged;        // likewise
     uint pruned;        // likewise
-    uint refused;       // likewise: segments that found all labels in use
+    uint refused;       // likewise: segments and splits that found all labels in use
     uint split;         // likewise: labels whose colours were two
     uint overflows;     // likewise: frames whose overlap table was too small; they change nothing
     uint frame_merged;  // in this frame

@@ -43,9 +43,9 @@ struct PartRecordsParams {
     VoxelGrid voxels;
     VoxelGrid records;
     uint edge_shift;
-    uint stamp;
     uint pad0;
     uint pad1;
+    uint pad2;
 };
 
 INTEROP_END

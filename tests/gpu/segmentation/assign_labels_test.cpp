@@ -271,7 +271,7 @@ TEST_F(AssignLabels, AMergedLabelsPartnerIsThatOfTheOneThatRemains) {
         ASSERT_EQ(counters_.merged, 1u);
         const std::vector<uint32_t> partners = this->partners();
         EXPECT_EQ(partners[1], has_one ? 4u : 3u);
-        EXPECT_EQ(partners[3], has_one ? 2u : 1u);
+        EXPECT_EQ(partners[3], has_one ? 0u : 1u) << "nobody's partner is a label that is gone";
         const auto rules = read(&SegmentTableIds::rules).as<gpu::SplitRule>();
         EXPECT_EQ(rules[1].threshold, 0.4f);
         EXPECT_EQ(rules[1].beyond, 0u);
@@ -283,11 +283,22 @@ TEST_F(AssignLabels, WhatWasGivenUpIsNobodysPartner) {
     assign({{500, {}}, {500, {}}, {500, {}}});
     change([](uint32_t label, gpu::SegmentLabel& known) { known.tally = label == 2 ? 0 : 100; });
     pair(1, 2);
-    while (params_.stamp < 2 * gpu::kSweepFrames + 1) {
+    while (params_.stamp < 4 * gpu::kSweepFrames + 1) {
         change([](uint32_t label, gpu::SegmentLabel& known) { known.tally = label == 2 ? 0 : 100; });
         assign({{500, {{1, 500}}}, {500, {{3, 500}}}});
     }
     EXPECT_EQ(counters_.pruned, 1u);
+    EXPECT_EQ(partners()[1], 0u);
+    EXPECT_EQ(partners()[2], 0u) << "nor has it one";
+}
+
+TEST_F(AssignLabels, WhatWasSplitInVainIsItsOwnPartnerAndSoIsNoOtherThatItJoins) {
+    start(64);
+    assign({{500, {}}, {500, {}}});
+    change([&](uint32_t label, gpu::SegmentLabel& known) { known.chroma_samples = label == 1 ? 40 : 30; });
+    pair(2, 2);
+    for (int i = 0; i < 3; ++i) assign({{1000, {{1, 600}, {2, 300}}}});
+    ASSERT_EQ(counters_.merged, 1u);
     EXPECT_EQ(partners()[1], 0u);
 }
 

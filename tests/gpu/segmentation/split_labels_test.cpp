@@ -16,6 +16,7 @@ namespace patina::split_labels_test {
 namespace {
 
 constexpr float kVoxelM = 0.02f;
+constexpr SplitChoice kChoice{0.12f, 17};
 const glm::dvec3 kBrown(0.059, 0.029, 0.012), kGrey(0.2, 0.18, 0.14);
 
 /// Records of one label, each with one colour.
@@ -25,7 +26,7 @@ class SplitLabels : public GpuTest {
   protected:
     struct Result {
         std::vector<gpu::SegmentLabel> labels;
-        std::vector<uint32_t> partners, record_labels, changed;
+        std::vector<uint32_t> partners, record_labels;
         std::vector<gpu::SplitRule> rules;
         std::vector<gpu::SegmentKd> kd;
         gpu::SegmentCounters counters{};
@@ -53,7 +54,6 @@ class SplitLabels : public GpuTest {
         run(std::move(frame));
         records_ = static_cast<uint32_t>(records.size());
         set(&ObservationMapIds::albedo, std::vector<glm::uvec2>(records_));
-        set(&ObservationMapIds::changed, std::vector<uint32_t>(records_, 3));
         start_table(static_cast<uint32_t>(parts.size()), free);
     }
 
@@ -65,7 +65,7 @@ class SplitLabels : public GpuTest {
         run(std::move(frame));
     }
 
-    Result split(const SplitChoice& choice = {.stamp = 17}) {
+    Result split(const SplitChoice& choice = kChoice) {
         graph::FrameGraph frame = runner().begin();
         VoxelMapIds voxels = rig_.map().import(frame);
         LabelMapIds labels = rig_.labels().import(frame);
@@ -80,18 +80,15 @@ class SplitLabels : public GpuTest {
         add_split_labels(frame, rig_.map(), voxels, labels, map_, ids, table, samples, LabelRig::kLabels, choice);
         LabelMap::keep(frame, labels);
         frame.keep(ids.records);
-        frame.keep(ids.changed);
         SegmentTable::keep(frame, table);
         frame.keep(samples.kd);
         const auto read = [&](graph::BufferId id) { return frame.read_back(id); };
         const graph::Readback known = read(table.labels), partners = read(table.partners), rules = read(table.rules),
-                              told = read(table.counters), records = read(ids.records), kd = read(samples.kd),
-                              changed = read(ids.changed);
+                              told = read(table.counters), records = read(ids.records), kd = read(samples.kd);
         run(std::move(frame));
         Result result;
         result.labels = known.as<gpu::SegmentLabel>();
         result.partners = partners.as<uint32_t>();
-        result.changed = changed.as<uint32_t>();
         result.rules = rules.as<gpu::SplitRule>();
         result.kd = kd.as<gpu::SegmentKd>();
         result.counters = told.as<gpu::SegmentCounters>().front();
@@ -126,10 +123,13 @@ class SplitLabels : public GpuTest {
             labels[label] = {gpu::kLiveLabel, 1, 6, 100, 0, 10, 5, 3};
             parents[label] = label;
         }
-        std::iota(ring.begin(), ring.end(), live + 1);
+        // The first free label is the ring's last entry, the next one its first.
+        std::iota(ring.begin(), ring.end(), live + 2);
+        ring.back() = live + 1;
         gpu::SegmentCounters counters{};
         counters.live = live;
         counters.high_water = live + 1;
+        counters.free_head = LabelRig::kLabels - 1;
         counters.free_labels = free;
         counters.capacity = LabelRig::kLabels;
         ids.labels = frame.upload_bytes(ids.labels, 0, std::as_bytes(std::span(labels)), true);
@@ -230,15 +230,14 @@ TEST_F(SplitLabels, AgreesWithTheReference) {
         }));
     }
     begin(parts, 24);
-    const SplitChoice choice{.stamp = 17};
-    const Result got = split(choice);
+    const Result got = split();
     int split = 0, whole = 0;
     uint32_t next = 25;
     for (uint32_t label = 1; label <= parts.size(); ++label) {
         const auto best = reference::best_color_split(parts[label - 1]);
         ASSERT_TRUE(best);
         // Of each condition, how far it is met; near 1 the bins of Otsu's threshold may decide otherwise.
-        const double met = std::min({best->apart / choice.least_apart, 0.4 / best->mixed, 0.17 / best->between,
+        const double met = std::min({best->apart / kChoice.least_apart, 0.4 / best->mixed, 0.17 / best->between,
                                      static_cast<double>(best->fewer) / (gpu::kLeastSplitShare * 256)});
         const bool was_split = got.partners[label] != 0;
         if (was_split) {
@@ -282,7 +281,7 @@ TEST_F(SplitLabels, VoxelsHaveTheLabelOfTheirColorInThisAndLaterCalls) {
     const std::vector<uint32_t> keys = rig_.fusion().table().block_keys;
     for (int call = 0; call < 2; ++call) {
         const std::vector<uint32_t> before = set_random();
-        const Result got = split({.stamp = 17u + 32 * static_cast<uint32_t>(call)});
+        const Result got = split({kChoice.least_apart, 17u + 32 * static_cast<uint32_t>(call)});
         ASSERT_EQ(got.partners[1], 3u) << "and is not split again";
         EXPECT_EQ(got.counters.split, 1u);
         const std::vector<uint32_t> after = rig_.words();
@@ -339,8 +338,8 @@ TEST_F(SplitLabels, AHighlightInSomeViewsChangesNoRecordsColor) {
 TEST_F(SplitLabels, ANewLabelIsNotYetSplit) {
     std::mt19937 random(8);
     begin({plane(16, [&](int x, int) { return varied(x < 5 ? kGrey : kBrown, random, 0.05); })}, 5);
-    EXPECT_EQ(split({.stamp = gpu::kLeastSplitAge}).counters.split, 0u) << "it is from frame 1";
-    EXPECT_EQ(split({.stamp = gpu::kLeastSplitAge + 1}).counters.split, 1u);
+    EXPECT_EQ(split({kChoice.least_apart, gpu::kLeastSplitAge}).counters.split, 0u) << "it is from frame 1";
+    EXPECT_EQ(split({kChoice.least_apart, gpu::kLeastSplitAge + 1}).counters.split, 1u);
 }
 
 TEST_F(SplitLabels, RecordsHaveTheLabelOfTheVoxelAtTheirSurface) {
@@ -371,7 +370,7 @@ TEST_F(SplitLabels, RecordsHaveTheLabelOfTheVoxelAtTheirSurface) {
         const bool moves =
             partner != 0 && reference::sampled_label(volume, roots, point_m, glm::dvec3(around[i].normal)) == partner;
         (moves ? moved : stayed) += 1;
-        other += got.record_labels[i] != (moves ? partner : label) || got.changed[i] != (moves ? 17u : 3u) ? 1 : 0;
+        other += got.record_labels[i] != (moves ? partner : label) ? 1 : 0;
     }
     EXPECT_GT(moved, 100);
     EXPECT_GT(stayed, 100);
@@ -388,12 +387,6 @@ TEST_F(SplitLabels, WithoutAFreeLabelNothingIsSplitAndThatIsCounted) {
     EXPECT_EQ(got.counters.free_labels, 0u);
     EXPECT_EQ(got.partners[1], 3u) << "the first label comes first";
     EXPECT_EQ(got.partners[2], 0u);
-}
-
-TEST_F(SplitLabels, AThresholdOfZeroMeansNever) {
-    std::mt19937 random(6);
-    begin({plane(16, [&](int x, int) { return varied(x < 5 ? kGrey : kBrown, random, 0.05); })}, 5);
-    EXPECT_EQ(split({.least_apart = 0, .stamp = 17}).counters.split, 0u);
 }
 
 }  // namespace

@@ -93,8 +93,10 @@ std::optional<ColorSplit> best_color_split(const std::vector<ColoredVoxel>& voxe
         std::ranges::count_if(placed, [&](const Placed& p) { return p.along > first && p.along < last; });
     split.between = static_cast<double>(between) / static_cast<double>(placed.size());
     split.mixed = mixture(placed, best);
-    split.fewer = std::min(low.size(), high.size());
-    if (high.size() > low.size()) {
+    const auto beyond =
+        static_cast<size_t>(std::ranges::count_if(placed, [&](const Placed& p) { return p.along > split.threshold; }));
+    split.fewer = std::min(beyond, placed.size() - beyond);
+    if (beyond > split.fewer) {
         split.axis = -split.axis;
         split.threshold = -split.threshold;
     }
