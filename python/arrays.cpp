@@ -74,6 +74,8 @@ RigidTransform to_transform(const py::array_t<double>& array, const char* what) 
     return transform;
 }
 
+py::tuple to_tuple(glm::dvec3 v) { return py::make_tuple(v.x, v.y, v.z); }
+
 DepthInput to_depth(const py::object& given, const Intrinsics& camera, double metres_per_unit, double max_metres) {
     const py::array array = to_numpy(given, "depth");
     DepthInput depth;

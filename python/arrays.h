@@ -22,6 +22,9 @@ namespace py = pybind11;
 py::array_t<double> to_array(const RigidTransform& transform);
 RigidTransform to_transform(const py::array_t<double>& array, const char* what);
 
+/// Three numbers.
+py::tuple to_tuple(glm::dvec3 v);
+
 /// A depth picture: uint16 units or float32 metres, H x W of the camera, C order. Borrows the array's memory. Throws
 /// Error for another type, shape or layout, and for what is no array.
 DepthInput to_depth(const py::object& given, const Intrinsics& camera, double metres_per_unit, double max_metres);

@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "patina/session.h"
+#include "python/arrays.h"
 #include "python/bindings.h"
 
 namespace patina::python {
@@ -11,7 +12,6 @@ namespace patina::python {
 namespace {
 
 glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-py::tuple to_tuple(glm::dvec3 v) { return py::make_tuple(v.x, v.y, v.z); }
 
 void bind_lamps(py::module_& m) {
     py::class_<Light>(m, "Light", "A lamp: radiance at distance r is intensity / r^2.")

@@ -15,10 +15,12 @@ namespace {
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 using Pose = std::optional<py::array_t<double>>;
 
-std::unique_ptr<Reconstruction> make(Device& device, const std::optional<Settings>& settings, std::vector<Light> lights,
-                                     std::array<double, 3> ambient, const std::string& labels,
-                                     const std::string& materials, const std::string& poses, const std::string& gains,
-                                     const std::filesystem::path& network, std::optional<uint64_t> seed) {
+std::unique_ptr<Reconstruction> make_reconstruction(Device& device, const std::optional<Settings>& settings,
+                                                    std::vector<Light> lights, std::array<double, 3> ambient,
+                                                    const std::string& labels, const std::string& materials,
+                                                    const std::string& poses, const std::string& gains,
+                                                    const std::filesystem::path& network,
+                                                    std::optional<uint64_t> seed) {
     ReconstructionOptions options;
     options.lighting = Lighting{std::move(lights), {ambient[0], ambient[1], ambient[2]}, "given"};
     set_choices(options, labels, materials, poses, gains, network, seed, settings);
@@ -55,10 +57,10 @@ FrameResult add(Reconstruction& self, const py::object& depth, const py::object&
 
 void bind_reconstruction(py::module_& m) {
     py::class_<Reconstruction>(m, "Reconstruction", "Fuses arrays. With light, segments and their materials are found.")
-        .def(py::init(&make), py::arg("device"), py::arg("settings") = std::nullopt, py::arg("lights") = py::tuple(),
-             py::arg("ambient") = std::array<double, 3>{}, py::kw_only(), py::arg("labels") = "geometry",
-             py::arg("materials") = "auto", py::arg("poses") = "auto", py::arg("gains") = "auto",
-             py::arg("network") = "", py::arg("seed") = std::nullopt, py::keep_alive<1, 2>())
+        .def(py::init(&make_reconstruction), py::arg("device"), py::arg("settings") = std::nullopt,
+             py::arg("lights") = py::tuple(), py::arg("ambient") = std::array<double, 3>{}, py::kw_only(),
+             py::arg("labels") = "geometry", py::arg("materials") = "auto", py::arg("poses") = "auto",
+             py::arg("gains") = "auto", py::arg("network") = "", py::arg("seed") = std::nullopt, py::keep_alive<1, 2>())
         .def("add", &add, py::arg("depth"), py::arg("color"), py::arg("camera"),
              py::arg("world_from_camera") = std::nullopt, py::arg("color_camera") = std::nullopt,
              py::arg("color_from_depth") = std::nullopt, py::arg("timestamp") = 0.0, py::arg("metres_per_unit") = 0.001,

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "python/arrays.h"
 #include "python/bindings.h"
 
 namespace patina::python {
@@ -12,8 +13,6 @@ namespace patina::python {
 namespace {
 
 using Unlocked = py::call_guard<py::gil_scoped_release>;
-
-py::tuple to_tuple(glm::dvec3 v) { return py::make_tuple(v.x, v.y, v.z); }
 
 py::list segments_of(const Scene& scene) {
     py::list list;

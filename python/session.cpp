@@ -19,14 +19,15 @@ struct Running {
     std::unique_ptr<Session> session;
 };
 
-std::unique_ptr<Running> make(Device& device, const std::filesystem::path& sequence, const std::string& format,
-                              uint32_t frames, const GivenLighting& lighting, const std::string& labels,
-                              const std::string& materials, const std::string& poses, const std::string& gains,
-                              const std::filesystem::path& network, std::optional<uint64_t> seed, uint32_t hold_out,
-                              const std::filesystem::path& map, uint32_t checkpoint_every, bool resume,
-                              const std::filesystem::path& extends, const std::string& reflectance_for,
-                              const std::string& detail, float white_albedo, const std::optional<Settings>& settings,
-                              py::object progress, py::object message, py::object stop) {
+std::unique_ptr<Running> make_session(Device& device, const std::filesystem::path& sequence, const std::string& format,
+                                      uint32_t frames, const GivenLighting& lighting, const std::string& labels,
+                                      const std::string& materials, const std::string& poses, const std::string& gains,
+                                      const std::filesystem::path& network, std::optional<uint64_t> seed,
+                                      uint32_t hold_out, const std::filesystem::path& map, uint32_t checkpoint_every,
+                                      bool resume, const std::filesystem::path& extends,
+                                      const std::string& reflectance_for, const std::string& detail, float white_albedo,
+                                      const std::optional<Settings>& settings, py::object progress, py::object message,
+                                      py::object stop) {
     const auto callbacks = std::make_shared<Callbacks>(std::move(progress), std::move(message), std::move(stop));
     SessionOptions options;
     options.sequence = sequence.string();
@@ -87,7 +88,7 @@ void wait(Running& self) {
 
 void bind_session(py::module_& m) {
     py::class_<Running>(m, "Session", "Reconstructs all that a sequence holds.")
-        .def(py::init(&make), py::arg("device"), py::arg("sequence"), py::kw_only(), py::arg("format") = "",
+        .def(py::init(&make_session), py::arg("device"), py::arg("sequence"), py::kw_only(), py::arg("format") = "",
              py::arg("frames") = 0u, py::arg("lighting") = "", py::arg("labels") = "geometry",
              py::arg("materials") = "auto", py::arg("poses") = "auto", py::arg("gains") = "auto",
              py::arg("network") = "", py::arg("seed") = std::nullopt, py::arg("hold_out") = 0u, py::arg("map") = "",

@@ -16,7 +16,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace examples_bench {
 namespace {
 
 constexpr uint32_t kBatch = 64;     // scenes, as `patina synth-hemi` draws them
@@ -199,8 +199,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace examples_bench
 
 Subject examples_subject() {
+    using namespace examples_bench;
     return {"examples",
             "How far materials of held-out examples are from the truth: of the network, of the fit, and of both",
             {},

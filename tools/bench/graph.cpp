@@ -11,7 +11,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace graph_bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -99,8 +99,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace graph_bench
 
 Subject graph_subject() {
+    using namespace graph_bench;
     return {"graph",
             "What a frame of the render graph costs the host",
             {.warmup = 20, .frames = 500},

@@ -20,7 +20,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace hemi_bench {
 namespace {
 
 struct Options {
@@ -149,8 +149,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace hemi_bench
 
 Subject hemi_subject() {
+    using namespace hemi_bench;
     return {"hemi",
             "How long specular materials take to estimate, on segments that are made up",
             {.warmup = 2, .frames = 15},

@@ -14,7 +14,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace kinect2_bench {
 namespace {
 
 constexpr double kWhiteAmplitude = 2000;  // of a white surface 1 m away; a grey wall 4 m away is left with 60
@@ -153,8 +153,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace kinect2_bench
 
 Subject kinect2_subject() {
+    using namespace kinect2_bench;
     return {"kinect2",
             "How long decoding and registration of a Kinect v2's frames take",
             {.warmup = 4, .frames = 40},

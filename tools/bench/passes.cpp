@@ -12,7 +12,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace passes_bench {
 namespace {
 
 using nlohmann::ordered_json;
@@ -137,8 +137,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace passes_bench
 
 Subject passes_subject() {
+    using namespace passes_bench;
     return {"passes",
             "How fast a recording is fused, pass by pass",
             {.warmup = 20, .frames = 60, .extent = kAsRecorded},

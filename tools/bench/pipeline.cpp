@@ -19,7 +19,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace pipeline_bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -165,8 +165,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace pipeline_bench
 
 Subject pipeline_subject() {
+    using namespace pipeline_bench;
     return {"pipeline",
             "What a frame takes with all stages on",
             {.warmup = 20, .frames = 60, .extent = kAsRecorded},

@@ -15,7 +15,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace record_bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,8 +114,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace record_bench
 
 Subject record_subject() {
+    using namespace record_bench;
     return {
         "record", "How fast raw frames of a Kinect v2 reach the disk", {.frames = 300}, [](CLI::App& app) -> Measure {
             const auto options = std::make_shared<Options>();

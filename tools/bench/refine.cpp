@@ -13,7 +13,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace refine_bench {
 namespace {
 
 struct Options {
@@ -129,8 +129,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace refine_bench
 
 Subject refine_subject() {
+    using namespace refine_bench;
     return {"refine",
             "How long the refinement of albedos takes, on records that are made up",
             {.warmup = 4, .frames = 40},

@@ -14,7 +14,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace render_bench {
 namespace {
 
 struct Options {
@@ -144,8 +144,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace render_bench
 
 Subject render_subject() {
+    using namespace render_bench;
     return {
         "render", "How fast synthetic scenes are rendered", {.warmup = 3, .frames = 30}, [](CLI::App& app) -> Measure {
             const auto options = std::make_shared<Options>();

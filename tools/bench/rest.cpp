@@ -15,7 +15,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace rest_bench {
 namespace {
 
 struct Options {
@@ -167,8 +167,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace rest_bench
 
 Subject rest_subject() {
+    using namespace rest_bench;
     return {"rest",
             "How the work of a frame falls while the camera rests and nothing moves",
             {.frames = 40, .extent = "512x424"},

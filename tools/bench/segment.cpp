@@ -15,7 +15,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace segment_bench {
 namespace {
 
 struct Options {
@@ -170,8 +170,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace segment_bench
 
 Subject segment_subject() {
+    using namespace segment_bench;
     return {"segment",
             "How long it takes to divide a frame into segments and to label the map",
             {.warmup = 4, .frames = 20, .extent = "512x424"},

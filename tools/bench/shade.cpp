@@ -20,7 +20,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace shade_bench {
 namespace {
 
 struct Options {
@@ -208,8 +208,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace shade_bench
 
 Subject shade_subject() {
+    using namespace shade_bench;
     return {"shade",
             "How long the re-rendering of a view takes, on the model of a recording",
             {.warmup = 4, .frames = 20, .extent = "512x424"},

@@ -12,7 +12,7 @@
 #include "tools/bench/subjects.h"
 
 namespace patina::bench {
-
+namespace track_bench {
 namespace {
 
 struct Options {
@@ -113,8 +113,10 @@ Report run(const Options& options, const Conditions& conditions) {
 }
 
 }  // namespace
+}  // namespace track_bench
 
 Subject track_subject() {
+    using namespace track_bench;
     return {"track",
             "What tracking the camera costs",
             {.warmup = 4, .frames = 40, .extent = "512x424"},
