@@ -18,7 +18,7 @@ void bind_records(graph::PassBuilder& pass, const ObservationMap& map, const Obs
 }  // namespace
 
 graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
-                                   const ObservationMapIds& records, uint32_t seed) {
+                                   const ObservationMapIds& records, graph::BufferId status, uint32_t seed) {
     constexpr uint64_t kPlaces = 2 * gpu::kLightSamples;
     const graph::BufferId unclaimed = frame.fill(frame.create_buffer("lighting.claims", kPlaces * sizeof(uint32_t)), 0);
     auto claim = frame.compute("lighting.claim_samples", spirv::claim_samples);
@@ -30,7 +30,7 @@ graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMa
         frame.fill(frame.create_buffer("lighting.samples", kPlaces * sizeof(gpu::LightSample)), 0);
     auto draw = frame.compute("lighting.draw_samples", spirv::draw_samples);
     bind_records(draw, map, records, seed);
-    draw.read("Claims", claims);
+    draw.read("Claims", claims).read("Status", status);
     const graph::BufferId samples = draw.modify("Samples", none);
     draw.dispatch_covering(map.capacity_records());
     return samples;

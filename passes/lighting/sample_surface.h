@@ -14,9 +14,10 @@ namespace patina {
 /// Draws voxels of the observed surface, at most one per place of a table that block keys and `seed` hash to, so that
 /// what is drawn does not depend on the order of records: gpu::LightSample[2 * gpu::kLightSamples], first of all voxels
 /// with enough observations, then of those of them with a highlight. Places without one have no observations. The
-/// colour is the mean of the darkest observations.
+/// colour is the mean of the darkest observations. `status`: gpu::RecordStatus per record, which says what a record
+/// gathered of the light around it.
 graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
-                                   const ObservationMapIds& records, uint32_t seed);
+                                   const ObservationMapIds& records, graph::BufferId status, uint32_t seed);
 
 /// What lamps of intensity 1 at these places (world, m; at most gpu::kTrialLights) give the first `count` samples, a
 /// multiple of gpu::kRecordGroup: cos / (pi r^2), 0 where the model stands in the way. Space that was never seen is

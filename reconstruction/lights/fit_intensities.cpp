@@ -103,7 +103,7 @@ class IntensityEquations {
 class IntensityFit {
   public:
     IntensityFit(std::span<const gpu::LightSample> samples, std::span<const uint32_t> group, uint32_t groups,
-                 std::span<const ReceivedLight> lamps, size_t count, LightChannel channel)
+                 std::span<const ReceivedLight> lamps, const ReceivedLight& ambient, size_t count, LightChannel channel)
         : members_(groups),
           groups_(kAlbedos * groups),
           part_(count),
@@ -116,6 +116,7 @@ class IntensityFit {
           mean_(unknowns_) {
         for (size_t i = 0; i < count; ++i) {
             for (size_t l = 0; l < lamps.size(); ++l) given_[i * unknowns_ + l] = lamps[l]->by_sample[i];
+            if (ambient) given_[i * unknowns_ + lamps.size()] = ambient->by_sample[i];
             for (size_t l = 0; l < unknowns_; ++l) mean_[l] += given(i, l) / static_cast<double>(count);
             bright_[i] = brightness(samples[i], channel);
             members_[group[i]].push_back(static_cast<uint32_t>(i));
@@ -239,7 +240,7 @@ class IntensityFit {
     std::vector<std::vector<uint32_t>> members_;  // samples by group
     size_t groups_;                               // all groups' albedos
     std::vector<uint32_t> part_;                  // which of these a sample has
-    size_t count_, unknowns_;                     // the last unknown: ambient light, which gives every sample 1
+    size_t count_, unknowns_;                     // the last unknown: ambient light
     std::vector<float> given_, lit_, bright_, weight_, ratios_;
     std::vector<double> mean_;
     FittedIntensities fitted_;
@@ -277,9 +278,9 @@ size_t LitSurface::samples_before(uint32_t place) const {
 }
 
 FittedIntensities LitSurface::fit(std::span<const ReceivedLight> lamps, uint32_t steps, size_t count,
-                                  LightChannel channel) const {
+                                  LightChannel channel, const ReceivedLight& ambient) const {
     if (count == 0) return {std::vector<double>(lamps.size() + 1), 0, std::vector<float>(groups_)};
-    IntensityFit fit(samples_, group_, groups_, lamps, count, channel);
+    IntensityFit fit(samples_, group_, groups_, lamps, ambient, count, channel);
     for (uint32_t step = 0; step < steps; ++step) {
         fit.weigh();
         fit.solve();

@@ -52,9 +52,9 @@ class LitSurface {
     /// `count` samples. A group's albedo k is eliminated: b_i sum_j(s_j) = s_i sum_j(b_j) over its samples j, where b
     /// are pixel values and s what the lamps give, is linear in the intensities. Weights are Geman and McClure's. Where
     /// a group has two albedos, each sample has the one that explains it better; misfit is at least a quarter where
-    /// that is the rarer one.
+    /// that is the rarer one. `ambient`: what ambient light of 1 gives the samples; null: 1.
     FittedIntensities fit(std::span<const ReceivedLight> lamps, uint32_t steps, size_t count,
-                          LightChannel channel = LightChannel::kMean) const;
+                          LightChannel channel = LightChannel::kMean, const ReceivedLight& ambient = nullptr) const;
 
     /// For each highlight how badly a lamp at this place explains it, 0 to 1: from the angle between the normal and the
     /// half vector.

@@ -13,7 +13,8 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
     graph::FrameGraph frame = pipeline.runner().begin();
     const ObservationMap& map = reflectance->observations();
     const uint32_t seed = seed_of_draw(0, pipeline.settings().seed);
-    const graph::Readback samples = frame.read_back(add_sample_surface(frame, map, map.import(frame), seed));
+    const graph::Readback samples =
+        frame.read_back(add_sample_surface(frame, map, map.import(frame), reflectance->import_status(frame), seed));
     pipeline.runner().submit(std::move(frame));
     pipeline.wait();
     return samples.as<gpu::LightSample>();

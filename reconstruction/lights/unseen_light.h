@@ -8,17 +8,25 @@
 
 namespace patina {
 
-/// What arrives beside lamps whose intensities are known, such as the light of a sky that no frame shows: irradiance
-/// over pi (linear pixel value, mean of the channels), as if it came alike from everywhere. Shadows tell it, and
-/// surface that turns away from the lamps: where one albedo receives little of them, the rest of its light is other
-/// light. `received` is what all lamps together give the surface's samples, mean of the channels. Empty where that does
-/// not explain the surface: where it has many albedos of one chromaticity, or much of its light comes in patches, as a
-/// sun's.
-std::optional<float> fit_unseen_light(const LitSurface& surface, const ReceivedLight& received);
+/// Irradiance over pi of the surface's samples, mean of the channels.
+struct KnownLight {
+    ReceivedLight lamps;    ///< from all lamps together
+    ReceivedLight around;   ///< from what gathered rays met
+    ReceivedLight unknown;  ///< what light of 1 would give from the directions of which nothing is known
+};
+
+/// What arrives beside lamps whose intensities are known and what is around: the light of a sky that no frame shows.
+/// Radiance (linear pixel value, mean of the channels), as if it were the same in all directions of which nothing is
+/// known. Shadows tell it, and surface that turns away from the lamps: where one albedo receives little of what is
+/// known, the rest of its light is other light. It is fitted twice: as what lamps alone leave, the same everywhere; and
+/// as what lamps and surroundings leave, from unknown directions. All that the model lacks (a sun, gloss, soft shadows)
+/// lights shadows, too, and makes both too large: of those that explain the surface the smaller one is returned. Empty
+/// where none does: where it has many albedos of one chromaticity, or much of its light comes in patches, as a sun's.
+std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known);
 
 /// That of what the pipeline has observed, under lamps of these intensities. It is taken for white, as its colour is
-/// too uncertain. At least one lamp, at most gpu::kMaxPointLights. Waits for the device. Throws Error when the
-/// reconstruction has no reflectance.
+/// too uncertain. Above 0: no light at all would count as not known. At least one lamp, at most gpu::kMaxPointLights.
+/// Waits for the device. Throws Error when the reconstruction has no reflectance.
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps);
 
 }  // namespace patina

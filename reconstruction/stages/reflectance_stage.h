@@ -136,6 +136,8 @@ class ReflectanceStage {
 
     /// The observations, for passes beside those of the model; what they write comes before or after add() in a frame.
     const ObservationMap& observations() const { return observations_; }
+    /// gpu::RecordStatus per record of the observations.
+    graph::BufferId import_status(graph::FrameGraph& graph) const { return state_.import(graph).status; }
 
     /// What the frame's records and materials are so far.
     SpecularInputs add_specular_inputs(graph::FrameGraph& graph);

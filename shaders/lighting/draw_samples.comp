@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Records that got a place in the samples of the surface, or of its highlights, are written there.
 #include "shared/lighting/fit_lights.h"
+#include "shared/reflectance/reflectance.h"
 layout(local_size_x = kRecordGroup) in;
 layout(std430, binding = 0) readonly buffer RecordCounters { MapCounters counters; };
 layout(std430, binding = 1) readonly buffer Records { VoxelRecord records[]; };
@@ -11,8 +12,16 @@ layout(std430, binding = 4) readonly buffer Directions { uvec4 quads[]; }
 directions[kMaxVoxelChunks];
 layout(std430, binding = 9) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
+layout(std430, binding = 14) readonly buffer Status { RecordStatus status[]; };
 layout(push_constant) uniform Push { SampleParams params; };
+#include "lib/records/gathered_light.glsl"
 #include "lighting/sample_surface.glsl"
+
+vec4 light_around(uint record) {
+    const GatheredLight light = unpack_gathered(status[record].incident);
+    const float rays = light.met + light.missed;
+    return rays > 0.0 ? vec4(light.mean * light.met, light.missed) / rays : vec4(0.0, 0.0, 0.0, -1.0);
+}
 
 void main() {
     const uint record = gl_GlobalInvocationID.x;
@@ -23,7 +32,8 @@ void main() {
     const bool is_sample = claims[claim.place] == claim.priority;
     const bool is_highlight = claims[highlight.place] == highlight.priority;
     if (!is_sample && !is_highlight) return;
-    const LightSample drawn = sample_of(record, known);
+    LightSample drawn = sample_of(record, known);
+    drawn.around = light_around(record);
     if (is_sample) samples[claim.place] = drawn;
     if (is_highlight) samples[highlight.place] = drawn;
 }

@@ -47,6 +47,7 @@ LightSample sample_of(uint record, VoxelRecord known) {
     result.diffuse = vec4(diffuse / float(dark), 0.0);
     result.highlight = vec4(observation_direction(load_direction(params.grid.chunk_shift, record, brightest)),
                             shines ? min(excess, kMostHighlight) : 0.0);
+    result.around = vec4(0.0, 0.0, 0.0, -1.0);
     return result;
 }
 

@@ -48,13 +48,13 @@ class Balls {
         return surface.received(row);
     }
 
-    /// From all lamps together, mean of the channels.
-    ReceivedLight received_of_all(const LitSurface& surface) const {
+    /// From all lamps together, mean of the channels; by place.
+    std::vector<float> received_of_all() const {
         std::vector<float> row(gpu::kLightSamples);
         for (uint32_t i = 0; i < gpu::kLightSamples; ++i)
             for (const Lamp& lamp : lamps_)
                 row[i] += glm::dot(lamp.intensity, glm::vec3(1)) / 3 * received(drawn_[i], lamp.place_m);
-        return surface.received(row);
+        return row;
     }
 
     TryLamps try_lamps(const LitSurface& surface) const {
@@ -70,7 +70,7 @@ class Balls {
     float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
 
     gpu::LightSample lit(glm::vec3 point_m, glm::vec3 normal, glm::vec3 kd) const {
-        gpu::LightSample sample{glm::vec4(point_m, 10), glm::vec4(normal, 0), glm::vec4(0), glm::vec4(0)};
+        gpu::LightSample sample{glm::vec4(point_m, 10), glm::vec4(normal, 0), {}, {}, {}};
         glm::vec3 irradiance = ambient_;
         for (const Lamp& lamp : lamps_) irradiance += lamp.intensity * received(sample, lamp.place_m);
         sample.diffuse = glm::vec4(kd * irradiance, 0);
@@ -114,22 +114,60 @@ class Balls {
 
 const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f, -1.6f, 0.6f}, {5, 5, 5.5f}}};
 
+/// Nothing is known of any direction.
+KnownLight lamps_alone(const Balls& balls, const LitSurface& surface) {
+    return {surface.received(balls.received_of_all()), surface.received(std::vector<float>(gpu::kLightSamples)),
+            surface.received(std::vector<float>(gpu::kLightSamples, 1.0f))};
+}
+
 TEST(FitUnseenLight, IsWhatKnownLampsLeave) {
     for (const float truth : {0.2f, 0.0f}) {
         const Balls balls(kTwoLamps, glm::vec3(truth), 0.02f);
         const LitSurface surface(balls.drawn(), 1);
-        const auto found = fit_unseen_light(surface, balls.received_of_all(surface));
+        const auto found = fit_unseen_light(surface, lamps_alone(balls, surface));
         ASSERT_TRUE(found);
         EXPECT_NEAR(*found, truth, 0.03f * truth + 0.005f);
     }
 }
 
+TEST(FitUnseenLight, DoesNotCountWhatIsKnownToComeFromAround) {
+    // Walls send 0.3, in turn from a tenth to nine tenths of all directions; from the others the truth arrives.
+    constexpr float kWalls = 0.3f;
+    for (const float truth : {0.2f, 0.0f}) {
+        const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+        std::vector<gpu::LightSample> drawn = balls.drawn();
+        const std::vector<float> lamps = balls.received_of_all();
+        std::vector<float> around(gpu::kLightSamples), unknown(gpu::kLightSamples);
+        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+            unknown[i] = 0.1f * static_cast<float>(1 + i / 4 % 9);
+            around[i] = kWalls * (1 - unknown[i]);
+            if (lamps[i] == 0) drawn[i].point_m.w = 0;  // its colour was black
+            if (lamps[i] > 0) drawn[i].diffuse *= (lamps[i] + around[i] + truth * unknown[i]) / lamps[i];
+        }
+        const LitSurface surface(drawn, 1);
+        const KnownLight known{surface.received(lamps), surface.received(around), surface.received(unknown)};
+        const auto found = fit_unseen_light(surface, known);
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(*found, truth, 0.03f * truth + 0.005f);
+    }
+}
+
+TEST(FitUnseenLight, IsNoMoreThanWhatLampsAloneLeave) {
+    const Balls balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    KnownLight known = lamps_alone(balls, surface);
+    known.unknown = surface.received(std::vector<float>(gpu::kLightSamples, 0.25f));
+    const auto found = fit_unseen_light(surface, known);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(*found, 0.1f, 0.01f) << "0.4 from a quarter of the directions would explain as much";
+}
+
 TEST(FitUnseenLight, NothingIsSaidOfSurfaceThatLampsDoNotExplain) {
     const Balls balls(kTwoLamps, glm::vec3(0.2f), 0.5f);
     const LitSurface surface(balls.drawn(), 1);
-    EXPECT_FALSE(fit_unseen_light(surface, balls.received_of_all(surface)));
+    EXPECT_FALSE(fit_unseen_light(surface, lamps_alone(balls, surface)));
     const LitSurface nothing(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
-    EXPECT_FALSE(fit_unseen_light(nothing, balls.received_of_all(nothing)));
+    EXPECT_FALSE(fit_unseen_light(nothing, lamps_alone(balls, nothing)));
 }
 
 TEST(FitIntensities, RatiosOfLampsAndAmbientLightWhereAlbedoIsUnknown) {

@@ -19,6 +19,8 @@ struct LightSample {
     vec4 normal;     // unit length; w unused
     vec4 diffuse;    // rgb: linear pixel value without highlights; w unused
     vec4 highlight;  // xyz: unit direction to the viewer of the brightest observation; w: what it is brighter by
+    vec4 around;     // rgb: irradiance / pi that is known to come from what is around; w: the share of all directions,
+                     // by cosine, of which nothing is known, below 0 where nobody looked
 };
 
 struct SampleParams {

@@ -12,6 +12,7 @@
 #include "passes/lighting/sample_surface.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observed_scene.h"
+#include "tests/gpu/reflectance/reflectance_rig.h"
 
 namespace patina::light_samples_test {
 namespace {
@@ -23,6 +24,7 @@ struct MadeUpRecord {
     std::array<int, 3> block{};
     uint32_t voxel = 0;
     RecordContent content;
+    reference::GatheredRays around{};
 
     glm::dvec3 point_m() const {
         const reference::ObservedVoxel seen = observed_scene::unpack(content);
@@ -44,6 +46,9 @@ std::vector<MadeUpRecord> made_up_records(std::mt19937& random) {
         if (!blocks.insert(block).second) continue;
         for (uint32_t voxel = below(3); voxel < 8; voxel += 1 + below(4)) {
             MadeUpRecord& record = records.emplace_back(MadeUpRecord{block, voxel, {}});
+            record.around.mean = glm::dvec3(below(64), below(64), below(64)) / 64.0;
+            record.around.met = below(4) == 0 ? 0 : below(200);
+            record.around.missed = below(4) == 0 ? 0 : below(200);
             const uint32_t count = below(31);
             gpu::VoxelRecord& known = record.content.record;
             known.block_key = static_cast<uint32_t>(block[0] + 1024) | static_cast<uint32_t>(block[1] + 512) << 11 |
@@ -70,10 +75,12 @@ class LightSamples : public GpuTest {
   protected:
     std::vector<gpu::LightSample> draw(const std::vector<MadeUpRecord>& made_up, uint32_t seed = 0) {
         std::vector<gpu::VoxelRecord> records;
+        std::vector<gpu::RecordStatus> status(kRecords);
         std::vector<uint32_t> directions(kRecords * gpu::kRecordQuads * 4), colors(directions.size());
         for (size_t i = 0; i < made_up.size(); ++i) {
             const RecordContent& content = made_up[i].content;
             records.push_back(content.record);
+            status[i].incident = pack_rays(made_up[i].around);
             std::ranges::copy(content.directions, &directions[i * gpu::kRecordQuads * 4]);
             std::ranges::copy(content.colors, &colors[i * gpu::kRecordQuads * 4]);
         }
@@ -85,7 +92,8 @@ class LightSamples : public GpuTest {
         ids.records = frame.upload<gpu::VoxelRecord>("records", std::span(std::as_const(records)));
         ids.directions = frame.upload_bytes(ids.directions, 0, std::as_bytes(std::span(directions)), true);
         ids.colors = frame.upload_bytes(ids.colors, 0, std::as_bytes(std::span(colors)), true);
-        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, map_, ids, seed));
+        const graph::BufferId known = frame.upload<gpu::RecordStatus>("status", std::span(std::as_const(status)));
+        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, map_, ids, known, seed));
         run(std::move(frame));
         return drawn.as<gpu::LightSample>();
     }
@@ -114,6 +122,9 @@ void expect_near(const gpu::LightSample& got, const MadeUpRecord& record, bool i
     EXPECT_LT(glm::distance(glm::dvec3(got.normal), seen.normal), 1e-4);
     EXPECT_LT(glm::distance(glm::dvec3(got.diffuse), expected.diffuse), 1e-5);
     EXPECT_LT(glm::distance(glm::dvec3(got.highlight), expected.to_viewer), 1e-4);
+    const double met = record.around.met, rays = met + record.around.missed;
+    const glm::dvec4 around(record.around.mean * (met / rays), 1 - met / rays);
+    EXPECT_LT(glm::distance(glm::dvec4(got.around), rays > 0 ? around : glm::dvec4(0, 0, 0, -1)), 1e-5);
     if (std::abs(expected.excess - expected.least_excess) < 1e-5) return;
     const bool shines = expected.excess > expected.least_excess;
     EXPECT_NEAR(got.highlight.w, shines ? std::min(expected.excess, 0.3) : 0.0, 1e-5);

@@ -79,7 +79,10 @@ class SampleSurface : public GpuTest {
 
     std::vector<gpu::LightSample> draw(ObservationRig& rig) {
         graph::FrameGraph frame = runner().begin();
-        const graph::Readback drawn = frame.read_back(add_sample_surface(frame, rig.map(), rig.map().import(frame), 0));
+        const std::vector<gpu::RecordStatus> none(rig.map().capacity_records());
+        const graph::BufferId status = frame.upload<gpu::RecordStatus>("status", std::span(none));
+        const graph::Readback drawn =
+            frame.read_back(add_sample_surface(frame, rig.map(), rig.map().import(frame), status, 0));
         run(std::move(frame));
         return drawn.as<gpu::LightSample>();
     }
