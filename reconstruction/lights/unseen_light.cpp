@@ -1,7 +1,6 @@
 #include "reconstruction/lights/unseen_light.h"
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 #include "reconstruction/lights/light_fitting.h"
@@ -38,35 +37,29 @@ std::optional<float> left_over(const LitSurface& surface, const ReceivedLight& k
     return static_cast<float>(rest / explained);
 }
 
-ReceivedLight sum_of(const ReceivedLight& a, const ReceivedLight& b) {
-    auto sum = std::make_shared<ReceivedLightValues>(*a);
-    for (size_t i = 0; i < sum->by_sample.size(); ++i) sum->by_sample[i] += b->by_sample[i];
-    sum->mean += b->mean;
-    return sum;
-}
-
 }  // namespace
 
 std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known) {
     const std::optional<float> everywhere = left_over(surface, known.lamps, nullptr);
-    const std::optional<float> unknown = left_over(surface, sum_of(known.lamps, known.around), known.unknown);
+    const std::optional<float> unknown = left_over(surface, known.all, known.unknown);
     if (!everywhere || !unknown) return everywhere ? everywhere : unknown;
     return std::min(*everywhere, *unknown);
 }
 
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps) {
     std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
-    std::vector<float> around(gpu::kLightSamples), unknown(gpu::kLightSamples);
-    for (size_t i = 0; i < gpu::kLightSamples; ++i) {
-        const glm::vec4 known(drawn[i].around);
-        if (known.w < 0) drawn[i].point_m.w = 0;  // nobody looked what is around it
-        around[i] = (known.r + known.g + known.b) / 3;
-        unknown[i] = known.w;
-    }
+    for (gpu::LightSample& sample : drawn)
+        if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
     if (surface.size() == 0) return std::nullopt;
-    const auto found = fit_unseen_light(surface, {surface.received(received_of(pipeline, drawn, lamps)),
-                                                  surface.received(around), surface.received(unknown)});
+    const std::vector<float> sent = received_of(pipeline, drawn, lamps);
+    std::vector<float> all = sent, unknown(gpu::kLightSamples);
+    for (size_t i = 0; i < gpu::kLightSamples; ++i) {
+        all[i] += glm::dot(glm::vec3(drawn[i].around), glm::vec3(1)) / 3;
+        unknown[i] = drawn[i].around.w;
+    }
+    const auto found =
+        fit_unseen_light(surface, {surface.received(sent), surface.received(all), surface.received(unknown)});
     return found ? std::optional(std::max(*found, kLeastUnseen)) : std::nullopt;
 }
 

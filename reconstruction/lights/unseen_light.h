@@ -11,7 +11,7 @@ namespace patina {
 /// Irradiance over pi of the surface's samples, mean of the channels.
 struct KnownLight {
     ReceivedLight lamps;    ///< from all lamps together
-    ReceivedLight around;   ///< from what gathered rays met
+    ReceivedLight all;      ///< from these, and from what gathered rays met
     ReceivedLight unknown;  ///< what light of 1 would give from the directions of which nothing is known
 };
 

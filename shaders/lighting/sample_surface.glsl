@@ -23,6 +23,7 @@ uint rank_of(uint item, uint count) {
     return rank;
 }
 
+// But for the light around it.
 LightSample sample_of(uint record, VoxelRecord known) {
     const uint count = observation_count(known);
     for (uint k = 0u; k < count; ++k) {
@@ -47,7 +48,6 @@ LightSample sample_of(uint record, VoxelRecord known) {
     result.diffuse = vec4(diffuse / float(dark), 0.0);
     result.highlight = vec4(observation_direction(load_direction(params.grid.chunk_shift, record, brightest)),
                             shines ? min(excess, kMostHighlight) : 0.0);
-    result.around = vec4(0.0, 0.0, 0.0, -1.0);
     return result;
 }
 

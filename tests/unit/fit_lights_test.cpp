@@ -116,8 +116,8 @@ const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f,
 
 /// Nothing is known of any direction.
 KnownLight lamps_alone(const Balls& balls, const LitSurface& surface) {
-    return {surface.received(balls.received_of_all()), surface.received(std::vector<float>(gpu::kLightSamples)),
-            surface.received(std::vector<float>(gpu::kLightSamples, 1.0f))};
+    const ReceivedLight lamps = surface.received(balls.received_of_all());
+    return {lamps, lamps, surface.received(std::vector<float>(gpu::kLightSamples, 1.0f))};
 }
 
 TEST(FitUnseenLight, IsWhatKnownLampsLeave) {
@@ -137,15 +137,15 @@ TEST(FitUnseenLight, DoesNotCountWhatIsKnownToComeFromAround) {
         const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
         std::vector<gpu::LightSample> drawn = balls.drawn();
         const std::vector<float> lamps = balls.received_of_all();
-        std::vector<float> around(gpu::kLightSamples), unknown(gpu::kLightSamples);
+        std::vector<float> all = lamps, unknown(gpu::kLightSamples);
         for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
             unknown[i] = 0.1f * static_cast<float>(1 + i / 4 % 9);
-            around[i] = kWalls * (1 - unknown[i]);
+            all[i] += kWalls * (1 - unknown[i]);
             if (lamps[i] == 0) drawn[i].point_m.w = 0;  // its colour was black
-            if (lamps[i] > 0) drawn[i].diffuse *= (lamps[i] + around[i] + truth * unknown[i]) / lamps[i];
+            if (lamps[i] > 0) drawn[i].diffuse *= (all[i] + truth * unknown[i]) / lamps[i];
         }
         const LitSurface surface(drawn, 1);
-        const KnownLight known{surface.received(lamps), surface.received(around), surface.received(unknown)};
+        const KnownLight known{surface.received(lamps), surface.received(all), surface.received(unknown)};
         const auto found = fit_unseen_light(surface, known);
         ASSERT_TRUE(found);
         EXPECT_NEAR(*found, truth, 0.03f * truth + 0.005f);
