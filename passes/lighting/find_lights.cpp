@@ -85,9 +85,16 @@ graph::BufferId add_cluster_emitters(graph::FrameGraph& frame, graph::BufferId p
 
     auto merge = frame.compute("lighting.merge_modes", spirv::merge_modes);
     merge.read("Params", params).read("Modes", modes);
-    const graph::BufferId candidates = merge.create("Candidates", gpu::kMaxLightCandidates * sizeof(gpu::EmitterMode));
+    const uint64_t bytes = gpu::kMaxLightCandidates * sizeof(gpu::EmitterMode);
+    const graph::BufferId candidates = merge.create("Candidates", bytes);
     merge.dispatch(1);
-    return candidates;
+
+    auto grow = frame.compute("lighting.grow_modes", spirv::grow_modes);
+    grow.read("Params", params).read("Places", list.places).read("Emitters", list.emitters);
+    grow.read("Candidates", candidates);
+    const graph::BufferId grown = grow.create("Grown", bytes);
+    grow.dispatch(gpu::kMaxLightCandidates);
+    return grown;
 }
 
 graph::BufferId add_measure_emitters(graph::FrameGraph& frame, graph::BufferId params, const EmitterList& list,

@@ -40,10 +40,20 @@ vec4 sum_of_group(vec4 own) {
 bool is_of_another(Emitter e, uint candidate, vec3 camera_m) {
     if (e.bearing_range.w == 0.0) return false;
     const vec3 point_m = camera_m + e.bearing_range.w * e.bearing_range.xyz;
-    if (distance(point_m, candidates[candidate].point.xyz) <= params.bandwidth_m) return false;
+    if (distance(point_m, candidates[candidate].point.xyz) <= candidates[candidate].reach) return false;
     for (uint k = 0u; k < kMaxLightCandidates && candidates[k].weight > 0.0; ++k) {
-        if (candidates[k].has_depth != 0u && distance(point_m, candidates[k].point.xyz) <= params.bandwidth_m)
+        if (candidates[k].has_depth != 0u && distance(point_m, candidates[k].point.xyz) <= candidates[k].reach)
             return true;
+    }
+    return false;
+}
+
+// Whether a heavier candidate's kernel grew over this one.
+bool is_covered(uint candidate) {
+    const EmitterMode mode = candidates[candidate];
+    for (uint k = 0u; k < candidate; ++k) {
+        const bool alike = candidates[k].has_depth == mode.has_depth;
+        if (alike && distance(candidates[k].point.xyz, mode.point.xyz) <= candidates[k].reach) return true;
     }
     return false;
 }
@@ -55,8 +65,7 @@ void main() {
     const bool has_depth = mode.has_depth != 0u;
     const vec3 camera_m = camera_center_m(params.camera);
     const vec3 toward = has_depth ? normalize(mode.point.xyz - camera_m) : mode.point.xyz;
-    const float reach = has_depth ? params.bandwidth_m / max(distance(mode.point.xyz, camera_m), params.bandwidth_m)
-                                  : params.bandwidth_chord;
+    const float reach = has_depth ? mode.reach / max(distance(mode.point.xyz, camera_m), mode.reach) : mode.reach;
     if (lane == 0u) flags_of_group = 0u;
     barrier();
 
@@ -83,9 +92,8 @@ void main() {
         if (distance(e.bearing_range.xyz, bearing) > kCore * edge) continue;
         core += vec4(e.radiance_angle.rgb, 1.0) * e.radiance_angle.w;
         const float range_m = e.bearing_range.w;
-        const bool on_surface =
-            has_depth && range_m > 0.0 &&
-            distance(camera_m + range_m * e.bearing_range.xyz, mode.point.xyz) <= params.bandwidth_m;
+        const bool on_surface = has_depth && range_m > 0.0 &&
+                                distance(camera_m + range_m * e.bearing_range.xyz, mode.point.xyz) <= mode.reach;
         if (on_surface) range.xy += vec2(range_m, 1.0) * e.radiance_angle.w;
     }
     core = sum_of_group(core);
@@ -101,7 +109,7 @@ void main() {
     // Radiance times the disc that the sphere shows from afar: pi R^2. (paper, Section 3.2; I = L A)
     const vec3 radiance = light.rgb / max(angle_sr, 1e-30);
     const vec3 intensity = has_depth ? radiance * (kPi * radius_m * radius_m) : light.rgb;
-    const bool measured = mode.weight > 0.0 && core.w > 0.0 && (range.y > 0.0 || !has_depth);
+    const bool measured = mode.weight > 0.0 && core.w > 0.0 && (range.y > 0.0 || !has_depth) && !is_covered(candidate);
     const bool whole = (flags_of_group & kEmitterAtBorder) == 0u;
     sightings[candidate] = LightSighting(vec4(camera_m + distance_m * bearing, radius_m), vec4(intensity, 0.0),
                                          vec4(bearing, angle_sr), vec4(camera_m, 0.0), mode.has_depth,

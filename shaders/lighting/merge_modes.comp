@@ -14,8 +14,7 @@ layout(std430, binding = 2) writeonly buffer Candidates { EmitterMode candidates
 shared EmitterMode chosen[kMaxLightCandidates];
 
 bool near(EmitterMode a, EmitterMode b) {
-    const float reach = a.has_depth != 0u ? params.bandwidth_m : params.bandwidth_chord;
-    return a.has_depth == b.has_depth && distance(a.point.xyz, b.point.xyz) <= reach;
+    return a.has_depth == b.has_depth && distance(a.point.xyz, b.point.xyz) <= a.reach;
 }
 
 vec3 bearing_of(EmitterMode mode) {
@@ -39,7 +38,7 @@ bool is_new(EmitterMode mode, uint count) {
 void main() {
     uint count = 0u;
     while (count < kMaxLightCandidates) {
-        EmitterMode best = EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0u);
+        EmitterMode best = EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0.0);
         for (uint i = 0u; i < kMeanShiftSeeds; ++i) {
             const EmitterMode mode = modes[i];
             if (mode.weight > best.weight && is_new(mode, count)) best = mode;
@@ -48,6 +47,6 @@ void main() {
         chosen[count++] = best;
     }
     for (uint k = 0u; k < kMaxLightCandidates; ++k) {
-        candidates[k] = k < count ? chosen[k] : EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0u);
+        candidates[k] = k < count ? chosen[k] : EmitterMode(vec4(0.0), 0.0, 0u, 0.0, 0.0);
     }
 }

@@ -24,7 +24,7 @@ struct FindLightsParams {
     Camera camera;          // colour camera
     float threshold;        // luminance of a pixel value above which a pixel shines
     float radiance_scale;   // from pixel values to those of the reflectance sequence
-    float bandwidth_m;      // radius of the mean-shift kernel for emitters with depth
+    float bandwidth_m;      // least radius of the mean-shift kernel for emitters with depth
     float bandwidth_chord;  // and for those without: on the unit sphere of bearings
     float match_m;          // within which a candidate is a light seen before
     float match_rad;        // likewise, for bearings
@@ -56,7 +56,7 @@ struct EmitterMode {
     float weight;    // luminous mass within the kernel; 0: no mode
     uint has_depth;  // 1 or 0
     float angle_sr;  // solid angle of the emitters within the kernel
-    uint pad0;
+    float reach;     // radius of the kernel: m with depth, on the unit sphere without
 };
 
 // A lamp as one frame shows it.

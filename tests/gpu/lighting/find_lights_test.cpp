@@ -179,6 +179,29 @@ TEST_F(FindLights, FlyingPixelsAtTheRimDoNotMoveThem) {
     expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.1);
 }
 
+// Kernels of 0.15 m and 0.1 rad hold a part of them.
+TEST_F(FindLights, LargeLampsAreOneEach) {
+    Room room;
+    room.lamps = {{{-0.7, -0.6, 1.9}, 0.30, {80, 70, 60}}, {{0.9, -0.4, 2.0}, 0.22, {60, 60, 66}}};
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.03);
+    room.depth_sigma_m = 0.005;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.04);
+    room.lamps_have_depth = false;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.03, 0.05);
+}
+
+// Readings between lamp and glass fill the gap.
+TEST_F(FindLights, ALampBeforeAMirrorDoesNotGrowOverItsImage) {
+    Room room;
+    room.lamps = {{{-0.12, -0.9, 2.78}, 0.05, {12, 12, 12}}, {{0.13, -0.9, 2.78}, 0.05, {12, 12, 12}}};
+    room.mirror_wall = true;
+    room.flying_rim = 0.2;
+    room.depth_sigma_m = 0.003;
+    std::vector<FoundLight> before_the_mirror = find(room, kCamera, kCamera);
+    std::erase_if(before_the_mirror, [](const FoundLight& f) { return f.light.position_m.z > 2.9; });
+    expect_found(before_the_mirror, room.lamps, 0.03, 0.15);
+}
+
 TEST_F(FindLights, ColourCameraOfItsOwnSizeAndPlace) {
     const Room room = three_lamps();
     const Intrinsics color{{400, 300}, 300, 300, 200, 149, {}};
@@ -199,7 +222,11 @@ TEST_F(FindLights, OneFrameMatchesTheReference) {
     Room with_depth = three_lamps(), without_depth = three_lamps(), flying = three_lamps();
     without_depth.lamps_have_depth = false;
     flying.flying_rim = 0.2;
-    for (const Room& room : {with_depth, without_depth, flying}) {
+    Room large, large_without;
+    large.lamps = {{{-0.7, -0.6, 1.9}, 0.30, {80, 70, 60}}, {{0.9, -0.4, 2.0}, 0.22, {60, 60, 66}}};
+    large_without.lamps = large.lamps;
+    large_without.lamps_have_depth = false;
+    for (const Room& room : {with_depth, without_depth, flying, large, large_without}) {
         std::mt19937 random(3);
         const Pictures pictures = look(room, kCamera, pose(5), random);
         const LightTracks tracks(device());

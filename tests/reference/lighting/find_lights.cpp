@@ -26,6 +26,7 @@ struct Mode {
     double mass = 0;
     bool has_depth = false;
     double angle_sr = 0;
+    double reach = 0;  ///< radius of the kernel
 };
 
 std::vector<Shining> shining_pixels(const Image<glm::vec3>& color, const Image<float>& depth_m,
@@ -55,18 +56,17 @@ double bandwidth(const LightFinding& settings, bool has_depth) {
     return has_depth ? settings.bandwidth_m : settings.bandwidth_chord;
 }
 
-bool counts_for(const Shining& s, const Mode& mode, const LightFinding& settings) {
-    return s.point_m.has_value() == mode.has_depth &&
-           glm::distance(s.place(), mode.place) <= bandwidth(settings, mode.has_depth);
+bool counts_for(const Shining& s, const Mode& mode) {
+    return s.point_m.has_value() == mode.has_depth && glm::distance(s.place(), mode.place) <= mode.reach;
 }
 
-Mode shifted(const std::vector<Shining>& list, const Shining& seed, const LightFinding& settings) {
-    Mode mode{seed.place(), 0, seed.point_m.has_value()};
+Mode shifted(const std::vector<Shining>& list, glm::dvec3 from, bool has_depth, double reach) {
+    Mode mode{from, 0, has_depth, 0, reach};
     for (int i = 0; i < kShifts; ++i) {
         glm::dvec3 sum(0);
         double mass = 0;
         for (const Shining& s : list) {
-            if (!counts_for(s, mode, settings)) continue;
+            if (!counts_for(s, mode)) continue;
             sum += s.place() * s.mass();
             mass += s.mass();
         }
@@ -74,8 +74,36 @@ Mode shifted(const std::vector<Shining>& list, const Shining& seed, const LightF
         mode.mass = mass;
     }
     for (const Shining& s : list)
-        if (counts_for(s, mode, settings)) mode.angle_sr += s.angle_sr;
+        if (counts_for(s, mode)) mode.angle_sr += s.angle_sr;
     if (!mode.has_depth) mode.place = glm::normalize(mode.place);
+    return mode;
+}
+
+/// Whether each of the kernel's outer rings, as the camera sees them, holds a twentieth of what is in the kernel, half
+/// as bright as its mean at least.
+bool reaches_beyond(const std::vector<Shining>& list, const Mode& mode, glm::dvec3 camera_m) {
+    const glm::dvec3 sight = mode.has_depth ? glm::normalize(mode.place - camera_m) : mode.place;
+    double outer = mode.reach;
+    for (int ring = 0; ring < 4; ++ring, outer *= 0.8) {
+        double ring_sr = 0;
+        for (const Shining& s : list) {
+            const glm::dvec3 offset = s.place() - mode.place;
+            const double across = glm::length(glm::cross(offset, sight));
+            const bool bright = s.mass() / s.angle_sr >= 0.5 * mode.mass / mode.angle_sr;
+            if (counts_for(s, mode) && bright && across > 0.8 * outer && across <= outer) ring_sr += s.angle_sr;
+        }
+        if (ring_sr <= 0.05 * mode.angle_sr) return false;
+    }
+    return true;
+}
+
+/// With a kernel that holds the whole lamp.
+Mode grown(const std::vector<Shining>& list, const Mode& mode, glm::dvec3 camera_m) {
+    Mode larger = mode;
+    for (int i = 0; i <= 6; ++i) {
+        if (!reaches_beyond(list, larger, camera_m)) return larger;
+        larger = shifted(list, larger.place, mode.has_depth, larger.reach * 1.25);
+    }
     return mode;
 }
 
@@ -93,26 +121,36 @@ std::vector<Mode> modes_of(const std::vector<Shining>& list, glm::dvec3 camera_m
                            const LightFinding& settings) {
     std::vector<Mode> all, kept;
     const size_t seeds = std::min(list.size(), kSeeds);
-    for (size_t i = 0; i < seeds; ++i) all.push_back(shifted(list, list[i * list.size() / seeds], settings));
+    for (size_t i = 0; i < seeds; ++i) {
+        const Shining& seed = list[i * list.size() / seeds];
+        const bool has_depth = seed.point_m.has_value();
+        all.push_back(shifted(list, seed.place(), has_depth, bandwidth(settings, has_depth)));
+    }
     std::stable_sort(all.begin(), all.end(), [](const Mode& a, const Mode& b) { return a.mass > b.mass; });
     for (const Mode& mode : all) {
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const Mode& k) {
-            const bool near = k.has_depth == mode.has_depth &&
-                              glm::distance(k.place, mode.place) <= bandwidth(settings, mode.has_depth);
+            const bool near = k.has_depth == mode.has_depth && glm::distance(k.place, mode.place) <= mode.reach;
             return near || overlap(k, mode, camera_m, pixel);
         });
         if (!known) kept.push_back(mode);
     }
-    return kept;
+    std::vector<Mode> apart;
+    for (const Mode& mode : kept) {
+        const Mode whole = grown(list, mode, camera_m);
+        const bool covered = std::any_of(apart.begin(), apart.end(), [&](const Mode& a) {
+            return a.has_depth == whole.has_depth && glm::distance(a.place, whole.place) <= a.reach;
+        });
+        if (!covered) apart.push_back(whole);
+    }
+    return apart;
 }
 
 Sighting measured(const std::vector<Shining>& list, const std::vector<Mode>& modes, const Mode& mode,
-                  glm::dvec3 camera_m, const LightFinding& settings) {
+                  glm::dvec3 camera_m) {
     const glm::dvec3 toward = mode.has_depth ? glm::normalize(mode.place - camera_m) : mode.place;
-    const double reach =
-        mode.has_depth ? settings.bandwidth_m / glm::distance(mode.place, camera_m) : settings.bandwidth_chord;
+    const double reach = mode.has_depth ? mode.reach / glm::distance(mode.place, camera_m) : mode.reach;
     const auto near = [&](const Shining& s, const Mode& m) {
-        return m.has_depth && s.point_m && glm::distance(*s.point_m, m.place) <= settings.bandwidth_m;
+        return m.has_depth && s.point_m && glm::distance(*s.point_m, m.place) <= m.reach;
     };
     Sighting out;
     out.has_depth = mode.has_depth;
@@ -165,7 +203,7 @@ std::vector<Sighting> find_lights(const Image<glm::vec3>& color, const Image<flo
     const glm::dvec3 camera_m(world_from_camera[3]);
     const std::vector<Mode> modes = modes_of(list, camera_m, 1 / camera.fx, settings);
     std::vector<Sighting> sightings;
-    for (const Mode& mode : modes) sightings.push_back(measured(list, modes, mode, camera_m, settings));
+    for (const Mode& mode : modes) sightings.push_back(measured(list, modes, mode, camera_m));
     return sightings;
 }
 
