@@ -341,6 +341,8 @@ constexpr std::array kRows = {
                                  "Pixels this near to an edge of the depth picture do not observe."),
     number<&Obs::max_blur_px>("observe.max_blur_px", "px", 0, kManyPixels,
                               "Pixels that motion smears by more than this do not observe.", kOneRecording),
+    number<&Obs::smeared_observations>("observe.smeared_observations", "observations", 0, 30,
+                                       "Voxels with fewer observations take smeared ones, too."),
     number<&Obs::rest_px>("observe.rest_px", "px", 0, kManyPixels,
                           "Where the picture moved by less than this since the frame before, a quarter of the pixels "
                           "observe."),

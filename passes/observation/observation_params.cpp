@@ -68,6 +68,7 @@ gpu::ObservationParams make_observation_params(const ObservationMap& map, const 
     params.jump_m = 0.01f;
     params.jump_slope = 0.015f;
     params.max_blur_px = settings.max_blur_px;
+    params.smeared_observations = settings.smeared_observations;
     return params;
 }
 

@@ -27,6 +27,9 @@ struct ObservationSettings {
     /// Where motion smears the picture by more, it is not observed. Less than a voxel of 2 cm is wide at 2 m; a limit
     /// of 1 refuses half of what a hand-held Kinect sees.
     float max_blur_px = 3;
+    /// Voxels with fewer observations take smeared ones, too: they know a colour, if not its print. How long the
+    /// shutter was open is a guess in many recordings, and in those of few pictures a second all would seem smeared.
+    uint32_t smeared_observations = 4;
     /// Where the camera moved so little since the frame before, by points at 1 m, it sees what it saw: a quarter of the
     /// pixels look.
     float rest_px = 0.5f;

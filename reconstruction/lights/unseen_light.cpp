@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kMostMisfit = 0.1;  // scenes of lamps and sky have 0.01 to 0.08; a room with patches of sun 0.27
 constexpr float kLeastUnseen = 1e-4f;
+constexpr float kBrightestAlbedo = 0.9f;  // of white paint; few things have more
+constexpr double kBrighter = 0.2;     // of the samples: highlights, patches of sun, light that was gathered too dark
+constexpr float kLeastReach = 0.02f;  // share of directions, below which unseen light is no explanation
 
 /// What the lamps together give each sample.
 std::vector<float> received_of(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
@@ -46,6 +49,20 @@ std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLigh
     return std::min(*everywhere, *unknown);
 }
 
+float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received) {
+    std::vector<float> asked;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const gpu::LightSample& sample = samples[i];
+        if (sample.point_m.w <= 0 || sample.around.w < kLeastReach) continue;
+        const float value = glm::dot(glm::vec3(sample.diffuse), glm::vec3(1)) / 3;
+        asked.push_back((value / kBrightestAlbedo - received[i]) / sample.around.w);
+    }
+    if (asked.empty()) return 0;
+    const auto at = static_cast<ptrdiff_t>((1 - kBrighter) * static_cast<double>(asked.size() - 1));
+    std::nth_element(asked.begin(), asked.begin() + at, asked.end());
+    return std::max(asked[static_cast<size_t>(at)], 0.0f);
+}
+
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps) {
     std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
     for (gpu::LightSample& sample : drawn)
@@ -60,7 +77,8 @@ std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light
     }
     const auto found =
         fit_unseen_light(surface, {surface.received(sent), surface.received(all), surface.received(unknown)});
-    return found ? std::optional(std::max(*found, kLeastUnseen)) : std::nullopt;
+    if (!found) return std::nullopt;
+    return std::max({*found, least_unseen_light(drawn, all), kLeastUnseen});
 }
 
 }  // namespace patina

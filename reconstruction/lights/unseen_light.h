@@ -24,9 +24,16 @@ struct KnownLight {
 /// where none does: where it has many albedos of one chromaticity, or much of its light comes in patches, as a sun's.
 std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known);
 
+/// The least such light under which surfaces are as dark as surfaces are: a lamp that no picture of low exposure shows
+/// would make albedos of 1 and more. A fifth of the samples that it can reach may stay brighter than an albedo of 0.9,
+/// as highlights and patches of sun are. `received` is irradiance over pi by sample, mean of the channels, from all
+/// that is known. 0 where nothing is missing.
+float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received);
+
 /// That of what the pipeline has observed, under lamps of these intensities. It is taken for white, as its colour is
-/// too uncertain. Above 0: no light at all would count as not known. At least one lamp, at most gpu::kMaxPointLights.
-/// Waits for the device. Throws Error when the reconstruction has no reflectance.
+/// too uncertain. As fitted, and at least that without which surfaces were too bright; empty where no fit explains the
+/// surface: its brightness tells nothing then, either. Above 0: no light at all would count as not known. At least one
+/// lamp, at most gpu::kMaxPointLights. Waits for the device. Throws Error when the reconstruction has no reflectance.
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps);
 
 }  // namespace patina

@@ -217,6 +217,9 @@ void SessionCore::end() {
     pipeline_->wait();
     if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
     expect_frames();
+    if (!measures_lamps()) return;
+    pipeline_->refine_all();  // nothing knows more of what is around
+    look_for_unseen_light();
 }
 
 void SessionCore::expect_frames() const {
@@ -273,17 +276,24 @@ void SessionCore::fuse(Frame frame) {
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
-    look_for_unseen_light();
+    if (measures_lamps() && is_unseen_light_due()) look_for_unseen_light();
 }
 
-/// A lighting sequence measures lamps; what else shines is too dark in it. Looked for whenever there are four times as
-/// many frames.
-void SessionCore::look_for_unseen_light() {
+/// Whether lamps are known from a lighting sequence, and other light is not: it is too dark in one.
+bool SessionCore::measures_lamps() const {
     const ReflectanceStage* reflectance = pipeline_->reflectance();
-    if (!reflectance || !reflectance->gathers() || illumination_.found_by != "lighting sequence") return;
+    return reflectance && reflectance->gathers() && illumination_.found_by == "lighting sequence" &&
+           !illumination_.lights.empty();
+}
+
+/// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.
+bool SessionCore::is_unseen_light_due() const {
     size_t frames = kFirstUnseenFrames;
-    while (frames < used_.size()) frames *= 4;
-    if (frames != used_.size() || illumination_.lights.empty()) return;
+    while (frames < used_.size()) frames *= 2;
+    return frames == used_.size();
+}
+
+void SessionCore::look_for_unseen_light() {
     const auto unseen = find_unseen_light(*pipeline_, lights_of(illumination_));
     if (!unseen) return;
     illumination_.ambient = glm::dvec3(*unseen);

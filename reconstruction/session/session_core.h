@@ -142,6 +142,8 @@ class SessionCore {
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
+    bool measures_lamps() const;
+    bool is_unseen_light_due() const;
     void look_for_unseen_light();
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);

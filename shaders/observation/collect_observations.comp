@@ -211,9 +211,10 @@ void main() {
     vec3 rgb;
     bvec3 clipped;
     const vec2 color_px = pixel_of(frame.color_camera, in_color);
-    const bool colored = sample_color(color_px, rgb, clipped) && is_sharp(point_m, color_px);
-
     uint count = observation_count(known);
+    const bool serves = count < frame.smeared_observations || is_sharp(point_m, color_px);
+    const bool colored = serves && sample_color(color_px, rgb, clipped);
+
     const uint old_label = record_label(known);
     const bool moved = surface != before;
     bool has_changed = has_moved(surface, before);

@@ -68,8 +68,9 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
             sequence["color"].erase("motion_blur");
             write_text(recording_ / "sequence.json", sequence.dump());
         }
-        const std::vector<std::string> more{"--set", "observe.max_blur_px=0.001", "--no-map", "--texture",
-                                            blurs ? "off" : "auto"};
+        const std::vector<std::string> more{
+            "--set",     "observe.max_blur_px=0.001", "--set", "observe.smeared_observations=0", "--no-map",
+            "--texture", blurs ? "off" : "auto"};
         const auto with_truth = files_of_run(more);
         fs::rename(recording_ / "truth", beside("truth"));
         const auto without_truth = files_of_run(more);

@@ -170,6 +170,32 @@ TEST(FitUnseenLight, NothingIsSaidOfSurfaceThatLampsDoNotExplain) {
     EXPECT_FALSE(fit_unseen_light(nothing, lamps_alone(balls, nothing)));
 }
 
+gpu::LightSample sample_of(float value, float unknown) {
+    return {glm::vec4(1), glm::vec4(0), glm::vec4(value), glm::vec4(0), glm::vec4(0, 0, 0, unknown)};
+}
+
+// 70 samples of albedo 0.5, 40 of 0.8 and 12 that a sun's patch makes ten times brighter. Half of all directions are
+// unknown, and only a part of the light is.
+TEST(LeastUnseenLight, MakesNoAlbedoBrighterThanPaint) {
+    constexpr float kLamps = 0.6f;
+    for (const float unseen : {0.0f, 0.1f, 0.8f}) {
+        const float light = kLamps + 0.5f * unseen;
+        std::vector<gpu::LightSample> samples;
+        for (int i = 0; i < 122; ++i)
+            samples.push_back(sample_of((i < 70 ? 0.5f : 0.8f) * light * (i < 110 ? 1.0f : 10.0f), 0.5f));
+        for (int i = 0; i < 100; ++i) samples.push_back(sample_of(1e6f, 0.01f));  // it cannot reach these
+        for (int i = 0; i < 100; ++i) {
+            samples.push_back(sample_of(1e6f, 0.5f));
+            samples.back().point_m.w = 0;  // no sample
+        }
+        const std::vector<float> received(samples.size(), kLamps);
+        // The white ones get an albedo of 0.9, where they had more.
+        const float expected = std::max((0.8f * light / 0.9f - kLamps) / 0.5f, 0.0f);
+        EXPECT_NEAR(least_unseen_light(samples, received), expected, 1e-5f) << unseen;
+    }
+    EXPECT_EQ(least_unseen_light({}, {}), 0) << "nothing asks for any";
+}
+
 TEST(FitIntensities, RatiosOfLampsAndAmbientLightWhereAlbedoIsUnknown) {
     const Balls balls(kTwoLamps, glm::vec3(0.3f));
     const LitSurface surface(balls.drawn(), 1);

@@ -55,10 +55,10 @@ struct ObservationParams {
     uint edge_margin_px;    // readings this near to an edge of the depth image are not used
     float jump_m;           // an edge: depth off the reading's plane by jump_m + jump_slope * depth
     float jump_slope;
-    float shutter_share;  // of the time since the frame before, that the colour camera's shutter was open
-    float max_blur_px;    // what moved farther over the picture meanwhile is not observed
+    float shutter_share;        // of the time since the frame before, that the colour camera's shutter was open
+    float max_blur_px;          // what moved farther over the picture meanwhile is not observed
+    uint smeared_observations;  // unless the voxel has fewer observations than this
     uint pad0;
-    uint pad1;
 };
 
 INTEROP_END

@@ -74,8 +74,18 @@ size_t expect_reference(ObservationRig& rig, std::vector<RigFrame> frames) {
         const ObservationRig::Collected collected = rig.collect(frame);
         const ObservationContent after = rig.content();
 
-        const reference::ObservationRules rules{
-            0.02, 6, 80, 0.01, 0.003, 1, 2, 2, {i * 5 % 4 % 2, i * 5 % 4 / 2}, {}, rig.settings().max_blur_px};
+        const reference::ObservationRules rules{0.02,
+                                                6,
+                                                80,
+                                                0.01,
+                                                0.003,
+                                                1,
+                                                2,
+                                                2,
+                                                {i * 5 % 4 % 2, i * 5 % 4 / 2},
+                                                {},
+                                                rig.settings().max_blur_px,
+                                                rig.settings().smeared_observations};
         reference::ObservedFrame observed{frame.camera,
                                           frame.world_from_camera,
                                           collected.position_m,
@@ -115,10 +125,16 @@ TEST_F(CollectedReference, IsAgreedWithWhereverTheColourCameraIs) {
 }
 
 TEST_F(CollectedReference, IsAgreedWithWhileTheCameraMoves) {
-    ObservationRig rig(device(), runner());
-    const size_t observations = expect_reference(rig, cluttered_frames(true, true));
-    EXPECT_GT(observations, 20000u);
-    EXPECT_LT(observations, 50000u) << "of 67 000, as a part of the picture is smeared";
+    const auto observations = [&](uint32_t smeared) {
+        ObservationSettings settings;
+        settings.smeared_observations = smeared;
+        ObservationRig rig(device(), runner(), {}, settings);
+        return expect_reference(rig, cluttered_frames(true, true));
+    };
+    const size_t sharp = observations(0);
+    EXPECT_GT(sharp, 20000u);
+    EXPECT_LT(sharp, 50000u) << "of 67 000, as a part of the picture is smeared";
+    EXPECT_GT(observations(2), sharp);
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -23,15 +26,21 @@ class MotionBlur : public GpuTest {
         ObservationSettings settings;
         settings.stride_px = stride_px;
         settings.max_blur_px = 1;
+        settings.smeared_observations = 0;
         ObservationRig rig(device(), runner(), {}, settings);
-        RigFrame frame{kCamera,
-                       kPose,
-                       Image<float>(kCamera.extent, static_cast<float>(kWallM)),
-                       {kCamera, kPose, Image<glm::vec4>(kCamera.extent, glm::vec4(0.5, 0.5, 0.5, 1))}};
+        RigFrame frame = frame_at(kPose);
         frame.motion = {make_camera(kCamera, before).camera_from_world, shutter_share};
         rig.fuse(frame);
         rig.collect(frame);
         return rig.content();
+    }
+
+    /// A wall across the z axis.
+    static RigFrame frame_at(const RigidTransform& pose) {
+        return {kCamera,
+                pose,
+                Image<float>(kCamera.extent, static_cast<float>(kWallM)),
+                {kCamera, pose, Image<glm::vec4>(kCamera.extent, glm::vec4(0.5, 0.5, 0.5, 1))}};
     }
 
     static double observed_share(const ObservationContent& content) {
@@ -49,6 +58,27 @@ TEST_F(MotionBlur, SidewaysMotionCountsByFocalLengthOverDepthTimesTheShareOfTheS
     EXPECT_EQ(observed_share(seen_after(before, 0.34f)), 0);
     const RigidTransform turned_away = glm::rotate(kPose, glm::radians(170.0), glm::dvec3(0, 1, 0));
     EXPECT_EQ(observed_share(seen_after(turned_away, 0.01f)), 0) << "what was behind the camera";
+}
+
+TEST_F(MotionBlur, VoxelsOfFewObservationsTakeSmearedOnes) {
+    ObservationSettings settings;
+    settings.stride_px = 1;
+    settings.max_blur_px = 1;
+    settings.smeared_observations = 2;
+    ObservationRig rig(device(), runner(), {}, settings);
+    const auto pose = [](int step) { return glm::translate(kPose, glm::dvec3(0.04 * step, 0, 0)); };  // 2 degrees
+    const std::vector<std::pair<bool, uint32_t>> smeared_then_most{
+        {true, 1}, {true, 2}, {true, 2}, {false, 3}, {true, 3}};
+    for (int i = 0; i < static_cast<int>(smeared_then_most.size()); ++i) {
+        const auto [smeared, most] = smeared_then_most[static_cast<size_t>(i)];
+        RigFrame frame = frame_at(pose(i));
+        frame.motion = {make_camera(kCamera, pose(i - 1)).camera_from_world, smeared ? 1.0f : 0.0f};
+        rig.fuse(frame);
+        rig.collect(frame);
+        uint32_t largest = 0;
+        for (const auto& [at, record] : rig.content()) largest = std::max(largest, record.count());
+        EXPECT_EQ(largest, most) << i;
+    }
 }
 
 TEST_F(MotionBlur, ARestingCameraLooksAtAQuarterOfThePixels) {

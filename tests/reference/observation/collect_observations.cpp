@@ -265,7 +265,7 @@ void observe(ObservedVoxel& voxel, glm::ivec3 coordinates, const ObservedFrame& 
     vote(voxel, load(frame.labels, *pixel));
     if (!shows_face(*pixel, voxel, frame)) return;
     if (!is_even_around(*pixel, frame, rules) || !line_of_sight_is_free(point(), frame, rules)) return;
-    if (!is_sharp(point(), frame, rules)) return;
+    if (voxel.seen.size() >= rules.smeared_observations && !is_sharp(point(), frame, rules)) return;
     if (const auto seen = seen_color(point(), frame)) add(voxel.seen, *seen, rules.merge_angle_degrees);
 }
 

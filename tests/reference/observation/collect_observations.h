@@ -58,6 +58,7 @@ struct ObservationRules {
     glm::uvec2 phase{0};
     SlopeJump jump;
     double max_blur_px = 0;
+    size_t smeared_observations = 0;  ///< with fewer, max_blur_px does not count
 };
 
 /// The voxels that add_allocate_records lists.
