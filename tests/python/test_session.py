@@ -168,12 +168,18 @@ def ticks_within(work):
 
 def test_the_interpreter_is_free_while_the_device_works(device):
     sessions = []
-    assert ticks_within(lambda: sessions.append(
-        patina.Session(device, CUBES, frames=1, lighting=patina.Lighting([LAMP])))) > 0
+
+    def open_one():
+        sessions.append(patina.Session(device, CUBES, frames=5, lighting=patina.Lighting([LAMP])))
+
+    def is_free(work, times=5):  # a busy machine may keep the other thread waiting, once
+        return any(ticks_within(work) > 0 for _ in range(times))
+
+    assert is_free(open_one)
     session = sessions[0]
-    assert ticks_within(session.step) > 0
-    assert ticks_within(session.finish) > 0
-    assert ticks_within(lambda: session.view(session.info["color"], np.eye(4))) > 0
+    assert is_free(session.step)
+    assert is_free(session.finish, 1)
+    assert is_free(lambda: session.view(session.info["color"], np.eye(4)))
 
 
 def test_a_session_goes_on_from_its_map(device, tmp_path):
