@@ -112,6 +112,8 @@ RigidTransform pose(int frame) {
             glm::dvec4(-0.8 + 0.16 * frame, 0.3, -1.0, 1)};
 }
 
+const Intrinsics kCamera{{256, 212}, 182, 182, 127.5, 105.5, {}};
+
 class FindLights : public GpuTest {
   protected:
     static constexpr int kFrames = 10;
@@ -134,6 +136,20 @@ class FindLights : public GpuTest {
         return estimation.found();
     }
 
+    /// What one frame shows from the origin, along the z axis.
+    std::vector<FoundLight> found_in_one_frame(const Room& room) {
+        LightEstimation estimation(device(), {.find = {}, .min_sightings = 1});
+        std::mt19937 random(3);
+        const RigidTransform straight(1.0);
+        const Pictures pictures = look(room, kCamera, straight, random);
+        RgbdFrame frame;
+        frame.depth = {std::span<const float>(pictures.depth_m.pixels()), kCamera, 1.0, 20.0};
+        frame.color = {std::span<const glm::vec3>(pictures.color.pixels()), kCamera};
+        frame.world_from_depth = straight;
+        estimation.add(frame, static_cast<float>(1 / room.exposure));
+        return estimation.found();
+    }
+
     static void expect_found(const std::vector<FoundLight>& found, const std::vector<Lamp>& lamps, double within_m,
                              double relative) {
         ASSERT_EQ(found.size(), lamps.size());
@@ -151,8 +167,6 @@ class FindLights : public GpuTest {
         }
     }
 };
-
-const Intrinsics kCamera{{256, 212}, 182, 182, 127.5, 105.5, {}};
 
 Room three_lamps() {
     Room room;
@@ -262,6 +276,24 @@ TEST_F(FindLights, OneFrameMatchesTheReference) {
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(g.intensity[c], e.intensity[c], 5e-3 * e.intensity[c]);
         }
     }
+}
+
+TEST_F(FindLights, OfWhatIsLargerThanALampOnlyAKernelIsTaken) {
+    Room room;
+    room.lamps = {{{0, -0.2, 2.6}, 0.8, {600, 600, 600}}};
+    const auto found = found_in_one_frame(room);
+    ASSERT_FALSE(found.empty());
+    for (const FoundLight& f : found) EXPECT_LT(f.light.radius_m, 0.2);
+}
+
+// Within the kernel of 0.15 m it counts, beyond it does not.
+TEST_F(FindLights, AFaintGlowAroundALampMakesItNoLarger) {
+    Room room;
+    room.lamps = {{{0, -0.2, 1.5}, 0.06, {17, 17, 17}}, {{0, -0.2, 1.9}, 0.32, {39, 39, 39}}};
+    const auto found = found_in_one_frame(room);
+    ASSERT_FALSE(found.empty());
+    EXPECT_NEAR(found[0].light.intensity.g, 17 * 1.4, 17 * 0.25);
+    EXPECT_LT(found[0].light.radius_m, 0.1);
 }
 
 TEST_F(FindLights, CutOffLampsAreLeftOut) {
