@@ -289,7 +289,7 @@ TEST_F(FindLights, OfWhatIsLargerThanALampOnlyAKernelIsTaken) {
 // Within the kernel of 0.15 m it counts, beyond it does not.
 TEST_F(FindLights, AFaintGlowAroundALampMakesItNoLarger) {
     Room room;
-    room.lamps = {{{0, -0.2, 1.5}, 0.06, {17, 17, 17}}, {{0, -0.2, 1.9}, 0.32, {39, 39, 39}}};
+    room.lamps = {{{0, -0.2, 1.5}, 0.06, {17, 17, 17}}, {{0, -0.2, 1.81}, 0.32, {39, 39, 39}}};
     const auto found = found_in_one_frame(room);
     ASSERT_FALSE(found.empty());
     EXPECT_NEAR(found[0].light.intensity.g, 17 * 1.4, 17 * 0.25);
