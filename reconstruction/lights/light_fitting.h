@@ -13,7 +13,7 @@ struct LightFittingSettings {
     LightSearchSettings search;
     float white_albedo = 0.8f;  ///< of the brightest surface, which fixes the intensities
     /// With a larger misfit no lamp is believed, as where the sun lights patches. Rooms whose lamps were found have
-    /// 0.03 to 0.08, others 0.17 and 0.26.
+    /// 0.03 to 0.08, others 0.103, 0.17 and 0.26.
     float most_misfit = 0.1f;
     float cell_m = 1;  ///< surface of one chromaticity within a cube of this size has one albedo
 };

@@ -1,10 +1,10 @@
 // Mean-shift with a flat kernel (Comaniciu and Meer 2002) over a frame's emitters, by a whole group of kMeanShiftGroup
 // invocations. Expects `emitters` and luminance().
 
+#include "sum_of_group.glsl"
+
 const uint kMaxIterations = 12u;
 const float kStill = 1e-5;  // a shift by less than this share of the kernel is the last
-
-shared vec4 partial[kMeanShiftGroup];
 
 // Emitters of one kind are compared; those of the other lie at infinity.
 vec3 point_of(Emitter e, vec3 camera_m) {
@@ -14,19 +14,6 @@ vec3 point_of(Emitter e, vec3 camera_m) {
 // Whether an emitter at this offset from a mode counts for it.
 bool is_inside(Emitter e, vec3 offset, bool has_depth, float reach) {
     return (e.bearing_range.w > 0.0) == has_depth && dot(offset, offset) <= reach * reach;
-}
-
-vec4 sum_of_group(vec4 own) {
-    const uint lane = gl_LocalInvocationIndex;
-    partial[lane] = own;
-    barrier();
-    for (uint reach = kMeanShiftGroup / 2u; reach > 0u; reach /= 2u) {
-        if (lane < reach) partial[lane] += partial[lane + reach];
-        barrier();
-    }
-    const vec4 sum = partial[0];
-    barrier();
-    return sum;
 }
 
 // Where the mean-shift from a place ends, with a kernel of that radius, over the first `count` emitters.

@@ -5,6 +5,7 @@
 #include "lib/color/luminance.glsl"
 #include "lib/math/cone.glsl"
 #include "shared/lighting/find_lights.h"
+#include "sum_of_group.glsl"
 
 layout(local_size_x = kMeanShiftGroup) in;
 layout(std140, binding = 0) uniform Params { FindLightsParams params; };
@@ -19,21 +20,7 @@ const float kCore = 0.5;
 // Mean distance of a sphere's surface before its centre over that part, in radii: (2/3) (1 - (1 - f^2)^1.5) / f^2.
 const float kCoreBulge = 0.934658;
 
-shared vec4 partial[kMeanShiftGroup];
 shared uint flags_of_group;
-
-vec4 sum_of_group(vec4 own) {
-    const uint lane = gl_LocalInvocationIndex;
-    partial[lane] = own;
-    barrier();
-    for (uint reach = kMeanShiftGroup / 2u; reach > 0u; reach /= 2u) {
-        if (lane < reach) partial[lane] += partial[lane + reach];
-        barrier();
-    }
-    const vec4 sum = partial[0];
-    barrier();
-    return sum;
-}
 
 // Whether an emitter's depth says that it belongs to another candidate. Without depth, or with one between two
 // surfaces, its bearing alone decides.
