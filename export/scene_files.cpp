@@ -49,7 +49,10 @@ GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFil
                  const std::string& version) {
     UpHints hints{options.up, scene.gravity, {}};
     for (const TimedPose& pose : scene.trajectory) hints.cameras.push_back(pose.world_from_camera);
-    const std::vector<Light> lights = rounded(scene.lighting).lights;
+    std::vector<Light> lights = rounded(scene.lighting).lights;
+    const auto suns = std::stable_partition(lights.begin(), lights.end(), [](const Light& l) { return !is_sun(l); });
+    const std::vector<Light> from_afar(suns, lights.end());
+    lights.erase(suns, lights.end());
     const Upright upright = find_upright(hints, survey.patches());
     return {
         .version = version,
@@ -58,6 +61,7 @@ GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFil
         .world_offset_m = scene.world_offset_m,
         .segment_names = names_of_segments(scene.reflectance.segments, scene.segment_names, survey.patches(), upright),
         .lights = lights,
+        .suns = from_afar,
         .candela_per_intensity = candela_per_intensity(lights, survey.patches())};
 }
 

@@ -56,13 +56,30 @@ Value ward_extras(const SegmentReflectance& segment, bool observed) {
     return Value(Value::Object{{"ward", Value(std::move(ward))}});
 }
 
-Value photometric_extras(double candela_per_intensity) {
-    Value::Object photometric{
+Value photometric(double candela_per_intensity) {
+    return Value(Value::Object{
         {"candela_per_intensity", Value(candela_per_intensity)},
         {"meaning", Value(std::string("intensity of a light / candela_per_intensity = linear pixel value of the "
                                       "recording * m^2; the factor gives a white surface at the scene's mean "
-                                      "irradiance 500 lux, and is no measurement"))}};
-    return Value(Value::Object{{"photometric", Value(std::move(photometric))}});
+                                      "irradiance 500 lux, and is no measurement"))}});
+}
+
+/// In the root node's frame; irradiance in linear pixel values of the recording, of a surface that faces the sun.
+Value suns_array(const std::vector<Light>& suns) {
+    Value::Array all;
+    for (const Light& sun : suns) {
+        const glm::dvec3 irradiance = sun.intensity / glm::dot(sun.position_m, sun.position_m);
+        all.emplace_back(Value::Object{{"direction", array_of(glm::normalize(sun.position_m))},
+                                       {"irradiance", array_of(irradiance)}});
+    }
+    return Value(std::move(all));
+}
+
+Value light_extras(const GlbInfo& info) {
+    Value::Object extras;
+    if (!info.lights.empty()) extras["photometric"] = photometric(info.candela_per_intensity);
+    if (!info.suns.empty()) extras["suns"] = suns_array(info.suns);
+    return extras.empty() ? Value() : Value(std::move(extras));
 }
 
 /// A mesh with what it reflects, and its normals.
@@ -131,7 +148,7 @@ struct GlbWriter::State {
         tinygltf::Scene scene;
         scene.name = info.name;
         scene.nodes = {0};
-        if (!info.lights.empty()) scene.extras = photometric_extras(info.candela_per_intensity);
+        scene.extras = light_extras(info);
         model.scenes.push_back(std::move(scene));
         model.defaultScene = 0;
         model.asset.version = "2.0";

@@ -30,6 +30,8 @@ struct GlbInfo {
     glm::dvec3 world_offset_m{0};
     std::vector<std::string> segment_names{};  ///< by label; where one is missing or empty, "object LABEL"
     std::vector<Light> lights{};
+    /// Told in the scene's extras alone: viewers would let them in through walls that were never seen.
+    std::vector<Light> suns{};
     double candela_per_intensity = 1;  ///< of the lights, see candela_per_intensity()
 };
 

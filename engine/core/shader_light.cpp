@@ -3,7 +3,7 @@
 namespace patina {
 
 gpu::PointLight make_point_light(const Light& light) {
-    return {glm::vec4(light.position_m, light.radius_m), glm::vec4(light.intensity, 0)};
+    return {glm::vec4(light.position_m, light.radius_m), glm::vec4(light.intensity, is_sun(light) ? 1 : 0)};
 }
 
 Light light_of(const gpu::PointLight& light) {

@@ -37,7 +37,8 @@ graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMa
 }
 
 graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                               graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count) {
+                               graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count,
+                               glm::vec4 ball_m) {
     if (places_m.empty() || places_m.size() > gpu::kTrialLights) {
         throw Error("the pass 'lighting.try_lights' tries 1 to ", gpu::kTrialLights, " lights at once, not ",
                     places_m.size());
@@ -49,7 +50,28 @@ graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, co
     pass.read("Samples", samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
     pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
     pass.specialise("kVoxelChunks", map.chunks());
-    pass.push(gpu::TrialParams{map.grid(), trials, 0, 0, 0});
+    pass.push(gpu::TrialParams{map.grid(), ball_m});
+    const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
+    pass.dispatch(count / gpu::kRecordGroup, trials);
+    return received;
+}
+
+graph::BufferId add_try_suns(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
+                             graph::BufferId surroundings, graph::BufferId samples,
+                             std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
+    if (directions.empty() || directions.size() > gpu::kTrialLights) {
+        throw Error("the pass 'lighting.try_suns' tries 1 to ", gpu::kTrialLights, " suns at once, not ",
+                    directions.size());
+    }
+    const auto trials = static_cast<uint32_t>(directions.size());
+    std::vector<glm::vec4> padded;
+    for (const glm::vec3& direction : directions) padded.emplace_back(direction, 0);
+    auto pass = frame.compute("lighting.try_suns", spirv::try_suns);
+    pass.read("Samples", samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
+    pass.read("Surroundings", surroundings);
+    pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
+    pass.specialise("kVoxelChunks", map.chunks());
+    pass.push(gpu::TrialParams{map.grid(), ball_m});
     const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
     pass.dispatch(count / gpu::kRecordGroup, trials);
     return received;

@@ -1,5 +1,7 @@
 #include "reconstruction/lights/surface_samples.h"
 
+#include <numbers>
+
 #include "engine/core/error.h"
 #include "engine/core/seed.h"
 #include "passes/lighting/sample_surface.h"
@@ -20,16 +22,71 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
     return samples.as<gpu::LightSample>();
 }
 
+namespace {
+
+constexpr float kAround_m = 0.5f;  // of the samples, where there may be surface, too
+
+/// Holds all samples and what stands between them.
+glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {
+    glm::vec3 low(1e9f), high(-1e9f);
+    for (const gpu::LightSample& sample : samples) {
+        if (sample.point_m.w <= 0) continue;
+        low = glm::min(low, glm::vec3(sample.point_m));
+        high = glm::max(high, glm::vec3(sample.point_m));
+    }
+    if (low.x > high.x) return glm::vec4(0);
+    return {0.5f * (low + high), 0.5f * glm::distance(low, high) + kAround_m};
+}
+
+}  // namespace
+
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                              std::span<const glm::vec3> places_m, uint32_t count) {
     graph::FrameGraph frame = pipeline.runner().begin();
     const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
     const VoxelMap& map = pipeline.map();
     const graph::Readback received =
-        frame.read_back(add_try_lights(frame, map, map.import(frame), uploaded, places_m, count));
+        frame.read_back(add_try_lights(frame, map, map.import(frame), uploaded, places_m, count, ball_around(samples)));
     pipeline.runner().submit(std::move(frame));
     pipeline.wait();
     return received.as<float>();
+}
+
+std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                            std::span<const glm::vec3> directions, uint32_t count) {
+    graph::FrameGraph frame = pipeline.runner().begin();
+    const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
+    const VoxelMap& map = pipeline.map();
+    const graph::BufferId around = pipeline.reflectance()->import_surroundings(frame);
+    const graph::Readback received = frame.read_back(
+        add_try_suns(frame, map, map.import(frame), around, uploaded, directions, count, ball_around(samples)));
+    pipeline.runner().submit(std::move(frame));
+    pipeline.wait();
+    return received.as<float>();
+}
+
+std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                                     std::span<const Light> lights) {
+    static_assert(gpu::kMaxPointLights <= gpu::kTrialLights, "all lights are tried at once");
+    std::vector<glm::vec3> places_m, directions, of_lamps, of_suns;
+    for (const Light& light : lights) {
+        if (is_sun(light)) {
+            directions.emplace_back(glm::normalize(light.position_m));
+            of_suns.emplace_back(light.intensity / (glm::dot(light.position_m, light.position_m) * std::numbers::pi));
+        } else {
+            places_m.emplace_back(light.position_m);
+            of_lamps.emplace_back(light.intensity);
+        }
+    }
+    std::vector<glm::vec3> received(gpu::kLightSamples, glm::vec3(0));
+    const auto add = [&](const std::vector<float>& tried, std::span<const glm::vec3> intensities) {
+        for (size_t l = 0; l < intensities.size(); ++l)
+            for (size_t i = 0; i < gpu::kLightSamples; ++i)
+                received[i] += tried[l * gpu::kLightSamples + i] * intensities[l];
+    };
+    if (!places_m.empty()) add(try_lamps(pipeline, samples, places_m), of_lamps);
+    if (!directions.empty()) add(try_suns(pipeline, samples, directions), of_suns);
+    return received;
 }
 
 }  // namespace patina

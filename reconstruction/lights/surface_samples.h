@@ -20,4 +20,12 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline);
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                              std::span<const glm::vec3> places_m, uint32_t count = gpu::kLightSamples);
 
+/// The same of suns: the cosine to each direction, 0 where it does not shine in.
+std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                            std::span<const glm::vec3> directions, uint32_t count = gpu::kLightSamples);
+
+/// Irradiance over pi that lights give the gpu::kLightSamples samples of the surface. At most gpu::kMaxPointLights.
+std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                                     std::span<const Light> lights);
+
 }  // namespace patina

@@ -16,20 +16,7 @@ constexpr float kBrightestAlbedo = 0.9f;  // of white paint; few things have mor
 constexpr double kBrighter = 0.2;     // of the samples: highlights, patches of sun, light that was gathered too dark
 constexpr float kLeastReach = 0.02f;  // share of directions, below which unseen light is no explanation
 
-/// What the lamps together give each sample.
-std::vector<float> received_of(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
-                               std::span<const Light> lamps) {
-    static_assert(gpu::kMaxPointLights <= gpu::kTrialLights, "all lamps are tried at once");
-    std::vector<glm::vec3> places_m;
-    for (const Light& lamp : lamps) places_m.emplace_back(lamp.position_m);
-    const std::vector<float> tried = try_lamps(pipeline, drawn, places_m);
-    std::vector<float> received(gpu::kLightSamples);
-    for (size_t l = 0; l < lamps.size(); ++l) {
-        const auto intensity = static_cast<float>(glm::dot(lamps[l].intensity, glm::dvec3(1)) / 3);
-        for (size_t i = 0; i < gpu::kLightSamples; ++i) received[i] += intensity * tried[l * gpu::kLightSamples + i];
-    }
-    return received;
-}
+float mean_of(const auto& rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
 
 /// What light leaves that is known, as what `ambient` gives the samples (null: the same everywhere).
 std::optional<float> left_over(const LitSurface& surface, const ReceivedLight& known, const ReceivedLight& ambient) {
@@ -54,7 +41,7 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
     for (size_t i = 0; i < samples.size(); ++i) {
         const gpu::LightSample& sample = samples[i];
         if (sample.point_m.w <= 0 || sample.around.w < kLeastReach) continue;
-        const float value = glm::dot(glm::vec3(sample.diffuse), glm::vec3(1)) / 3;
+        const float value = mean_of(sample.diffuse);
         asked.push_back((value / kBrightestAlbedo - received[i]) / sample.around.w);
     }
     if (asked.empty()) return 0;
@@ -63,22 +50,25 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
     return std::max(asked[static_cast<size_t>(at)], 0.0f);
 }
 
-std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lamps) {
+std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lights) {
     std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
     if (surface.size() == 0) return std::nullopt;
-    const std::vector<float> sent = received_of(pipeline, drawn, lamps);
-    std::vector<float> all = sent, unknown(gpu::kLightSamples);
+    const std::vector<glm::vec3> received = received_from(pipeline, drawn, lights);
+    std::vector<float> sent, all, unknown;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
-        all[i] += glm::dot(glm::vec3(drawn[i].around), glm::vec3(1)) / 3;
-        unknown[i] = drawn[i].around.w;
+        sent.push_back(mean_of(received[i]));
+        all.push_back(sent.back() + mean_of(drawn[i].around));
+        unknown.push_back(drawn[i].around.w);
     }
     const auto found =
         fit_unseen_light(surface, {surface.received(sent), surface.received(all), surface.received(unknown)});
     if (!found) return std::nullopt;
-    return std::max({*found, least_unseen_light(drawn, all), kLeastUnseen});
+    // What is not modelled of a sun (soft borders, gloss) would be taken for such light.
+    const float fitted = std::ranges::any_of(lights, is_sun) ? 0 : *found;
+    return std::max({fitted, least_unseen_light(drawn, all), kLeastUnseen});
 }
 
 }  // namespace patina

@@ -6,6 +6,7 @@
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
+#include "reconstruction/lights/find_sun.h"
 #include "reconstruction/lights/unseen_light.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
@@ -293,10 +294,18 @@ bool SessionCore::is_unseen_light_due() const {
     return frames == used_.size();
 }
 
+/// Light that no picture of low exposure shows: a sun's, in its patches, and what arrives from unseen surroundings.
 void SessionCore::look_for_unseen_light() {
-    const auto unseen = find_unseen_light(*pipeline_, lights_of(illumination_));
-    if (!unseen) return;
-    illumination_.ambient = glm::dvec3(*unseen);
+    std::vector<FoundLight>& lights = illumination_.lights;
+    std::erase_if(lights, [](const FoundLight& found) { return is_sun(found.light); });
+    const std::vector<Light> lamps = lights_of(illumination_);
+    auto sun = lamps.size() < gpu::kMaxPointLights ? find_sun(*pipeline_, lamps, glm::vec3(illumination_.ambient))
+                                                   : std::nullopt;
+    if (sun) lights.push_back(*sun);
+    if (const auto unseen = find_unseen_light(*pipeline_, lights_of(illumination_))) {
+        illumination_.ambient = glm::dvec3(*unseen);
+        if (sun) measure_sun(*pipeline_, lights.back(), lamps, glm::vec3(*unseen));
+    }
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }
 

@@ -163,6 +163,7 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
     for (const auto& [light, evidence] : illumination.lights) {
         nlohmann::ordered_json lamp{{"position_m", to_json(world_position_m(illumination, light))},
                                     {"intensity", to_json(light.intensity)}};
+        if (is_sun(light)) lamp["sun"] = true;
         if (found) {
             lamp["radius_m"] = light.radius_m;
             lamp["spread_m"] = evidence.spread_m;

@@ -139,6 +139,9 @@ class ReflectanceStage {
     /// gpu::RecordStatus per record of the observations.
     graph::BufferId import_status(graph::FrameGraph& graph) const { return state_.import(graph).status; }
 
+    /// What was seen around: see ReflectanceStateIds.
+    graph::BufferId import_surroundings(graph::FrameGraph& graph) const { return state_.import(graph).surroundings; }
+
     /// What the frame's records and materials are so far.
     SpecularInputs add_specular_inputs(graph::FrameGraph& graph);
 

@@ -17,10 +17,17 @@ layout(push_constant) uniform Push { SampleParams params; };
 #include "lib/records/gathered_light.glsl"
 #include "lighting/sample_surface.glsl"
 
+const float kNearlyClipped = 0.9;  // a mean of observations some of which may be clipped
+
 vec4 light_around(uint record) {
     const GatheredLight light = unpack_gathered(status[record].incident);
     const float rays = light.met + light.missed;
     return rays > 0.0 ? vec4(light.mean * light.met, light.missed) / rays : vec4(0.0, 0.0, 0.0, -1.0);
+}
+
+// As low exposure showed it, where it is brighter than the usual one shows.
+vec3 unclipped(vec3 color, uint bright) {
+    return max(max(color.r, color.g), color.b) > kNearlyClipped ? max(color, unpack_shared_exponent(bright)) : color;
 }
 
 void main() {
@@ -33,6 +40,7 @@ void main() {
     const bool is_highlight = claims[highlight.place] == highlight.priority;
     if (!is_sample && !is_highlight) return;
     LightSample drawn = sample_of(record, known);
+    drawn.diffuse.rgb = unclipped(drawn.diffuse.rgb, status[record].bright);
     drawn.around = light_around(record);
     if (is_sample) samples[claim.place] = drawn;
     if (is_highlight) samples[highlight.place] = drawn;

@@ -26,8 +26,10 @@ bool is_open(vec3 point_m, vec3 normal, vec3 direction, float distance_m) {
     const float cosine = dot(direction, normal);
     const float skipped = min(kLiftVox / cosine, kMostSkippedVox);
     const float lift = max(kLiftVox - skipped * cosine, 0.0);
-    const float reach = (distance_m - min(kTrialLampM, 0.3 * distance_m)) * per_m;
-    return march(point_m * per_m + lift * normal, direction, skipped, reach, cosine, lift, kInsideVox).open;
+    const vec3 start = point_m * per_m + lift * normal;
+    const float to_lamp = (distance_m - min(kTrialLampM, 0.3 * distance_m)) * per_m;
+    const float reach = min(to_lamp, to_ball_end(start, direction, params.ball_m));
+    return march(start, direction, skipped, reach, cosine, lift, kInsideVox).open;
 }
 
 void main() {

@@ -29,6 +29,6 @@ void main() {
     count_away(record.block_key, record, albedo[id], true);
     // As of a record that was given back.
     records[id] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
-    status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
+    status[id] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u), 0u, 0u);
     gathered[id] = RecordSurroundings(uvec2(0u), 0u, 0u);
 }

@@ -61,7 +61,7 @@ bool holds_surface(uint voxel_block, uint number) {
 
 void give_back_record(uint record) {
     records[record] = VoxelRecord(kEmptyKey, 0u, 0u, 0u);
-    status[record] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u));
+    status[record] = RecordStatus(0u, 0u, 0u, 0u, uvec2(0u), uvec2(0u), 0u, 0u);
     gathered[record] = RecordSurroundings(uvec2(0u), 0u, 0u);
     free_records[atomicAdd(counted.free_blocks, 1u)] = record;
     atomicAdd(counted.deleted_blocks, 1u);

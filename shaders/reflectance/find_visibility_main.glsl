@@ -19,6 +19,7 @@ layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
 layout(std430, binding = 14) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { ReflectanceParams params; };
 #define MAP_REGIONS(i) map_regions[i]
+#include "lib/lighting/march_surroundings.glsl"
 #include "lib/map/march_map.glsl"
 
 layout(constant_id = 1) const uint kGathers = 0u;  // 1: light is gathered for the same records, which changes albedos
@@ -39,6 +40,7 @@ Passage light_passage(vec3 point_m, vec3 normal, PointLight light) {
     const vec3 direction = offset_vox / distance_vox;
     const float cosine = dot(direction, normal);
     if (cosine < kBackCosine) return Passage(false, false);
+    if (light.intensity.w > 0.0 && !passes_sky(point_m, normal, direction)) return Passage(false, false);
     // Above the surface, if possible on the way itself, as a lifted way would move the shadow.
     const float skipped = min(kLiftVox / max(cosine, 1e-6), kMostSkippedVox);
     const float lift = max(kLiftVox - skipped * cosine, 0.0);
@@ -84,6 +86,10 @@ void main() {
     visibility[record] = reached.open;
     status[record].uncertain = reached.uncertain;
     status[record].marched = marched_word(known, header.position_version);
+    if (kGathers != 0u) {
+        const vec3 low = low_exposure_radiance(surroundings_cell(point_m));
+        status[record].bright = max(max(low.r, low.g), low.b) > kNearlyClipped ? pack_shared_exponent(low) : 0u;
+    }
     if (!same && atomicExchange(status[record].refine_stamp, params.stamp) != params.stamp) {
         APPEND_RECORD(refine, refine_arguments, record)
     }

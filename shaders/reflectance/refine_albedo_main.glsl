@@ -40,7 +40,8 @@ const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
 const float kMirroring = 0.25;       // of what is seen: from so much on it mirrors as its segment does
 const float kNearViews = 0.9994;     // 2 degrees
 const float kFarViews = 0.9962;      // 5 degrees
-const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views
+const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views, at least;
+const float kMostAlbedo = 0.8;       // half of what is up to a usual bright one
 const float kUsualKd = 0.3;          // a usual albedo
 const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
 const uint kAnyClipped = 7u << 26;   // of a direction word
@@ -224,6 +225,17 @@ Estimate robust_mean(Center center, float noise) {
     return Estimate(mean / weights, variance, equal(seen, vec3(0.0)), unclipped / trusted);
 }
 
+// What is clipped in all views is as bright as low exposure showed it, where it did: in all channels, for its color.
+Estimate with_low_exposure(Estimate estimate, uint bright) {
+    const vec3 low = unpack_shared_exponent(bright);
+    const bvec3 brighter = greaterThan(low, estimate.diffuse);
+    if (any(bvec3(uvec3(brighter) & uvec3(estimate.bounded)))) {
+        estimate.diffuse = low;
+        estimate.bounded = bvec3(false);
+    }
+    return estimate;
+}
+
 // Kd where the voxel is lit, with its certainty.
 uvec2 packed_albedo(Estimate estimate, Irradiance irradiance, float sureness) {
     const bvec3 lit = greaterThan(irradiance.sum, vec3(kLeastIrradiance));
@@ -232,7 +244,10 @@ uvec2 packed_albedo(Estimate estimate, Irradiance irradiance, float sureness) {
     const vec3 doubt = min(kd, 1.0) * min(irradiance.uncertain * inverse, 1.0);
     // Of an albedo that is usual, not of kd: else dark records were surer than bright ones, and means too dark.
     const vec3 noise = kUsualKd * min(irradiance.noise * inverse, 1.0);
-    const vec3 bound = kBoundError * vec3(estimate.bounded);
+    // What a clipped channel may be brighter by makes the third one doubtful, too, as they are one color.
+    const vec3 bounded = vec3(estimate.bounded), brighter = 0.5 * max(kMostAlbedo - kd, 0.0) * bounded;
+    const float all_brighter = dot(bounded, vec3(1.0)) >= 2.0 ? max(max(brighter.r, brighter.g), brighter.b) : 0.0;
+    const vec3 bound = max(max(kBoundError * bounded, brighter), vec3(all_brighter));
     const vec3 variance = estimate.variance * inverse * inverse + doubt * doubt + noise * noise + bound * bound;
     const vec3 certainty = sureness / (1.0 + variance / (kKdDeviation * kKdDeviation));
     return uvec2(pack_shared_exponent(kd), pack_certainty(mix(vec3(0.0), certainty, lit)));
@@ -265,7 +280,7 @@ void main() {
     const float noise = kNoise + kRelativeNoise * max(guess.brightness, 0.0);
     set_trust(count, noise);
     const Center center = find_center(guess, noise);
-    Estimate estimate = robust_mean(center, noise);
+    Estimate estimate = with_low_exposure(robust_mean(center, noise), status[record].bright);
     const float mirror = has_entry ? material.mirror : 0.0;
     float share = gathered.met > 0.0 ? unreflected_share(center, noise, mirror) : 1.0;
     if (mirror > 0.0 && gathered.met > 0.0) share *= 1.0 - mirror * (1.0 - views_apart(count));

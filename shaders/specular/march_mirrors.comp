@@ -24,7 +24,7 @@ vec4 mean_met(vec3 point_m, vec3 normal, vec3 to_viewer, uvec2 stream, uint set)
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < kRaysOfSet; ++i) {
         const vec3 direction = sample_ward(kMirrorAlpha, normal, to_viewer, random_numbers(stream, set, i).xy);
-        if (dot(direction, normal) > 0.0) sum += min(march_surroundings(point_m, normal, direction).color, 1.0);
+        if (dot(direction, normal) > 0.0) sum += min(march_surroundings(point_m, normal, direction, 0.0).color, 1.0);
     }
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }

@@ -270,6 +270,21 @@ TEST(GlbReflectance, OfPiecesASegmentHasAPrimitiveEach) {
     }
 }
 
+TEST(GlbReflectance, SunsAreToldAndLightNothing) {
+    GlbInfo info = kInfo;
+    info.suns = {{{0, -6000, 8000}, {2e8, 4e8, 1e8}}};
+    const Scene scene = written_and_read({{wavy_sheet(2, 2)}}, info);
+    EXPECT_TRUE(scene.model.lights.empty());
+    const tinygltf::Value& extras = scene.model.scenes.at(0).extras;
+    EXPECT_FALSE(extras.Has("photometric"));
+    const tinygltf::Value& sun = extras.Get("suns").Get(0);
+    const double direction[] = {0, -0.6, 0.8}, irradiance[] = {2, 4, 1};
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(sun.Get("direction").Get(i).GetNumberAsDouble(), direction[i], 1e-9);
+        EXPECT_NEAR(sun.Get("irradiance").Get(i).GetNumberAsDouble(), irradiance[i], 1e-9);
+    }
+}
+
 TEST(GlbReflectance, LightsAreNodesBelowTheRoot) {
     const Mesh mesh = wavy_sheet(2, 2);
     GlbInfo info = kInfo;

@@ -21,6 +21,14 @@ TEST(Lights, ShadersTakeALampRoundedToFloat) {
     EXPECT_EQ(lamp.intensity, glm::vec4(4, 5, 6.5f, 0));
 }
 
+TEST(Lights, ShadersTakeALampAKilometreAwayForASun) {
+    const Light near{{0, 0, 999}, {1, 1, 1}}, far{{0, -600, 800}, {1, 1, 1}};
+    EXPECT_FALSE(is_sun(near));
+    EXPECT_TRUE(is_sun(far));
+    EXPECT_EQ(make_point_light(near).intensity.w, 0);
+    EXPECT_EQ(make_point_light(far).intensity.w, 1);
+}
+
 TEST(Lights, ALampComesBackAsItWasRounded) {
     const Light rounded = rounded_to_float(kLamp);
     EXPECT_EQ(rounded.position_m, glm::dvec3(double{0.1f}, -2.5, 3));

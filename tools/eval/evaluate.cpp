@@ -102,7 +102,14 @@ void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTr
     for (Light& light : lights) {
         light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
     }
-    result.lights = compare_lights(sensor::read_lights(truth_file), lights, radius_m);
+    const std::vector<Light> truth = sensor::read_lights(truth_file);
+    // The truth has lamps alone: what is far from all of them is a sun.
+    std::erase_if(lights, [&](const Light& light) {
+        return std::ranges::all_of(truth, [&](const Light& lamp) {
+            return glm::distance(lamp.position_m, light.position_m) > kSunsFrom_m / 2;
+        });
+    });
+    result.lights = compare_lights(truth, lights, radius_m);
 }
 
 /// Everything that all frames are measured with.

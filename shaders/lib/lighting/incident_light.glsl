@@ -61,7 +61,7 @@ Incident incident_light(vec3 point_vox, vec3 normal, vec3 direction, vec4 ball_m
     vec4 color = hit < 0.0 ? vec4(0.0) : surface_color(start + hit * direction, direction);
     bool met_surface = hit >= 0.0;
     if (!met_surface) {
-        const MetSurroundings met = march_surroundings(point_vox * grid.voxel_m, normal, direction);
+        const MetSurroundings met = march_surroundings(point_vox * grid.voxel_m, normal, direction, 0.0);
         met_surface = met.color.a > 0.0;
         at_m = met.at_m;
         color = met_surface ? met.color : far_radiance(far_field[far_field_texel(direction)]);

@@ -37,8 +37,9 @@ bool is_empty_block(ivec3 block) {
     return (surroundings_blocks[bit >> 5u] & 1u << (bit & 31u)) == 0u;
 }
 
-// The first surface along a ray that leaves a surface with a normal. Blocks without any cell are crossed in one step.
-MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction) {
+// The first surface along a ray that leaves a surface with a normal, of those whose brightest channel is `least` or
+// more. Blocks without any cell are crossed in one step.
+MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction, float least) {
     const vec3 start = point_m / kSurroundingsCellM;
     const vec3 way = mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))), inverse = 1.0 / way;
     const ivec3 stride = ivec3(sign(way));
@@ -61,8 +62,32 @@ MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction) {
         const ivec3 beyond = corner + ivec3(edge * ahead) + min(stride, 0);
         cell = inside * (1 - axis) + beyond * axis;
         if (dot(vec3(cell) + 0.5 - start, normal) > kOwnSurfaceCells) met = look_up_surroundings(cell);
+        if (max(max(met.r, met.g), met.b) < least) met = vec4(0.0);
     }
     return MetSurroundings(met, (vec3(cell) + 0.5) * kSurroundingsCellM);
+}
+
+const float kLeastSky = 0.5;  // radiance; where pictures are exposed for a room, its sky is clipped, or nearly
+
+// Whether a sun can shine in along a ray that no surface blocks: through an opening in which the sky was seen. What
+// was never seen, such as a ceiling, is none. Where nothing at all is known of the surroundings it can.
+bool passes_sky(vec3 point_m, vec3 normal, vec3 direction) {
+    if (surroundings_counts.total + surroundings_counts.fresh == 0u) return true;
+    return march_surroundings(point_m, normal, direction, kLeastSky).color.a > 0.0;
+}
+
+// What low exposure showed where the usual one is clipped, or nearly; 0 where it did not look.
+vec3 low_exposure_radiance(ivec3 cell) {
+    const uint key = surroundings_key(cell);
+    for (uint probe = 0u; probe < kSurroundingsProbes; ++probe) {
+        const uint place = surroundings_place(key, probe);
+        const uint found = surroundings[place].key;
+        if (found == 0u) break;
+        if (found != key) continue;
+        const SurroundingsSums low = surroundings[place].low;
+        return low.samples >= kLeastSurroundingsSamples ? mean_of_sums(low) : vec3(0.0);
+    }
+    return vec3(0.0);
 }
 
 #endif

@@ -33,10 +33,7 @@ struct SampleParams {
 
 struct TrialParams {
     VoxelGrid grid;  // of the voxel map
-    uint trials;
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    vec4 ball_m;     // world, radius: beyond it nothing stands in the way of a lamp
 };
 
 INTEROP_END

@@ -39,6 +39,8 @@ struct RecordStatus {
     uint refine_stamp;  // for refinement
     uvec2 uncertain;    // a bit per light that may or may not reach the voxel, or does so in part
     uvec2 incident;     // light from what is around: lib/records/gathered_light.glsl; 0: none was gathered
+    uint bright;        // radiance at low exposure, where the usual one may be clipped: shared exponent; 0: not known
+    uint pad0;
 };
 
 // What a record gathered and heard from those around.

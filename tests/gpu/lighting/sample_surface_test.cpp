@@ -9,6 +9,7 @@
 
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observation_rig.h"
+#include "tests/gpu/reflectance/surroundings_inputs.h"
 #include "tests/reference/lighting/light_samples.h"
 
 namespace patina::sample_surface_test {
@@ -207,6 +208,50 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween)
     EXPECT_GT(decided.shaded, 100u);
     EXPECT_GT(decided.low, 30u);
     EXPECT_LE(decided.wrong, device().caps().software() ? 0 : decided.lit / 1000);
+}
+
+// A strip of the ceiling shows the sky; or what is as dark as a ceiling.
+TEST_F(SampleSurface, SunsGiveCosinesWhereTheSkyIsOnTheWayAndTheModelIsNotBetween) {
+    const auto rig = make_model();
+    const auto drawn = draw(*rig);
+    const std::vector<glm::vec3> directions{
+        glm::normalize(glm::vec3(0.5f, -1, 0.1f)), glm::normalize(glm::vec3(-0.2f, -1, -0.6f)), {0, 1, 0}};
+    for (const float sky : {0.8f, 0.4f}) {
+        graph::FrameGraph frame = runner().begin();
+        const VoxelMap& map = rig->fusion().map();
+        ReflectanceStateIds around;
+        around.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+        add_ceiling(frame, around, [&](double x, double) { return std::abs(x) < 0.5 ? sky : 0.2f; });
+        const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
+        const graph::Readback read =
+            frame.read_back(add_try_suns(frame, map, map.import(frame), around.surroundings, samples, directions,
+                                         gpu::kLightSamples, glm::vec4(0, 0, 0, 10)));
+        run(std::move(frame));
+        const auto received = read.as<float>();
+        uint32_t lit = 0, dark = 0, shaded = 0, wrong = 0;
+        for (size_t sun = 0; sun < directions.size(); ++sun) {
+            for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+                const gpu::LightSample& s = drawn[i];
+                const float got = received[sun * gpu::kLightSamples + i];
+                const bool is_floor = s.normal.y <= -0.99f && std::abs(s.point_m.y) <= 0.01f;
+                if (s.point_m.w == 0 || !is_floor || std::abs(s.point_m.z) > 0.5f) continue;
+                const glm::dvec3 way(directions[sun]), from(s.point_m), to = from + way * (kCeiling_m / way.y);
+                const bool passes = way.y < 0 && std::abs(to.x) < 0.42 && sky > 0.5f;
+                const bool misses = way.y > 0 || std::abs(to.x) > 0.58 || sky < 0.5f;
+                if (passes && !box_between(from, to, 0.03)) {
+                    ++lit;
+                    wrong += std::abs(got - static_cast<float>(glm::dot(way, glm::dvec3(s.normal)))) > 1e-5f;
+                } else if (misses || (passes && box_between(from, to, -0.03))) {
+                    ++(misses ? dark : shaded);
+                    wrong += got != 0;
+                }
+            }
+        }
+        EXPECT_EQ(lit > 50, sky > 0.5f) << lit;
+        EXPECT_EQ(shaded > 1, sky > 0.5f) << shaded;
+        EXPECT_GT(dark, 50u);
+        EXPECT_LE(wrong, (lit + shaded) / 100);
+    }
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ class StreamRecordsTest : public GpuTest {
             albedo[i] = {odd() | odd() << 9 | odd() << 18 | 15u << 27, random_() & 0x3fffffff};
             visibility[i] = {random_(), random_()};
             const auto word = [&] { return static_cast<uint32_t>(random_()); };
-            status[i] = {word(), word(), word(), word(), {word(), word()}, {word(), word()}};
+            status[i] = {word(), word(), word(), word(), {word(), word()}, {word(), word()}, word(), 0};
             around[i].around = word();
         }
         graph::FrameGraph frame = runner().begin();
@@ -308,7 +308,7 @@ TEST_F(StreamRecordsTest, WhatLiesOutsideLeavesAndComesBackAsItWas) {
 }
 
 TEST_F(StreamRecordsTest, ObservationsAreFoundInEveryChunk) {
-    Rig rig = this->rig(0.02f, 4096, 1u << 17);
+    Rig rig = this->rig(0.02f, 3200, 1u << 17);
     ASSERT_EQ(rig.observations.map().chunks(), 4u);
     observe(rig, wall_frame());
     const ObservationContent before = rig.observations.content();

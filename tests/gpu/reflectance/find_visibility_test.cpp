@@ -7,6 +7,7 @@
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/gpu/reflectance/reflectance_rig.h"
+#include "tests/gpu/reflectance/surroundings_inputs.h"
 #include "tests/reference/reflectance/refine_albedo.h"
 #include "tools/bench/filled_records.h"
 
@@ -167,6 +168,69 @@ TEST_F(FindVisibilityTest, BitsAreTheShadowsOfTheBox) {
         // Rays that graze a face of the box.
         EXPECT_LT(far_uncertain, 0.02 * (lit + shadow));
     }
+}
+
+// Half of the ceiling shows the sky, the other is a ceiling.
+TEST_F(FindVisibilityTest, ASunShinesInWhereTheSkyWasSeen) {
+    constexpr double kEdge_m = 0.6;
+    const auto model = make_model();
+    const glm::dvec3 to_sun = glm::normalize(glm::dvec3(0.4, -1, 0.2));
+    model->reflectance.lights.set(std::vector<Light>{{1e4 * to_sun, {1e8, 1e8, 1e8}}});
+    const auto lit_and_not = [&](const std::function<bool(glm::dvec3)>& open) {
+        model->reflectance.update_all({});
+        uint32_t lit = 0, dark = 0;
+        for (const RefinedRecord& record : model->reflectance.records()) {
+            if (!on_floor(record) || std::max(std::abs(record.point_m.x), std::abs(record.point_m.z)) > 0.6) continue;
+            const glm::dvec3 above = record.point_m + to_sun * (kCeiling_m / to_sun.y);
+            const Shade shade = floor_shade(record.point_m, record.point_m + 3.0 * to_sun, 0.015);
+            if (shade == Shade::kBorder || std::abs(above.x - kEdge_m) < 0.08) continue;
+            const bool expected = shade == Shade::kLit && open(above);
+            EXPECT_EQ(record.visible & 1, expected ? 1u : 0u) << record.point_m.x << ' ' << record.point_m.z;
+            ++(expected ? lit : dark);
+        }
+        return std::pair(lit, dark);
+    };
+    const auto [everywhere, shadow] = lit_and_not([](glm::dvec3) { return true; });
+    EXPECT_GT(everywhere, 1000u) << "nothing is known of what is around";
+    EXPECT_GT(shadow, 20u);
+    model->reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
+        add_ceiling(frame, state, [](double x, double) { return x > kEdge_m ? 0.9f : 0.3f; });
+    });
+    const auto [lit, dark] = lit_and_not([](glm::dvec3 above) { return above.x > kEdge_m; });
+    EXPECT_GT(lit, 500u);
+    EXPECT_GT(dark, shadow + 300u);
+}
+
+// The ceiling and the floor at low exposure: a patch of sun on the floor.
+TEST_F(FindVisibilityTest, RecordsTellWhatLowExposureShowedOfThemWhereItIsBright) {
+    const auto model = make_model();
+    model->reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
+        const RigFrame seen = view(0);
+        Image<glm::vec4> color(kCamera.extent, glm::vec4(0, 0, 0, 1));
+        for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+            for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+                const glm::dvec3 way((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
+                const glm::dvec3 at(seen.world_from_camera * glm::dvec4(way * double{seen.depth_m.at(x, y)}, 1));
+                color.at(x, y) = at.z > 0 ? glm::vec4(0.5f, 0.4f, 0.3f, 1) : glm::vec4(0.1f, 0.1f, 0.1f, 1);
+            }
+        }
+        SurroundingsInputs inputs = upload_surroundings(frame, kCamera, seen.world_from_camera, seen.depth_m, color);
+        inputs.radiance_scale = 4;
+        inputs.lamp_luminance = 1;
+        for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
+            add_collect_surroundings(frame, state, inputs);
+    });
+    model->reflectance.update_all({.gathered_rays = 4});
+    uint32_t bright = 0, dull = 0;
+    for (const RefinedRecord& record : model->reflectance.records()) {
+        const bool looked_at = record.point_m.x > 0.25 && record.point_m.x < 0.6 && std::abs(record.point_m.z) < 0.4;
+        if (!on_floor(record) || !looked_at || std::abs(record.point_m.z) < 0.06) continue;
+        const bool sunny = record.point_m.z > 0;
+        EXPECT_LT(glm::distance(record.bright, sunny ? glm::dvec3(2, 1.6, 1.2) : glm::dvec3(0)), 0.02);
+        ++(sunny ? bright : dull);
+    }
+    EXPECT_GT(bright, 100u);
+    EXPECT_GT(dull, 100u);
 }
 
 TEST_F(FindVisibilityTest, BitsAgreeWithTheReferenceOnEverySurface) {

@@ -102,7 +102,7 @@ class RefineAlbedoTest : public GpuTest {
     VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
     // Several chunks of 256 records.
     ObservationMap map_{device(),
-                        {.capacity_blocks = 64, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
+                        {.capacity_blocks = 64, .capacity_records = 768, .max_chunk_bytes = uint64_t{1} << 15}};
     ReflectanceRig rig_{device(), runner(), voxel_map_, map_};
 };
 
@@ -192,6 +192,37 @@ TEST_F(RefineAlbedoTest, OneHighlightOverrulesNoClippedViews) {
     record.observations[0].rgb = glm::vec3(1.4f * record.observations[0].rgb.r);
     record.observations[0].clipped = {true, true, true};
     EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 2 * kPacking);
+}
+
+// A patch of sun: nothing but low exposure tells how bright it is.
+TEST_F(RefineAlbedoTest, WhatIsClippedInAllViewsIsAsBrightAsLowExposureShowedIt) {
+    const Ward material{{0.5, 0.3, 0.2}, {}, 1};
+    rig_.lights.set(kLights, glm::dvec3(6, 5, 4));
+    FilledRecord record{{0.1f, 0.003f, 0.1f}, {0, -1, 0}, 0, {}};
+    const auto seen = [&] {
+        return glm::vec3(
+            reference::shade(material, kept(record), received(rig_.lights), glm::dvec3(6, 5, 4), {0, -1, 0}));
+    };
+    for (int k = 0; k < 8; ++k)
+        record.observations.push_back({{0, -1, 0}, glm::min(seen(), 1.0f), {true, true, false}});
+    ASSERT_GT(seen().g, 1.4f);
+    ASSERT_LT(seen().b, 1.0f);
+    rig_.set_bright(1, seen());
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 3 * kPacking);
+    EXPECT_GT(refine(record).certainty.r, 0.5);
+    // Another tint: one that low exposure shows in full is believed in all channels.
+    rig_.set_bright(1, seen() * glm::vec3(1, 0.9f, 0.8f));
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd * glm::dvec3(1, 0.9, 0.8))), 3 * kPacking);
+    // Darker than what is clipped: it looked at something else.
+    rig_.set_bright(1, glm::vec3(0.9f));
+    const RefinedRecord bounded = refine(record);
+    const glm::dvec3 bound = bounded.kd;
+    EXPECT_LT(bound.r, 0.7 * material.kd.r);
+    EXPECT_LT(bounded.certainty.b, 0.1) << "what was not clipped is as doubtful, for its color";
+    // One view that is not clipped says how bright the surface is.
+    record.observations[0].clipped = {false, false, false};
+    rig_.set_bright(1, seen());
+    EXPECT_LT(max_of(glm::abs(refine(record).kd - bound)), 3 * kPacking);
 }
 
 TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {

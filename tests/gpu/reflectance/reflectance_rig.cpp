@@ -72,12 +72,24 @@ void ReflectanceRig::set_incident(uint32_t count, const reference::GatheredRays&
 }
 
 void ReflectanceRig::set_incident(const std::vector<reference::GatheredRays>& rays) {
+    change_status([&](std::vector<gpu::RecordStatus>& status) {
+        for (size_t i = 0; i < rays.size(); ++i) status[i].incident = pack_rays(rays[i]);
+    });
+}
+
+void ReflectanceRig::set_bright(uint32_t count, glm::vec3 radiance) {
+    change_status([&](std::vector<gpu::RecordStatus>& status) {
+        for (uint32_t i = 0; i < count; ++i) status[i].bright = glm::packF3x9_E1x5(radiance);
+    });
+}
+
+void ReflectanceRig::change_status(const std::function<void(std::vector<gpu::RecordStatus>&)>& change_all) {
     graph::FrameGraph before = runner_.begin();
     const graph::Readback read = before.read_back(state_.import(before).status);
     runner_.submit(std::move(before));
     runner_.wait();
     auto status = read.as<gpu::RecordStatus>();
-    for (size_t i = 0; i < rays.size(); ++i) status[i].incident = pack_rays(rays[i]);
+    change_all(status);
     change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
         state.status = frame.upload_bytes(state.status, 0, std::as_bytes(std::span(status)), false);
     });
@@ -184,6 +196,7 @@ std::vector<RefinedRecord> ReflectanceRig::records(uint32_t count) {
         record.gathered = unpack_rays(gathered[i].rays);
         record.around = glm::dvec3(glm::unpackF3x9_E1x5(gathered[i].around));
         record.incident = unpack_rays(status[i].incident);
+        record.bright = glm::dvec3(glm::unpackF3x9_E1x5(status[i].bright));
         records.push_back(record);
     }
     return records;

@@ -22,6 +22,7 @@ struct RefinedRecord {
     glm::dvec3 around{0};                 ///< albedo of the surface around; 0: not known
     reference::GatheredRays gathered;     ///< its own rays
     reference::GatheredRays incident;     ///< and of the records beside it
+    glm::dvec3 bright{0};                 ///< at low exposure; 0: not known
 };
 
 /// As RecordStatus::incident holds them.
@@ -38,6 +39,9 @@ class ReflectanceRig {
 
     /// The same with light of their own for the first records.
     void set_incident(const std::vector<reference::GatheredRays>& rays);
+
+    /// Gives the first `count` records the radiance that low exposure showed.
+    void set_bright(uint32_t count, glm::vec3 radiance);
 
     /// Lets records tell each other of their albedo (passes/reflectance/surface_albedo.h).
     void share_albedo(const glm::vec4& cube_m = RefinedPart{}.cube_m);
@@ -73,6 +77,7 @@ class ReflectanceRig {
 
   private:
     ReflectanceModels models() { return {voxel_map_, observation_map_, lights, materials, state_, part}; }
+    void change_status(const std::function<void(std::vector<gpu::RecordStatus>&)>& change_all);
     void set_of_material(uint32_t label, uint64_t offset, float value);
     Counts submit(graph::FrameGraph frame, const ObservationMapIds& ids, const RefinedReflectance& refined);
 

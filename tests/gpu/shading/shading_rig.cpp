@@ -125,7 +125,7 @@ void ShadingRig::paint(const std::function<reference::ShadedRecord(const RecordP
         stored.albedo.emplace_back(kd, pack_certainty(painted.certainty));
         stored.visibility.emplace_back(painted.reached & 0xffffffff, painted.reached >> 32);
         stored.status.push_back(
-            {painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, incident ? pack_rays(*incident) : glm::uvec2(0)});
+            {painted.marched ? 1u : 0u, 0, 0, 0, {0, 0}, incident ? pack_rays(*incident) : glm::uvec2(0), 0, 0});
         const uint32_t around = painted.around ? glm::packF3x9_E1x5(glm::vec3(*painted.around)) : 0;
         stored.gathered.push_back({{}, around, 0});
         if (painted.around) painted.around = glm::dvec3(glm::unpackF3x9_E1x5(around));

@@ -55,6 +55,23 @@ Middle reweight(std::vector<Rest>& rests, double noise) {
     return {mean, scale / 1.5};
 }
 
+bool always_clipped(const std::vector<Rest>& rests, int channel) {
+    return std::ranges::all_of(rests, [&](const Rest& rest) { return rest.clipped[static_cast<size_t>(channel)]; });
+}
+
+/// Half of what a channel that is always clipped is below a usual bright albedo by; where two are, all channels have
+/// the largest.
+glm::dvec3 brighter_by(glm::dvec3 kd, const std::vector<Rest>& rests) {
+    glm::dvec3 by(0);
+    int clipped = 0;
+    for (int c = 0; c < 3; ++c) {
+        if (!always_clipped(rests, c)) continue;
+        ++clipped;
+        by[c] = std::max((0.8 - kd[c]) / 2, 0.0);
+    }
+    return clipped < 2 ? by : glm::dvec3(std::max({by.r, by.g, by.b}));
+}
+
 /// What a clipped channel must be above to count: the mean, in which clipped ones have next to no share.
 double bound_of(const std::vector<Rest>& rests, int channel) {
     double sum = 0, weights = 0;
@@ -139,11 +156,12 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
     }
     const double known = 1 - mirror + mirror * unclipped / trusted;
     RefinedAlbedo result;
+    glm::dvec3 variances(0);
     for (int c = 0; c < 3; ++c) {
         if (irradiance[c] <= 0.004) continue;
         double weights = 0, squares = 0, sum = 0, spread = 0, robust_weights = 0;
         const auto is_clipped = [&](const Rest& rest) { return rest.clipped[static_cast<size_t>(c)]; };
-        const double bound = bound_of(rests, c), unbounded = std::ranges::all_of(rests, is_clipped) ? 0.1 : 0;
+        const double bound = bound_of(rests, c);
         for (const Rest& rest : rests) {
             const bool low = is_clipped(rest) && rest.diffuse[c] <= bound;
             const double robust = rest.trust * rest.robust, weight = robust * (low ? kClippedShare : 1);
@@ -158,9 +176,13 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         result.kd[c] = std::clamp(unreflected * (sum / weights - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
         const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
         const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
-        const double all =
-            variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error + unbounded * unbounded;
-        result.certainty[c] = known / (1 + all / (0.05 * 0.05));
+        variances[c] = variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error;
+    }
+    const glm::dvec3 brighter = brighter_by(result.kd, rests);
+    for (int c = 0; c < 3; ++c) {
+        if (irradiance[c] <= 0.004) continue;
+        const double unbounded = std::max(always_clipped(rests, c) ? 0.1 : 0.0, brighter[c]);
+        result.certainty[c] = known / (1 + (variances[c] + unbounded * unbounded) / (0.05 * 0.05));
     }
     return result;
 }

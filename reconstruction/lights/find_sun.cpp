@@ -1,0 +1,86 @@
+#include "reconstruction/lights/find_sun.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "engine/core/shader_light.h"
+#include "reconstruction/lights/search_sun.h"
+#include "reconstruction/lights/surface_samples.h"
+
+namespace patina {
+namespace {
+
+constexpr double kSunDistance_m = 1e4;  // so far that a room's size does not matter
+
+/// Tries suns in the reconstruction's volume, as many at once as a pass takes.
+class TrySunsInVolume {
+  public:
+    explicit TrySunsInVolume(Pipeline& pipeline) : pipeline_(pipeline) {}
+
+    std::vector<float> operator()(std::span<const gpu::LightSample> samples,
+                                  std::span<const glm::vec3> directions) const {
+        std::vector<gpu::LightSample> padded(samples.begin(), samples.end());
+        padded.resize((samples.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+        std::vector<float> rows;
+        rows.reserve(samples.size() * directions.size());
+        while (!directions.empty()) {
+            const auto batch = directions.first(std::min<size_t>(gpu::kTrialLights, directions.size()));
+            directions = directions.subspan(batch.size());
+            const std::vector<float> tried = try_suns(pipeline_, padded, batch, static_cast<uint32_t>(padded.size()));
+            for (size_t i = 0; i < batch.size(); ++i) {
+                const auto row = tried.begin() + static_cast<ptrdiff_t>(i * gpu::kLightSamples);
+                rows.insert(rows.end(), row, row + static_cast<ptrdiff_t>(samples.size()));
+            }
+        }
+        return rows;
+    }
+
+  private:
+    Pipeline& pipeline_;
+};
+
+/// Irradiance over pi from around. Unknown directions send the ambient light, or as much as the others where that is
+/// not known (lib/records/gathered_light.glsl).
+glm::vec3 gathered(const gpu::LightSample& sample, glm::vec3 ambient) {
+    const glm::vec3 met(sample.around);
+    const float unknown = std::max(sample.around.w, 0.0f);
+    if (ambient != glm::vec3(0)) return met + unknown * ambient;
+    return unknown < 1 ? met / (1 - unknown) : glm::vec3(0);
+}
+
+/// Irradiance over pi without the sun's.
+std::vector<glm::vec3> known_light(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                                   std::span<const Light> lights, glm::vec3 ambient) {
+    std::vector<glm::vec3> known = received_from(pipeline, samples, lights);
+    for (size_t i = 0; i < samples.size(); ++i) known[i] += gathered(samples[i], ambient);
+    return known;
+}
+
+Light sun_of(glm::vec3 direction, glm::dvec3 irradiance) {
+    Light sun;
+    sun.position_m = kSunDistance_m * glm::dvec3(direction);
+    sun.intensity = kSunDistance_m * kSunDistance_m * std::numbers::pi * irradiance;
+    return rounded_to_float(sun);
+}
+
+}  // namespace
+
+std::optional<FoundLight> find_sun(Pipeline& pipeline, std::span<const Light> lights, glm::vec3 ambient) {
+    const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
+    const std::span<const gpu::LightSample> samples = std::span(drawn).first(gpu::kLightSamples);
+    const auto sun = search_sun(samples, known_light(pipeline, samples, lights, ambient), TrySunsInVolume(pipeline));
+    if (!sun) return std::nullopt;
+    return FoundLight{sun_of(sun->direction, sun->irradiance), {.sightings = sun->samples}};
+}
+
+void measure_sun(Pipeline& pipeline, FoundLight& sun, std::span<const Light> lights, glm::vec3 ambient) {
+    const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
+    const std::span<const gpu::LightSample> samples = std::span(drawn).first(gpu::kLightSamples);
+    const glm::vec3 direction(glm::normalize(sun.light.position_m));
+    const auto strength = sun_strength(samples, known_light(pipeline, samples, lights, ambient),
+                                       TrySunsInVolume(pipeline)(samples, std::span(&direction, 1)));
+    if (strength) sun.light = sun_of(direction, *strength);
+}
+
+}  // namespace patina

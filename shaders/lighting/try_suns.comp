@@ -1,0 +1,50 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// What each trial sun gives each sample of the surface: the cosine to its direction, 0 where the model stands in the
+// way, or where the ray passes no opening in which pictures show the sky.
+#include "lib/records/reflectance.glsl"
+#include "shared/lighting/fit_lights.h"
+#include "shared/reflectance/far_field.h"
+#include "shared/reflectance/surroundings.h"
+layout(local_size_x = kRecordGroup) in;
+layout(std430, binding = 0) readonly buffer Samples { LightSample samples[]; };
+layout(std430, binding = 1) readonly buffer Trials { vec4 directions[]; };
+layout(std430, binding = 2) writeonly buffer Received { float received[]; };
+layout(std430, binding = 3) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
+layout(std430, binding = 4) readonly buffer Keys { uvec4 buckets[]; };
+layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
+layout(std430, binding = 6) readonly buffer Tsdf { uint voxels[]; }
+tsdf[kMaxVoxelChunks];
+layout(push_constant) uniform Push { TrialParams params; };
+#define KEYS(bucket) buckets[bucket]
+#define BLOCK(slot) blocks[slot]
+#define VOXEL(C, i) tsdf[C].voxels[i]
+#define MAP_REGIONS(i) map_regions[i]
+#include "lib/lighting/march_surroundings.glsl"
+#include "lib/map/march_map.glsl"
+
+const float kLiftVox = 4.0;          // above the surface, where the way begins
+const float kMostSkippedVox = 16.0;  // of the way, to get there
+
+bool is_open(LightSample lit, vec3 direction, float cosine) {
+    const float per_m = 1.0 / grid.voxel_m;
+    const float skipped = min(kLiftVox / cosine, kMostSkippedVox);
+    const float lift = max(kLiftVox - skipped * cosine, 0.0);
+    const vec3 start = lit.point_m.xyz * per_m + lift * lit.normal.xyz;
+    const float reach = to_ball_end(start, direction, params.ball_m);
+    return march(start, direction, skipped, reach, cosine, lift, kInsideVox).open;
+}
+
+void main() {
+    const uint item = gl_GlobalInvocationID.x, trial = gl_WorkGroupID.y;
+    const LightSample lit = samples[item];
+    const vec3 direction = directions[trial].xyz;
+    grid = params.grid;
+    const float cosine = dot(direction, lit.normal.xyz);
+    float result = 0.0;
+    if (lit.point_m.w > 0.0 && cosine > kLeastTrialCosine && passes_sky(lit.point_m.xyz, lit.normal.xyz, direction) &&
+        is_open(lit, direction, cosine)) {
+        result = cosine;
+    }
+    received[trial * kLightSamples + item] = result;
+}
