@@ -31,7 +31,7 @@ constexpr uint64_t kSurroundingsCellsAt =
 constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn
-/// next, the light that reaches them from what is around, and the albedo of the surface around, 48 bytes a record; and
+/// next, the light that reaches them from what is around, and the albedo of the surface around, 56 bytes a record; and
 /// light from far away. Lives as long as the map.
 class ReflectanceState {
   public:

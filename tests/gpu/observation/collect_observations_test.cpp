@@ -275,7 +275,7 @@ TEST_F(CollectObservations, TheSameFramesGiveTheSameBytesInOneChunkOrMany) {
     for (const uint64_t chunk_bytes : {uint64_t{1} << 27, uint64_t{1} << 27, uint64_t{1} << 17}) {
         ObservationMapSettings map;
         map.capacity_blocks = 1024;
-        map.capacity_records = 4096;
+        map.capacity_records = 3200;
         map.max_chunk_bytes = chunk_bytes;
         ObservationRig rig = this->rig({}, map);
         EXPECT_EQ(rig.map().chunks(), chunk_bytes > 1u << 20 ? 1u : 4u);
