@@ -74,9 +74,9 @@ class FitWardTest : public GpuTest {
     std::set<std::array<int, 3>> used_;  // a voxel has one record
     bool backwards_ = false;
     VoxelMap voxel_map_{device(), {.capacity_blocks = 64}};
-    // Several chunks of 256 records.
+    // Two chunks of 512 records.
     ObservationMap map_{device(),
-                        {.capacity_blocks = 256, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 15}};
+                        {.capacity_blocks = 256, .capacity_records = 1024, .max_chunk_bytes = uint64_t{1} << 16}};
     ReflectanceRig rig_{device(), runner(), voxel_map_, map_};
     SegmentSamples samples_{device(), kLabels};
     SpecularEstimates estimates_{device(), kLabels};

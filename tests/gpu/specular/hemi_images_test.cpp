@@ -104,7 +104,7 @@ class HemiImagesTest : public GpuTest {
     std::mt19937 random_{1};
     // Several chunks of 128 records.
     ObservationMap map_{device(),
-                        {.capacity_blocks = 64, .capacity_records = 512, .max_chunk_bytes = uint64_t{1} << 14}};
+                        {.capacity_blocks = 64, .capacity_records = 512, .max_chunk_bytes = uint64_t{1} << 15}};
     SegmentSamples samples_{device(), kLabels};
 };
 
