@@ -17,10 +17,11 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
-/// From this far on a lamp is a sun: its place tells a direction. In a reconstruction whose surfaces light each other
-/// it shines in through what the sky was seen in, such as windows; what was never seen, such as a ceiling, keeps it
+/// From this far from the origin on a lamp is a sun: its place tells a direction. Recordings that begin farther than 1
+/// km away are moved to the origin, so that their lamps are none. In a reconstruction whose surfaces light each other a
+/// sun shines in through what the sky was seen in, such as windows; what was never seen, such as a ceiling, keeps it
 /// out.
-inline constexpr double kSunsFrom_m = 1000;
+inline constexpr double kSunsFrom_m = 5000;
 inline bool is_sun(const Light& light) { return glm::length(light.position_m) >= kSunsFrom_m; }
 
 /// What lights a room: lamps, and light that arrives everywhere alike.

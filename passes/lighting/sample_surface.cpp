@@ -15,6 +15,28 @@ void bind_records(graph::PassBuilder& pass, const ObservationMap& map, const Obs
     pass.push(gpu::SampleParams{map.grid(), map.edge_shift(), seed, 0, 0});
 }
 
+struct TriedSamples {
+    graph::BufferId samples;
+    uint32_t count = 0;  // of them that are tried
+};
+
+graph::BufferId add_trials(graph::FrameGraph& frame, graph::PassBuilder& pass, const VoxelMap& map,
+                           const VoxelMapIds& voxels, const TriedSamples& tried, std::span<const glm::vec3> lights,
+                           glm::vec4 ball_m) {
+    if (lights.empty() || lights.size() > gpu::kTrialLights)
+        throw Error("1 to ", gpu::kTrialLights, " lights are tried at once, not ", lights.size());
+    const auto trials = static_cast<uint32_t>(lights.size());
+    std::vector<glm::vec4> padded;
+    for (const glm::vec3& light : lights) padded.emplace_back(light, 0);
+    pass.read("Samples", tried.samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
+    pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
+    pass.specialise("kVoxelChunks", map.chunks());
+    pass.push(gpu::TrialParams{map.grid(), ball_m});
+    const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
+    pass.dispatch(tried.count / gpu::kRecordGroup, trials);
+    return received;
+}
+
 }  // namespace
 
 graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
@@ -37,44 +59,17 @@ graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMa
 }
 
 graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                               graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count,
-                               glm::vec4 ball_m) {
-    if (places_m.empty() || places_m.size() > gpu::kTrialLights) {
-        throw Error("the pass 'lighting.try_lights' tries 1 to ", gpu::kTrialLights, " lights at once, not ",
-                    places_m.size());
-    }
-    const auto trials = static_cast<uint32_t>(places_m.size());
-    std::vector<glm::vec4> padded;
-    for (const glm::vec3& place_m : places_m) padded.emplace_back(place_m, 0);
+                               graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count) {
     auto pass = frame.compute("lighting.try_lights", spirv::try_lights);
-    pass.read("Samples", samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
-    pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
-    pass.specialise("kVoxelChunks", map.chunks());
-    pass.push(gpu::TrialParams{map.grid(), ball_m});
-    const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
-    pass.dispatch(count / gpu::kRecordGroup, trials);
-    return received;
+    return add_trials(frame, pass, map, voxels, {samples, count}, places_m, glm::vec4(0));
 }
 
 graph::BufferId add_try_suns(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
                              graph::BufferId surroundings, graph::BufferId samples,
                              std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
-    if (directions.empty() || directions.size() > gpu::kTrialLights) {
-        throw Error("the pass 'lighting.try_suns' tries 1 to ", gpu::kTrialLights, " suns at once, not ",
-                    directions.size());
-    }
-    const auto trials = static_cast<uint32_t>(directions.size());
-    std::vector<glm::vec4> padded;
-    for (const glm::vec3& direction : directions) padded.emplace_back(direction, 0);
     auto pass = frame.compute("lighting.try_suns", spirv::try_suns);
-    pass.read("Samples", samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
     pass.read("Surroundings", surroundings);
-    pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
-    pass.specialise("kVoxelChunks", map.chunks());
-    pass.push(gpu::TrialParams{map.grid(), ball_m});
-    const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
-    pass.dispatch(count / gpu::kRecordGroup, trials);
-    return received;
+    return add_trials(frame, pass, map, voxels, {samples, count}, directions, ball_m);
 }
 
 }  // namespace patina

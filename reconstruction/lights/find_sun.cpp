@@ -6,17 +6,17 @@
 
 #include "engine/core/shader_light.h"
 #include "reconstruction/lights/search_sun.h"
+#include "reconstruction/lights/split_environment.h"
 #include "reconstruction/lights/surface_samples.h"
 
 namespace patina {
 namespace {
 
-constexpr double kSunDistance_m = 1e4;  // so far that a room's size does not matter
-
 /// Tries suns in the reconstruction's volume, as many at once as a pass takes.
 class TrySunsInVolume {
   public:
-    explicit TrySunsInVolume(Pipeline& pipeline) : pipeline_(pipeline) {}
+    TrySunsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> all)
+        : pipeline_(pipeline), ball_m_(ball_around(all)) {}
 
     std::vector<float> operator()(std::span<const gpu::LightSample> samples,
                                   std::span<const glm::vec3> directions) const {
@@ -27,7 +27,8 @@ class TrySunsInVolume {
         while (!directions.empty()) {
             const auto batch = directions.first(std::min<size_t>(gpu::kTrialLights, directions.size()));
             directions = directions.subspan(batch.size());
-            const std::vector<float> tried = try_suns(pipeline_, padded, batch, static_cast<uint32_t>(padded.size()));
+            const std::vector<float> tried =
+                try_suns(pipeline_, padded, batch, static_cast<uint32_t>(padded.size()), ball_m_);
             for (size_t i = 0; i < batch.size(); ++i) {
                 const auto row = tried.begin() + static_cast<ptrdiff_t>(i * gpu::kLightSamples);
                 rows.insert(rows.end(), row, row + static_cast<ptrdiff_t>(samples.size()));
@@ -38,6 +39,7 @@ class TrySunsInVolume {
 
   private:
     Pipeline& pipeline_;
+    glm::vec4 ball_m_;
 };
 
 /// Irradiance over pi from around. Unknown directions send the ambient light, or as much as the others where that is
@@ -59,27 +61,29 @@ std::vector<glm::vec3> known_light(Pipeline& pipeline, std::span<const gpu::Ligh
 
 Light sun_of(glm::vec3 direction, glm::dvec3 irradiance) {
     Light sun;
-    sun.position_m = kSunDistance_m * glm::dvec3(direction);
-    sun.intensity = kSunDistance_m * kSunDistance_m * std::numbers::pi * irradiance;
+    sun.position_m = kEnvironmentDistance_m * glm::dvec3(direction);
+    sun.intensity = kEnvironmentDistance_m * kEnvironmentDistance_m * std::numbers::pi * irradiance;
     return rounded_to_float(sun);
 }
 
 }  // namespace
 
-std::optional<FoundLight> find_sun(Pipeline& pipeline, std::span<const Light> lights, glm::vec3 ambient) {
-    const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
-    const std::span<const gpu::LightSample> samples = std::span(drawn).first(gpu::kLightSamples);
-    const auto sun = search_sun(samples, known_light(pipeline, samples, lights, ambient), TrySunsInVolume(pipeline));
+std::optional<FoundLight> find_sun(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
+                                   std::span<const Light> lights, glm::vec3 ambient) {
+    const std::span<const gpu::LightSample> samples = drawn.first(gpu::kLightSamples);
+    const TrySunsInVolume try_suns(pipeline, samples);
+    const auto sun = search_sun(samples, known_light(pipeline, samples, lights, ambient), try_suns);
     if (!sun) return std::nullopt;
     return FoundLight{sun_of(sun->direction, sun->irradiance), {.sightings = sun->samples}};
 }
 
-void measure_sun(Pipeline& pipeline, FoundLight& sun, std::span<const Light> lights, glm::vec3 ambient) {
-    const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
-    const std::span<const gpu::LightSample> samples = std::span(drawn).first(gpu::kLightSamples);
+void measure_sun(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, FoundLight& sun,
+                 std::span<const Light> lights, glm::vec3 ambient) {
+    const std::span<const gpu::LightSample> samples = drawn.first(gpu::kLightSamples);
     const glm::vec3 direction(glm::normalize(sun.light.position_m));
+    const TrySunsInVolume try_suns(pipeline, samples);
     const auto strength = sun_strength(samples, known_light(pipeline, samples, lights, ambient),
-                                       TrySunsInVolume(pipeline)(samples, std::span(&direction, 1)));
+                                       try_suns(samples, std::span(&direction, 1)));
     if (strength) sun.light = sun_of(direction, *strength);
 }
 

@@ -8,18 +8,16 @@
 namespace patina {
 namespace {
 
-constexpr float kDarkest = 0.004f;          // a pixel value of 8-bit noise
-constexpr float kChromaticityStep = 0.06f;  // more than what lamps of different colour make of one albedo
-constexpr double kNoise = 0.01;             // of pixel values: residuals are told in these
-constexpr double kRelativeNoise = 0.1;      // what one albedo per group, highlights and shadow borders leave
-constexpr float kHighlightSpread = 0.2f;    // tangent of the half vector's angle at which a highlight is half explained
-constexpr double kLeastLit = 0.02;          // of the mean irradiance; darker samples count the same
-constexpr uint32_t kAlbedos = 2;            // of a group at most: tiles, print
-constexpr double kApart = 1.5;              // the factor between them, at least
-constexpr size_t kFewSamples = 12;          // of a group that has but one
-constexpr double kSecondMisfit = 0.25;      // of a sample that needs the rarer albedo, at least: shadows are none
-constexpr uint32_t kAssignments = 2;        // of samples to albedos, in a step
-constexpr double kLeastShare = 1e-6;        // of the mean irradiance, below which a lamp reaches nothing
+constexpr double kNoise = 0.01;           // of pixel values: residuals are told in these
+constexpr double kRelativeNoise = 0.1;    // what one albedo per group, highlights and shadow borders leave
+constexpr float kHighlightSpread = 0.2f;  // tangent of the half vector's angle at which a highlight is half explained
+constexpr double kLeastLit = 0.02;        // of the mean irradiance; darker samples count the same
+constexpr uint32_t kAlbedos = 2;          // of a group at most: tiles, print
+constexpr double kApart = 1.5;            // the factor between them, at least
+constexpr size_t kFewSamples = 12;        // of a group that has but one
+constexpr double kSecondMisfit = 0.25;    // of a sample that needs the rarer albedo, at least: shadows are none
+constexpr uint32_t kAssignments = 2;      // of samples to albedos, in a step
+constexpr double kLeastShare = 1e-6;      // of the mean irradiance, below which a lamp reaches nothing
 
 float brightness(const gpu::LightSample& sample, LightChannel channel) {
     const glm::vec4 c = sample.diffuse;
@@ -252,7 +250,7 @@ LitSurface::LitSurface(std::span<const gpu::LightSample> drawn, float cell_m) {
     std::map<std::array<int, 5>, uint32_t> groups;
     for (uint32_t place = 0; place < gpu::kLightSamples; ++place) {
         const gpu::LightSample& sample = drawn[place];
-        if (sample.point_m.w > 0 && brightness(sample, LightChannel::kMean) >= kDarkest) {
+        if (sample.point_m.w > 0 && brightness(sample, LightChannel::kMean) >= kDarkestSample) {
             const auto next = static_cast<uint32_t>(groups.size());
             group_.push_back(groups.emplace(group_key(sample, cell_m), next).first->second);
             samples_.push_back(sample);

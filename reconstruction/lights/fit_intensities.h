@@ -21,7 +21,9 @@ using ReceivedLight = std::shared_ptr<const ReceivedLightValues>;
 /// Which pixel values are explained.
 enum class LightChannel : uint8_t { kRed, kGreen, kBlue, kMean };
 
-constexpr uint32_t kIntensitySteps = 10;  ///< of LitSurface::fit, after which intensities hardly change
+constexpr float kDarkestSample = 0.004f;    ///< a pixel value of 8-bit noise: what is darker tells nothing
+constexpr float kChromaticityStep = 0.06f;  ///< more than what lamps of different colour make of one albedo
+constexpr uint32_t kIntensitySteps = 10;    ///< of LitSurface::fit, after which intensities hardly change
 
 /// Lamps' intensities that explain the pixel values of a surface.
 struct FittedIntensities {

@@ -7,12 +7,12 @@
 #include <map>
 #include <numbers>
 
+#include "reconstruction/lights/fit_intensities.h"
+
 namespace patina {
 namespace {
 
-constexpr float kDarkestTold = 0.004f;  // a pixel value of 8-bit noise
-constexpr float kLeastKnown = 0.02f;    // irradiance over pi: in darker places brightness tells little
-constexpr float kTintStep = 0.06f;      // of chromaticity
+constexpr float kLeastKnown = 0.02f;  // irradiance over pi: in darker places brightness tells little
 constexpr float kBeside_m = 0.6f, kAlongside = 0.95f, kLevel_m = 0.03f;  // samples of one surface
 constexpr float kSameTint = 0.08f;                                       // of chromaticity
 constexpr float kDullAlbedo = 0.15f;                                     // darker surfaces show more gloss than albedo
@@ -102,14 +102,14 @@ class Patches {
     static float mean(const auto& rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
 
     static bool tells(const gpu::LightSample& sample) {
-        return sample.point_m.w > 0 && sample.around.w >= 0 && mean(sample.diffuse) >= kDarkestTold;
+        return sample.point_m.w > 0 && sample.around.w >= 0 && mean(sample.diffuse) >= kDarkestSample;
     }
 
     using Tint = std::array<int, 2>;
 
     static Tint tint_of(const auto& rgb) {
         const float sum = 3 * mean(rgb);
-        return {static_cast<int>(rgb.r / sum / kTintStep), static_cast<int>(rgb.g / sum / kTintStep)};
+        return {static_cast<int>(rgb.r / sum / kChromaticityStep), static_cast<int>(rgb.g / sum / kChromaticityStep)};
     }
 
     /// With what is beside it, as one surface has several under light of several colours.

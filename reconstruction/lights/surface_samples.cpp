@@ -24,45 +24,44 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
 
 namespace {
 
-constexpr float kAround_m = 0.5f;  // of the samples, where there may be surface, too
-
-/// Holds all samples and what stands between them.
-glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {
-    glm::vec3 low(1e9f), high(-1e9f);
-    for (const gpu::LightSample& sample : samples) {
-        if (sample.point_m.w <= 0) continue;
-        low = glm::min(low, glm::vec3(sample.point_m));
-        high = glm::max(high, glm::vec3(sample.point_m));
-    }
-    if (low.x > high.x) return glm::vec4(0);
-    return {0.5f * (low + high), 0.5f * glm::distance(low, high) + kAround_m};
+/// `add` adds the trials to a frame; it takes the samples.
+std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSample> samples, const auto& add) {
+    graph::FrameGraph frame = pipeline.runner().begin();
+    const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
+    const graph::Readback received = frame.read_back(add(frame, uploaded));
+    pipeline.runner().submit(std::move(frame));
+    pipeline.wait();
+    return received.as<float>();
 }
 
 }  // namespace
 
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                              std::span<const glm::vec3> places_m, uint32_t count) {
-    graph::FrameGraph frame = pipeline.runner().begin();
-    const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
     const VoxelMap& map = pipeline.map();
-    const graph::Readback received =
-        frame.read_back(add_try_lights(frame, map, map.import(frame), uploaded, places_m, count, ball_around(samples)));
-    pipeline.runner().submit(std::move(frame));
-    pipeline.wait();
-    return received.as<float>();
+    return run_trials(pipeline, samples, [&](graph::FrameGraph& frame, graph::BufferId uploaded) {
+        return add_try_lights(frame, map, map.import(frame), uploaded, places_m, count);
+    });
 }
 
 std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                            std::span<const glm::vec3> directions, uint32_t count) {
-    graph::FrameGraph frame = pipeline.runner().begin();
-    const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
+                            std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
     const VoxelMap& map = pipeline.map();
-    const graph::BufferId around = pipeline.reflectance()->import_surroundings(frame);
-    const graph::Readback received = frame.read_back(
-        add_try_suns(frame, map, map.import(frame), around, uploaded, directions, count, ball_around(samples)));
-    pipeline.runner().submit(std::move(frame));
-    pipeline.wait();
-    return received.as<float>();
+    return run_trials(pipeline, samples, [&](graph::FrameGraph& frame, graph::BufferId uploaded) {
+        const graph::BufferId around = pipeline.reflectance()->import_surroundings(frame);
+        return add_try_suns(frame, map, map.import(frame), around, uploaded, directions, count, ball_m);
+    });
+}
+
+glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {
+    constexpr float kMargin_m = 0.5f;  // there may be surface between samples, too
+    glm::vec3 low(1e9f), high(-1e9f);
+    for (const gpu::LightSample& sample : samples) {
+        if (sample.point_m.w <= 0) continue;
+        low = glm::min(low, glm::vec3(sample.point_m));
+        high = glm::max(high, glm::vec3(sample.point_m));
+    }
+    return low.x > high.x ? glm::vec4(0) : glm::vec4(0.5f * (low + high), 0.5f * glm::distance(low, high) + kMargin_m);
 }
 
 std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
@@ -85,7 +84,8 @@ std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::Li
                 received[i] += tried[l * gpu::kLightSamples + i] * intensities[l];
     };
     if (!places_m.empty()) add(try_lamps(pipeline, samples, places_m), of_lamps);
-    if (!directions.empty()) add(try_suns(pipeline, samples, directions), of_suns);
+    if (!directions.empty())
+        add(try_suns(pipeline, samples, directions, gpu::kLightSamples, ball_around(samples)), of_suns);
     return received;
 }
 

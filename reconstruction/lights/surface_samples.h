@@ -20,9 +20,12 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline);
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                              std::span<const glm::vec3> places_m, uint32_t count = gpu::kLightSamples);
 
-/// The same of suns: the cosine to each direction, 0 where it does not shine in.
+/// The same of suns, as add_try_suns returns it.
 std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                            std::span<const glm::vec3> directions, uint32_t count = gpu::kLightSamples);
+                            std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m);
+
+/// Centre and radius of what holds all samples, and what stands between them.
+glm::vec4 ball_around(std::span<const gpu::LightSample> samples);
 
 /// Irradiance over pi that lights give the gpu::kLightSamples samples of the surface. At most gpu::kMaxPointLights.
 std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,

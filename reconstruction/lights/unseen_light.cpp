@@ -50,8 +50,8 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
     return std::max(asked[static_cast<size_t>(at)], 0.0f);
 }
 
-std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lights) {
-    std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
+std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                       std::span<const Light> lights) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);

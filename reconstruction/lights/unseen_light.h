@@ -30,11 +30,12 @@ std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLigh
 /// that is known. 0 where nothing is missing.
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received);
 
-/// That of what the pipeline has observed, under these lights. It is taken for white, as its colour is too uncertain.
-/// As fitted, where no sun is among the lights, and at least that without which surfaces were too bright; empty where
-/// no fit explains the surface: its brightness tells nothing then, either. Above 0: no light at all would count as not
-/// known. At least one lamp, at most gpu::kMaxPointLights lights. Waits for the device. Throws Error when the
-/// reconstruction has no reflectance.
-std::optional<float> find_unseen_light(Pipeline& pipeline, std::span<const Light> lights);
+/// That of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it. It is taken for
+/// white, as its colour is too uncertain. As fitted, where no sun is among the lights, and at least that without which
+/// surfaces were too bright; empty where no fit explains the surface: its brightness tells nothing then, either. Above
+/// 0: no light at all would count as not known. At least one lamp, at most gpu::kMaxPointLights lights. Waits for the
+/// device.
+std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                       std::span<const Light> lights);
 
 }  // namespace patina

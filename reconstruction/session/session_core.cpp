@@ -1,12 +1,16 @@
 #include "reconstruction/session/session_core.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/lights/find_sun.h"
+#include "reconstruction/lights/fit_intensities.h"
+#include "reconstruction/lights/light_fitting.h"
+#include "reconstruction/lights/surface_samples.h"
 #include "reconstruction/lights/unseen_light.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
@@ -299,12 +303,14 @@ void SessionCore::look_for_unseen_light() {
     std::vector<FoundLight>& lights = illumination_.lights;
     std::erase_if(lights, [](const FoundLight& found) { return is_sun(found.light); });
     const std::vector<Light> lamps = lights_of(illumination_);
-    auto sun = lamps.size() < gpu::kMaxPointLights ? find_sun(*pipeline_, lamps, glm::vec3(illumination_.ambient))
-                                                   : std::nullopt;
-    if (sun) lights.push_back(*sun);
-    if (const auto unseen = find_unseen_light(*pipeline_, lights_of(illumination_))) {
+    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    const bool room_for_one = lamps.size() < gpu::kMaxPointLights;
+    if (const auto sun =
+            room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
+        lights.push_back(*sun);
+    if (const auto unseen = find_unseen_light(*pipeline_, drawn, lights_of(illumination_))) {
         illumination_.ambient = glm::dvec3(*unseen);
-        if (sun) measure_sun(*pipeline_, lights.back(), lamps, glm::vec3(*unseen));
+        if (lights.size() > lamps.size()) measure_sun(*pipeline_, drawn, lights.back(), lamps, glm::vec3(*unseen));
     }
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }

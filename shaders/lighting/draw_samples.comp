@@ -14,10 +14,9 @@ layout(std430, binding = 9) readonly buffer Colors { uvec4 quads[]; }
 colors[kMaxVoxelChunks];
 layout(std430, binding = 14) readonly buffer Status { RecordStatus status[]; };
 layout(push_constant) uniform Push { SampleParams params; };
+#include "lib/lighting/surroundings.glsl"
 #include "lib/records/gathered_light.glsl"
 #include "lighting/sample_surface.glsl"
-
-const float kNearlyClipped = 0.9;  // a mean of observations some of which may be clipped
 
 vec4 light_around(uint record) {
     const GatheredLight light = unpack_gathered(status[record].incident);

@@ -16,21 +16,7 @@ layout(push_constant) uniform Push { TrialParams params; };
 #define KEYS(bucket) buckets[bucket]
 #define BLOCK(slot) blocks[slot]
 #define VOXEL(C, i) tsdf[C].voxels[i]
-#include "lib/map/march_map.glsl"
-
-const float kLiftVox = 4.0;          // above the surface, where the way begins
-const float kMostSkippedVox = 16.0;  // of the way, to get there
-
-bool is_open(vec3 point_m, vec3 normal, vec3 direction, float distance_m) {
-    const float per_m = 1.0 / grid.voxel_m;
-    const float cosine = dot(direction, normal);
-    const float skipped = min(kLiftVox / cosine, kMostSkippedVox);
-    const float lift = max(kLiftVox - skipped * cosine, 0.0);
-    const vec3 start = point_m * per_m + lift * normal;
-    const float to_lamp = (distance_m - min(kTrialLampM, 0.3 * distance_m)) * per_m;
-    const float reach = min(to_lamp, to_ball_end(start, direction, params.ball_m));
-    return march(start, direction, skipped, reach, cosine, lift, kInsideVox).open;
-}
+#include "lighting/trial_way.glsl"
 
 void main() {
     const uint item = gl_GlobalInvocationID.x, trial = gl_WorkGroupID.y;
@@ -41,8 +27,9 @@ void main() {
     const vec3 direction = offset_m * inversesqrt(distance2);
     const float cosine = dot(direction, lit.normal.xyz);
     float result = 0.0;
-    if (lit.point_m.w > 0.0 && cosine > kLeastTrialCosine &&
-        is_open(lit.point_m.xyz, lit.normal.xyz, direction, sqrt(distance2))) {
+    const float distance_m = sqrt(distance2);
+    const float reach = (distance_m - min(kTrialLampM, 0.3 * distance_m)) / grid.voxel_m;
+    if (lit.point_m.w > 0.0 && cosine > kLeastTrialCosine && is_open(lit, direction, cosine, reach)) {
         result = cosine / (kPi * distance2);
     }
     received[trial * kLightSamples + item] = result;

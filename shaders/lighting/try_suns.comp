@@ -21,19 +21,7 @@ layout(push_constant) uniform Push { TrialParams params; };
 #define VOXEL(C, i) tsdf[C].voxels[i]
 #define MAP_REGIONS(i) map_regions[i]
 #include "lib/lighting/march_surroundings.glsl"
-#include "lib/map/march_map.glsl"
-
-const float kLiftVox = 4.0;          // above the surface, where the way begins
-const float kMostSkippedVox = 16.0;  // of the way, to get there
-
-bool is_open(LightSample lit, vec3 direction, float cosine) {
-    const float per_m = 1.0 / grid.voxel_m;
-    const float skipped = min(kLiftVox / cosine, kMostSkippedVox);
-    const float lift = max(kLiftVox - skipped * cosine, 0.0);
-    const vec3 start = lit.point_m.xyz * per_m + lift * lit.normal.xyz;
-    const float reach = to_ball_end(start, direction, params.ball_m);
-    return march(start, direction, skipped, reach, cosine, lift, kInsideVox).open;
-}
+#include "lighting/trial_way.glsl"
 
 void main() {
     const uint item = gl_GlobalInvocationID.x, trial = gl_WorkGroupID.y;
@@ -42,8 +30,9 @@ void main() {
     grid = params.grid;
     const float cosine = dot(direction, lit.normal.xyz);
     float result = 0.0;
+    const float reach = to_ball_end(lit.point_m.xyz / grid.voxel_m, direction, params.ball_m);
     if (lit.point_m.w > 0.0 && cosine > kLeastTrialCosine && passes_sky(lit.point_m.xyz, lit.normal.xyz, direction) &&
-        is_open(lit, direction, cosine)) {
+        is_open(lit, direction, cosine, reach)) {
         result = cosine;
     }
     received[trial * kLightSamples + item] = result;

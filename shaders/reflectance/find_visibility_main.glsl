@@ -86,10 +86,7 @@ void main() {
     visibility[record] = reached.open;
     status[record].uncertain = reached.uncertain;
     status[record].marched = marched_word(known, header.position_version);
-    if (kGathers != 0u) {
-        const vec3 low = low_exposure_radiance(surroundings_cell(point_m));
-        status[record].bright = max(max(low.r, low.g), low.b) > kNearlyClipped ? pack_shared_exponent(low) : 0u;
-    }
+    if (kGathers != 0u) status[record].bright = pack_shared_exponent(low_exposure_radiance(surroundings_cell(point_m)));
     if (!same && atomicExchange(status[record].refine_stamp, params.stamp) != params.stamp) {
         APPEND_RECORD(refine, refine_arguments, record)
     }

@@ -40,8 +40,8 @@ const float kMirroredSpreads = 8.0;  // of a mirror, which has no diffuse part
 const float kMirroring = 0.25;       // of what is seen: from so much on it mirrors as its segment does
 const float kNearViews = 0.9994;     // 2 degrees
 const float kFarViews = 0.9962;      // 5 degrees
-const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views, at least;
-const float kMostAlbedo = 0.8;       // half of what is up to a usual bright one
+const float kBoundError = 0.1;       // of the albedo of a channel that is clipped in all views, at least
+const float kMostAlbedo = 0.8;       // a usual bright one: such a channel may have as much
 const float kUsualKd = 0.3;          // a usual albedo
 const float kUnknownError = 0.3;     // of what arrives from unknown directions, relative
 const uint kAnyClipped = 7u << 26;   // of a direction word
@@ -191,7 +191,7 @@ struct Estimate {
     float known;    // the share of what was seen that is not clipped
 };
 
-// By channel, as clipping is. A clipped channel that is brighter than the mean of the others counts in full: were it
+// By channel, as clipping is. A clipped channel that is no darker than the mean of the others counts in full: were it
 // left out, white paper would have the colours of the few views in which a channel happens not to be clipped.
 Estimate robust_mean(Center center, float noise) {
     const float inverse_scale = 1.0 / (noise + 1.5 * center.spread);
@@ -204,7 +204,7 @@ Estimate robust_mean(Center center, float noise) {
         mean += share * diffuse[k];
         seen += robust[k] * whole;
     }
-    const vec3 bound = mean / weights;
+    const vec3 bound = mean / weights - noise;
     weights = vec3(1e-20);
     mean = vec3(0.0);
     vec3 squares = vec3(0.0);
@@ -213,7 +213,7 @@ Estimate robust_mean(Center center, float noise) {
         trusted += trust[k];
         unclipped += (direction_word[k] & kAnyClipped) != 0u ? 0.0 : trust[k];
         const float off = brightness[k] - center.brightness, weight = robust[k];
-        const uvec3 low = uvec3(observation_clipped(direction_word[k])) & uvec3(lessThanEqual(diffuse[k], bound));
+        const uvec3 low = uvec3(observation_clipped(direction_word[k])) & uvec3(lessThan(diffuse[k], bound));
         const vec3 share = weight * mix(vec3(1.0), vec3(kClippedShare), bvec3(low));
         weights += share;
         squares += share * share;

@@ -286,6 +286,18 @@ TEST(Evaluate, ARunInAWorldOfItsOwnIsBroughtIntoTruths) {
     EXPECT_NEAR(result.lights->matches[0].position_error_m, 0, 1e-9);
 }
 
+/// The truth of a recording has lamps alone.
+TEST(Evaluate, ASunIsNoInventedLamp) {
+    const EvalRig rig;
+    std::vector<Light> lights = EvalRig::lights();
+    lights.push_back({{0, -6000, 8000}, {1e9, 1e9, 1e9}});
+    lights.push_back({{40, 0, 0}, {1, 1, 1}});
+    sensor::write_lights(rig.run() / "lights.json", lights);
+    const Evaluation result = rig.evaluate();
+    EXPECT_EQ(result.lights->matches.size(), 2u);
+    EXPECT_EQ(result.lights->invented.size(), 1u) << "the lamp that is 40 m away";
+}
+
 TEST(Evaluate, LabelsArePooledOverFrames) {
     const EvalRig rig;
     rig.change_frames([frame = 0](EvalFrame& picture) mutable {

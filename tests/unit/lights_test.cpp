@@ -21,8 +21,8 @@ TEST(Lights, ShadersTakeALampRoundedToFloat) {
     EXPECT_EQ(lamp.intensity, glm::vec4(4, 5, 6.5f, 0));
 }
 
-TEST(Lights, ShadersTakeALampAKilometreAwayForASun) {
-    const Light near{{0, 0, 999}, {1, 1, 1}}, far{{0, -600, 800}, {1, 1, 1}};
+TEST(Lights, ShadersTakeALampFiveKilometresAwayForASun) {
+    const Light near{{0, 0, 4999}, {1, 1, 1}}, far{{0, -3000, 4000}, {1, 1, 1}};
     EXPECT_FALSE(is_sun(near));
     EXPECT_TRUE(is_sun(far));
     EXPECT_EQ(make_point_light(near).intensity.w, 0);

@@ -103,9 +103,9 @@ void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTr
         light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
     }
     const std::vector<Light> truth = sensor::read_lights(truth_file);
-    // The truth has lamps alone: what is far from all of them is a sun.
+    // Where the truth has lamps, it has no suns: what is far from all of them is one.
     std::erase_if(lights, [&](const Light& light) {
-        return std::ranges::all_of(truth, [&](const Light& lamp) {
+        return !truth.empty() && std::ranges::all_of(truth, [&](const Light& lamp) {
             return glm::distance(lamp.position_m, light.position_m) > kSunsFrom_m / 2;
         });
     });

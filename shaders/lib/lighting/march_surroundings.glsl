@@ -11,20 +11,26 @@ const float kReachCells = 256.0;     // 12.8 m
 const uint kMostSteps = 160u;        // through cells, and through empty blocks
 const float kOwnSurfaceCells = 1.5;  // what is no higher above the surface that a ray leaves is part of it
 
-// The mean colour of a cell; a is 0 where there is no surface in it.
-vec4 look_up_surroundings(ivec3 cell) {
+const uint kNoPlace = 0xffffffffu;
+
+// Where the table has a cell; kNoPlace where it has none.
+uint find_surroundings(ivec3 cell) {
     const uint key = surroundings_key(cell);
     for (uint probe = 0u; probe < kSurroundingsProbes; ++probe) {
         const uint place = surroundings_place(key, probe);
         const uint found = surroundings[place].key;
-        if (found == key) {
-            const uint samples = surroundings[place].usual.samples + surroundings[place].low.samples;
-            const bool known = samples >= kLeastSurroundingsSamples;
-            return known ? vec4(cell_radiance(surroundings[place]), 1.0) : vec4(0.0);
-        }
+        if (found == key) return place;
         if (found == 0u) break;
     }
-    return vec4(0.0);
+    return kNoPlace;
+}
+
+// The mean colour of a cell; a is 0 where there is no surface in it.
+vec4 look_up_surroundings(ivec3 cell) {
+    const uint place = find_surroundings(cell);
+    if (place == kNoPlace) return vec4(0.0);
+    const uint samples = surroundings[place].usual.samples + surroundings[place].low.samples;
+    return samples >= kLeastSurroundingsSamples ? vec4(cell_radiance(surroundings[place]), 1.0) : vec4(0.0);
 }
 
 struct MetSurroundings {
@@ -76,18 +82,12 @@ bool passes_sky(vec3 point_m, vec3 normal, vec3 direction) {
     return march_surroundings(point_m, normal, direction, kLeastSky).color.a > 0.0;
 }
 
-// What low exposure showed where the usual one is clipped, or nearly; 0 where it did not look.
+// What low exposure showed of a cell that the usual one clips, or nearly; 0 where it did not look, or all is seen.
 vec3 low_exposure_radiance(ivec3 cell) {
-    const uint key = surroundings_key(cell);
-    for (uint probe = 0u; probe < kSurroundingsProbes; ++probe) {
-        const uint place = surroundings_place(key, probe);
-        const uint found = surroundings[place].key;
-        if (found == 0u) break;
-        if (found != key) continue;
-        const SurroundingsSums low = surroundings[place].low;
-        return low.samples >= kLeastSurroundingsSamples ? mean_of_sums(low) : vec3(0.0);
-    }
-    return vec3(0.0);
+    const uint place = find_surroundings(cell);
+    if (place == kNoPlace || surroundings[place].low.samples < kLeastSurroundingsSamples) return vec3(0.0);
+    const vec3 radiance = mean_of_sums(surroundings[place].low);
+    return max(max(radiance.r, radiance.g), radiance.b) > kNearlyClipped ? radiance : vec3(0.0);
 }
 
 #endif

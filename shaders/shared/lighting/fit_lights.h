@@ -33,7 +33,7 @@ struct SampleParams {
 
 struct TrialParams {
     VoxelGrid grid;  // of the voxel map
-    vec4 ball_m;     // world, radius: beyond it nothing stands in the way of a lamp
+    vec4 ball_m;     // world, radius: beyond it nothing stands in the way of a sun
 };
 
 INTEROP_END

@@ -87,14 +87,15 @@ class RefineAlbedoTest : public GpuTest {
 
     /// What the reference makes of a record, whose colours it takes as they are stored.
     reference::RefinedAlbedo expected(const FilledRecord& record, const Ward& material,
-                                      const reference::GatheredRays& gathered = {}, double mirror = 0) const {
+                                      const reference::GatheredRays& gathered = {}, double mirror = 0,
+                                      glm::dvec3 low = glm::dvec3(0)) const {
         std::vector<reference::SeenColor> observations;
         for (const FilledObservation& seen : record.observations) {
             observations.push_back({glm::dvec3(seen.to_viewer),
                                     glm::dvec3(glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(seen.rgb))), seen.clipped});
         }
         return reference::refine_albedo(observations, kept(record), received(rig_.lights), ambient_, material, gathered,
-                                        mirror);
+                                        mirror, low);
     }
 
     std::mt19937 random_{1};
@@ -207,22 +208,56 @@ TEST_F(RefineAlbedoTest, WhatIsClippedInAllViewsIsAsBrightAsLowExposureShowedIt)
         record.observations.push_back({{0, -1, 0}, glm::min(seen(), 1.0f), {true, true, false}});
     ASSERT_GT(seen().g, 1.4f);
     ASSERT_LT(seen().b, 1.0f);
-    rig_.set_bright(1, seen());
+    rig_.set_bright({seen()});
     EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd)), 3 * kPacking);
     EXPECT_GT(refine(record).certainty.r, 0.5);
     // Another tint: one that low exposure shows in full is believed in all channels.
-    rig_.set_bright(1, seen() * glm::vec3(1, 0.9f, 0.8f));
+    rig_.set_bright({seen() * glm::vec3(1, 0.9f, 0.8f)});
     EXPECT_LT(max_of(glm::abs(refine(record).kd - material.kd * glm::dvec3(1, 0.9, 0.8))), 3 * kPacking);
     // Darker than what is clipped: it looked at something else.
-    rig_.set_bright(1, glm::vec3(0.9f));
+    rig_.set_bright({glm::vec3(0.9f)});
     const RefinedRecord bounded = refine(record);
     const glm::dvec3 bound = bounded.kd;
     EXPECT_LT(bound.r, 0.7 * material.kd.r);
     EXPECT_LT(bounded.certainty.b, 0.1) << "what was not clipped is as doubtful, for its color";
     // One view that is not clipped says how bright the surface is.
     record.observations[0].clipped = {false, false, false};
-    rig_.set_bright(1, seen());
+    rig_.set_bright({seen()});
     EXPECT_LT(max_of(glm::abs(refine(record).kd - bound)), 3 * kPacking);
+}
+
+TEST_F(RefineAlbedoTest, ClippedRecordsAgreeWithTheReference) {
+    std::uniform_real_distribution<float> share(0, 1);
+    const Ward material{{0.5, 0.3, 0.4}, {}, 1};
+    std::vector<FilledRecord> records;
+    std::vector<glm::vec3> low;
+    for (int i = 0; i < 200; ++i) {
+        records.push_back(random_record(0));
+        observe(records.back(), material, 6);
+        std::array<bool, 3> always{};
+        for (bool& clipped : always) clipped = share(random_) < 0.5f;
+        for (FilledObservation& seen : records.back().observations) {
+            seen.clipped = always;
+            if (share(random_) < 0.05f) seen.clipped = {};
+            for (int c = 0; c < 3; ++c) seen.rgb[c] *= seen.clipped[static_cast<size_t>(c)] ? 0.6f : 1.0f;
+        }
+        const glm::vec3 usual = records.back().observations.front().rgb;
+        const glm::vec3 radiance = usual * (0.5f + 2.5f * glm::vec3(share(random_), share(random_), share(random_)));
+        low.push_back(i % 3 == 0 ? glm::vec3(0) : glm::unpackF3x9_E1x5(glm::packF3x9_E1x5(radiance)));
+    }
+    rig_.set_bright(low);
+    const std::vector<RefinedRecord> refined = refine(records);
+    int sure = 0, doubtful = 0;
+    for (size_t i = 0; i < records.size(); ++i) {
+        const reference::RefinedAlbedo expected = this->expected(records[i], material, {}, 0, glm::dvec3(low[i]));
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(refined[i].kd[c], expected.kd[c], kPacking + 0.02 * expected.kd[c]) << i << ' ' << c;
+            ASSERT_NEAR(refined[i].certainty[c], expected.certainty[c], 0.02) << i << ' ' << c;
+        }
+        ++(expected.certainty.b > 0.5 ? sure : doubtful);
+    }
+    EXPECT_GT(sure, 50);
+    EXPECT_GT(doubtful, 30);
 }
 
 TEST_F(RefineAlbedoTest, OneWildObservationOfTenChangesNothing) {

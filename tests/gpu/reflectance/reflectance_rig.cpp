@@ -77,9 +77,9 @@ void ReflectanceRig::set_incident(const std::vector<reference::GatheredRays>& ra
     });
 }
 
-void ReflectanceRig::set_bright(uint32_t count, glm::vec3 radiance) {
+void ReflectanceRig::set_bright(const std::vector<glm::vec3>& radiance) {
     change_status([&](std::vector<gpu::RecordStatus>& status) {
-        for (uint32_t i = 0; i < count; ++i) status[i].bright = glm::packF3x9_E1x5(radiance);
+        for (size_t i = 0; i < radiance.size(); ++i) status[i].bright = glm::packF3x9_E1x5(radiance[i]);
     });
 }
 

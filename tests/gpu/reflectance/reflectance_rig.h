@@ -40,8 +40,8 @@ class ReflectanceRig {
     /// The same with light of their own for the first records.
     void set_incident(const std::vector<reference::GatheredRays>& rays);
 
-    /// Gives the first `count` records the radiance that low exposure showed.
-    void set_bright(uint32_t count, glm::vec3 radiance);
+    /// Gives the first records the radiance that low exposure showed.
+    void set_bright(const std::vector<glm::vec3>& radiance);
 
     /// Lets records tell each other of their albedo (passes/reflectance/surface_albedo.h).
     void share_albedo(const glm::vec4& cube_m = RefinedPart{}.cube_m);

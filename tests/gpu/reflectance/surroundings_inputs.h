@@ -26,7 +26,7 @@ inline SurroundingsInputs upload_surroundings(graph::FrameGraph& frame, const In
     return inputs;
 }
 
-constexpr double kCeiling_m = -1.5;  ///< y, which points down
+constexpr double kCeiling_m = -1.52;  ///< y, which points down
 
 /// Adds what a camera that looks straight up sees of a ceiling: the radiance by x and z.
 inline void add_ceiling(graph::FrameGraph& frame, ReflectanceStateIds& state,

@@ -42,4 +42,17 @@ TrialLight try_light(const Volume& volume, glm::dvec3 point_m, glm::dvec3 normal
     return light;
 }
 
+double sky_on_way_m(const std::set<std::array<int, 3>>& sky, double cell_m, glm::dvec3 point_m, glm::dvec3 normal,
+                    glm::dvec3 direction, double reach_m) {
+    constexpr double kStep_m = 0.001;
+    double through_m = 0;
+    for (double along_m = 0; along_m < reach_m; along_m += kStep_m) {
+        const glm::dvec3 cell = glm::floor((point_m + along_m * direction) / cell_m);
+        const double above = glm::dot(cell + 0.5 - point_m / cell_m, normal);
+        const std::array<int, 3> key{static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
+        if (above > 1.5 && sky.contains(key)) through_m += kStep_m;
+    }
+    return through_m;
+}
+
 }  // namespace patina::reference

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <set>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -26,5 +28,10 @@ struct TrialLight {
 /// The way begins 4 voxels above the surface, after 16 voxels at most, lifted if it rises too slowly; it ends 15 cm, or
 /// three tenths of it, before the lamp.
 TrialLight try_light(const Volume& volume, glm::dvec3 point_m, glm::dvec3 normal, glm::dvec3 lamp_m);
+
+/// How far (metres) a ray goes through cells of the surroundings that show the sky, of those more than one and a half
+/// cells above the surface that it leaves. By small steps, up to `reach_m`.
+double sky_on_way_m(const std::set<std::array<int, 3>>& sky, double cell_m, glm::dvec3 point_m, glm::dvec3 normal,
+                    glm::dvec3 direction, double reach_m);
 
 }  // namespace patina::reference

@@ -72,7 +72,8 @@ glm::dvec3 brighter_by(glm::dvec3 kd, const std::vector<Rest>& rests) {
     return clipped < 2 ? by : glm::dvec3(std::max({by.r, by.g, by.b}));
 }
 
-/// What a clipped channel must be above to count: the mean, in which clipped ones have next to no share.
+/// What a clipped channel must not be below to count, by more than noise: the mean, in which clipped ones have next to
+/// no share.
 double bound_of(const std::vector<Rest>& rests, int channel) {
     double sum = 0, weights = 0;
     for (const Rest& rest : rests) {
@@ -110,7 +111,7 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
 
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
                             const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
-                            const GatheredRays& gathered, double mirror) {
+                            const GatheredRays& gathered, double mirror, glm::dvec3 low) {
     const Ward gloss{glm::dvec3(0), material.ks, material.alpha}, white{glm::dvec3(1), glm::dvec3(0), 1};
     double brightness = 0;
     std::vector<Rest> rests;
@@ -155,34 +156,39 @@ RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const Su
         if (!clipped[0] && !clipped[1] && !clipped[2]) unclipped += rests[k].trust;
     }
     const double known = 1 - mirror + mirror * unclipped / trusted;
-    RefinedAlbedo result;
-    glm::dvec3 variances(0);
+    glm::dvec3 diffuse(0), spreads(0);
     for (int c = 0; c < 3; ++c) {
-        if (irradiance[c] <= 0.004) continue;
         double weights = 0, squares = 0, sum = 0, spread = 0, robust_weights = 0;
-        const auto is_clipped = [&](const Rest& rest) { return rest.clipped[static_cast<size_t>(c)]; };
         const double bound = bound_of(rests, c);
         for (const Rest& rest : rests) {
-            const bool low = is_clipped(rest) && rest.diffuse[c] <= bound;
-            const double robust = rest.trust * rest.robust, weight = robust * (low ? kClippedShare : 1);
+            const bool dark = rest.clipped[static_cast<size_t>(c)] && rest.diffuse[c] < bound - noise;
+            const double robust = rest.trust * rest.robust, weight = robust * (dark ? kClippedShare : 1);
             weights += weight;
             squares += weight * weight;
             sum += weight * rest.diffuse[c];
             robust_weights += robust;
             spread += robust * std::pow(rest.brightness() - middle.mean, 2);
         }
-        double variance = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
-        variance *= 1 - mirror + mirror * unreflected * unreflected;
-        result.kd[c] = std::clamp(unreflected * (sum / weights - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
-        const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
-        const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
-        variances[c] = variance / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error;
+        diffuse[c] = sum / weights;
+        spreads[c] = noise * noise / weights + spread / robust_weights * squares / (weights * weights);
+        spreads[c] *= 1 - mirror + mirror * unreflected * unreflected;
     }
+    bool low_tells = false;
+    for (int c = 0; c < 3; ++c) low_tells = low_tells || (always_clipped(rests, c) && low[c] > diffuse[c]);
+    if (low_tells) diffuse = low;
+    RefinedAlbedo result;
+    for (int c = 0; c < 3; ++c)
+        if (irradiance[c] > 0.004)
+            result.kd[c] = std::clamp(unreflected * (diffuse[c] - gloss_of_all[c]) / irradiance[c], 0.0, 1.0);
     const glm::dvec3 brighter = brighter_by(result.kd, rests);
     for (int c = 0; c < 3; ++c) {
         if (irradiance[c] <= 0.004) continue;
-        const double unbounded = std::max(always_clipped(rests, c) ? 0.1 : 0.0, brighter[c]);
-        result.certainty[c] = known / (1 + (variances[c] + unbounded * unbounded) / (0.05 * 0.05));
+        const double doubt = result.kd[c] * std::min(uncertain[c] / irradiance[c], 1.0);
+        const double error = 0.3 * std::min(around_error[c] / irradiance[c], 1.0);
+        const double clipped = low_tells ? 0 : std::max(always_clipped(rests, c) ? 0.1 : 0.0, brighter[c]);
+        const double all =
+            spreads[c] / (irradiance[c] * irradiance[c]) + doubt * doubt + error * error + clipped * clipped;
+        result.certainty[c] = known / (1 + all / (0.05 * 0.05));
     }
     return result;
 }

@@ -42,9 +42,10 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
 /// The diffuse albedo of a surface point from its observations (paper, Eq. 7), the robust mean of
 /// passes/reflectance/refine_albedo.h; `material`'s kd is not used. With rays that were gathered, what they met takes
 /// the ambient term's place, in the share of those that met something. `mirror`: how sure the segment is to have no
-/// diffuse part, 0 to 1.
+/// diffuse part, 0 to 1. `low`: radiance at low exposure, which counts where a channel is clipped in all views and it
+/// is brighter; 0: not known.
 RefinedAlbedo refine_albedo(const std::vector<SeenColor>& observations, const SurfacePoint& point,
                             const std::vector<ReceivedLight>& lights, glm::dvec3 ambient, const Ward& material,
-                            const GatheredRays& gathered = {}, double mirror = 0);
+                            const GatheredRays& gathered = {}, double mirror = 0, glm::dvec3 low = glm::dvec3(0));
 
 }  // namespace patina::reference
