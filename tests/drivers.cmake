@@ -37,15 +37,15 @@ endif()
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.SceneIsValidGltf:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
-# TESTs that take longest beside others of the same passes: all but the first driver run them with PATINA_TEST_FULL alone.
-set(PATINA_LONG_TESTS BoundMaterials.OfFittedSegmentsHoldTheTruth:ColorCorrectionTest.GainsOfASequenceComeBackRelativeToItsFirstFrame:ExampleFitTest.FindsTheMaterialsOfCleanScenes:FindLights.LampsOfTheOfficeWithTheNoiseOfAKinect:FindVisibilityTest.KdOfAGlossySceneWithShadowsIsFoundThroughTheWholePipeline:FindVisibilityTest.WithoutShadowsEveryLightReachesEveryRecord:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.OppositeTheRedWallAFifthOfTheLightIsItsOwn:GatherIrradianceTest.RaysAddUpToASlidingMean:GatherIrradianceTest.WhatIsClippedIsAsBrightAsLowExposureShowsIt:GatherIrradianceTest.WhatTheMapDoesNotShowComesFromTheSurroundings:GatherIrradianceTest.WhereNothingWasSeenTheAmbientLightArrives:GatherLightTest.BouncesAgreeWithTheDiffuseFurnace:GatherLightTest.ConvexDiffuseObjectUnderAUniformSkyShowsKdTimesIt:MarkRegions.RaysFindTheSameAsWhereEveryRegionIsLookedAt:ReclaimRecordsTest.OnlyRecordsWithoutSurfaceGoAndTheOthersStayAsTheyAre:ReclaimRecordsTest.ThingsThatAreCarriedRoundLeaveNothingBehind:ReflectSurroundings.AGlossyWallMirrorsTheRoom:RelightTest.EachTurnWithRaysIsABounce:RelightTest.LightFromAfarComesInWhereNothingWasSeen:RelightTest.WhatRecordsGatheredBeforeCountsNoLonger:RunNetwork.HalvesAgreeWithTheReferenceOnAwkwardShapes:StreamRecordsTest.WhatLiesOutsideLeavesAndComesBackAsItWas:TrainedNetwork.GivesNearlyThatInHalves:VisibleBlocksTest.WhatTheCameraSeesIsListedOnceAndItsDepthsAreBounded)
+# No shader uses subgroup operations, so that all that the narrower lavapipe could do otherwise is compile passes wrongly. Without
+# PATINA_TEST_FULL it runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
+set(PATINA_LAVAPIPE128_TESTS "*Reference*")
+set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|surface|viewer)$")
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.
 set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading)$")
-set(PATINA_SWIFTSHADER_LONG_TESTS PredictRadiance.AWallOfOneKdUnderALampIsEquation6:PredictRadiance.GlossThatIsApartIsWhatThePictureLacks:PredictRadiance.ManyLightsEachReachWhatTheyReach:ReflectSurroundings.ItsMeanIsThatOfTheReference:ReflectSurroundings.WithHardlyAnyGlossTheGatheredLightIsEnough)
-# The narrower lavapipe runs every pass. Without PATINA_TEST_FULL it leaves out the folder of sessions made of these.
-set(PATINA_LAVAPIPE128_FOLDERS_LEFT_OUT "^reconstruction$")
+set(PATINA_SWIFTSHADER_LONG_TESTS ReflectSurroundings.AGlossyWallMirrorsTheRoom:PredictRadiance.AWallOfOneKdUnderALampIsEquation6:PredictRadiance.GlossThatIsApartIsWhatThePictureLacks:PredictRadiance.ManyLightsEachReachWhatTheyReach:ReflectSurroundings.ItsMeanIsThatOfTheReference:ReflectSurroundings.WithHardlyAnyGlossTheGatheredLightIsEnough)
 
 # Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
 # there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the
@@ -57,7 +57,8 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     set(LEFT_OUT "^$")
     set(TESTS_LEFT_OUT "")
     set(FOLDERS ".")
-    set(FOLDERS_LEFT_OUT "^$")
+    set(TESTS_TAKEN "*")
+    set(WHOLE_FOLDERS ".")
     if(ENVIRONMENT)  # ctest begins with what takes long
         set(ALONE "${PATINA_WHOLE_SUITES}")
         set(COST_ALONE 1000)
@@ -69,13 +70,13 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL MATCHES "^(swiftshader|lavapipe128)$" AND NOT PATINA_TEST_FULL)
         set(LEFT_OUT "${PATINA_WHOLE_SUITES}")
-        set(TESTS_LEFT_OUT "-${PATINA_LONG_TESTS}")
     endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")
-        string(APPEND TESTS_LEFT_OUT ":${PATINA_SWIFTSHADER_LONG_TESTS}")
+        set(TESTS_LEFT_OUT "-${PATINA_SWIFTSHADER_LONG_TESTS}")
     elseif(LABEL STREQUAL lavapipe128 AND NOT PATINA_TEST_FULL)
-        set(FOLDERS_LEFT_OUT "${PATINA_LAVAPIPE128_FOLDERS_LEFT_OUT}")
+        set(TESTS_TAKEN "${PATINA_LAVAPIPE128_TESTS}")
+        set(WHOLE_FOLDERS "${PATINA_LAVAPIPE128_WHOLE_FOLDERS}")
     endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)
     configure_file(discover_suites.cmake.in ${DISCOVERY_FILE} @ONLY)

@@ -23,6 +23,8 @@ struct LightEvidence {
     uint32_t sightings = 0;  ///< frames that showed it whole
     uint32_t clipped = 0;    ///< sightings with clipped pixels, which make its intensity a lower bound
     bool has_depth = true;   ///< false: triangulated from bearings
+    bool unseen = false;     ///< no picture shows it: it was found in what it lights
+    glm::dvec3 shown{0};     ///< a clipped lamp's intensity in the pictures, where what it lights tells more; else 0
 };
 
 /// A lamp and how sure it is. Its values are those of floats.

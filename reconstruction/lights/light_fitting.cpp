@@ -5,54 +5,13 @@
 
 #include "engine/core/shader_light.h"
 #include "reconstruction/lights/surface_samples.h"
+#include "reconstruction/lights/try_in_volume.h"
 
 namespace patina {
 namespace {
 
 constexpr float kBrightQuantile = 0.95f;
 constexpr float kExplained = 0.5f;  // a highlight, by a lamp
-
-/// The highlights as samples of a pass, which takes whole groups.
-std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
-    std::vector<gpu::LightSample> padded = highlights;
-    padded.resize((highlights.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
-    return padded;
-}
-
-/// Tries lamps in the reconstruction's volume, as many at once as a pass takes. A highlight is not explained by a lamp
-/// that does not reach it.
-class TryInVolume {
-  public:
-    TryInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, const LitSurface& surface)
-        : pipeline_(pipeline), drawn_(drawn), surface_(surface), highlights_(in_groups(surface.highlights())) {}
-
-    std::vector<TrialLamp> operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
-        std::vector<TrialLamp> lamps;
-        while (!places_m.empty()) {
-            const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
-            places_m = places_m.subspan(batch.size());
-            const std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
-            const std::vector<float> reached =
-                highlights_.empty()
-                    ? std::vector<float>()
-                    : try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
-            for (size_t i = 0; i < batch.size(); ++i) {
-                const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
-                lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
-                TrialLamp& lamp = lamps.back();
-                for (size_t k = 0; k < lamp.unexplained.size(); ++k)
-                    if (reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
-            }
-        }
-        return lamps;
-    }
-
-  private:
-    Pipeline& pipeline_;
-    std::span<const gpu::LightSample> drawn_;
-    const LitSurface& surface_;
-    std::vector<gpu::LightSample> highlights_;
-};
 
 /// What the brightest groups' albedo is when every sample receives 1 on the mean.
 double brightest_albedo(const std::array<FittedIntensities, 3>& channels) {
@@ -117,7 +76,7 @@ FittedLights fit_lights(Pipeline& pipeline, std::span<const glm::vec3> seen_m, c
     const std::vector<gpu::LightSample> drawn = draw_samples(pipeline);
     const LitSurface surface(drawn, settings.cell_m);
     if (surface.size() == 0) return {};
-    const TryInVolume try_lamps(pipeline, drawn, surface);
+    const TryLampsInVolume try_lamps(pipeline, drawn, surface);
     return summarise(surface, search_lights(surface, try_lamps, seen_m, settings.search), settings);
 }
 

@@ -52,8 +52,9 @@ std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const 
 
 class Search {
   public:
-    Search(const LitSurface& surface, const TryLamps& try_lamps, const LightSearchSettings& settings)
-        : surface_(surface), try_(try_lamps), settings_(settings) {}
+    Search(const LitSurface& surface, const TryLamps& try_lamps, const LightSearchSettings& settings,
+           const GivenLight& given)
+        : surface_(surface), try_(try_lamps), settings_(settings), given_(given) {}
 
     std::vector<TrialLamp> run(std::span<const glm::vec3> seen_m) {
         const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m), kCoarsePlaces);
@@ -78,7 +79,8 @@ class Search {
     double cost(std::span<const TrialLamp> lamps, uint32_t steps, size_t count) const {
         std::vector<ReceivedLight> received;
         for (const TrialLamp& lamp : lamps) received.push_back(lamp.received);
-        const FittedIntensities fitted = surface_.fit(received, steps, count);
+        received.insert(received.end(), given_.lights.begin(), given_.lights.end());
+        const FittedIntensities fitted = surface_.fit(received, steps, count, LightChannel::kMean, given_.ambient);
         const auto highlights = static_cast<double>(surface_.highlights().size());
         const double share = settings_.highlight_share * highlights / (highlights + kFewHighlights);
         return kLeastCost + fitted.misfit + share * unexplained_highlights(surface_, lamps, fitted.intensities);
@@ -139,6 +141,7 @@ class Search {
     const LitSurface& surface_;
     const TryLamps& try_;
     LightSearchSettings settings_;
+    const GivenLight& given_;
     std::vector<TrialLamp> lamps_;
 };
 
@@ -161,9 +164,10 @@ double unexplained_highlights(const LitSurface& surface, std::span<const TrialLa
 }
 
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
-                                     std::span<const glm::vec3> seen_m, const LightSearchSettings& settings) {
+                                     std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
+                                     const GivenLight& given) {
     if (surface.size() == 0) return {};
-    return Search(surface, try_lamps, settings).run(seen_m);
+    return Search(surface, try_lamps, settings, given).run(seen_m);
 }
 
 }  // namespace patina

@@ -33,9 +33,16 @@ using TryLamps = std::function<std::vector<TrialLamp>(std::span<const glm::vec3>
 double unexplained_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps,
                               std::span<const double> intensities);
 
+/// Light of which only the strength is not known: it stays where it is.
+struct GivenLight {
+    std::vector<ReceivedLight> lights;  ///< one by one
+    ReceivedLight ambient;              ///< null: 1 for all samples
+};
+
 /// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, all moved to
 /// better places whenever there is a new one; then those that matter too little are left out.
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
-                                     std::span<const glm::vec3> seen_m, const LightSearchSettings& settings);
+                                     std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
+                                     const GivenLight& given = {});
 
 }  // namespace patina

@@ -1,16 +1,14 @@
 #include "reconstruction/session/session_core.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/lights/find_sun.h"
-#include "reconstruction/lights/fit_intensities.h"
-#include "reconstruction/lights/light_fitting.h"
 #include "reconstruction/lights/surface_samples.h"
+#include "reconstruction/lights/unmeasured_lamps.h"
 #include "reconstruction/lights/unseen_light.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
@@ -298,12 +296,16 @@ bool SessionCore::is_unseen_light_due() const {
     return frames == used_.size();
 }
 
-/// Light that no picture of low exposure shows: a sun's, in its patches, and what arrives from unseen surroundings.
+/// Light that no picture of low exposure tells: lamps that it clips or does not show, a sun in its patches, and what
+/// arrives from unseen surroundings.
 void SessionCore::look_for_unseen_light() {
     std::vector<FoundLight>& lights = illumination_.lights;
-    std::erase_if(lights, [](const FoundLight& found) { return is_sun(found.light); });
-    const std::vector<Light> lamps = lights_of(illumination_);
+    lights = as_measured(std::move(lights));
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    ToldLamps told = find_unmeasured_lamps(*pipeline_, drawn, lights, illumination_.candidates_m);
+    lights = std::move(told.lamps);
+    illumination_.candidates_m = std::move(told.places_m);
+    const std::vector<Light> lamps = lights_of(illumination_);
     const bool room_for_one = lamps.size() < gpu::kMaxPointLights;
     if (const auto sun =
             room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)

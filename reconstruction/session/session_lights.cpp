@@ -170,6 +170,8 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
             lamp["sightings"] = evidence.sightings;
             lamp["clipped_sightings"] = evidence.clipped;
             lamp["triangulated"] = !evidence.has_depth;
+            if (evidence.unseen) lamp["unseen"] = true;
+            if (evidence.shown != glm::dvec3(0)) lamp["shown_intensity"] = to_json(evidence.shown);
         }
         list.push_back(std::move(lamp));
     }

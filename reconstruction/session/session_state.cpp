@@ -92,6 +92,7 @@ void visit(graph::StateVisitor& visitor, SessionLight& light) {
     Illumination& found = light.illumination;
     visitor.text("light.found_by", found.found_by);
     visitor.values("light.lamps", found.lights);
+    visitor.values("light.candidates_m", found.candidates_m);
     visitor.value("light.world_offset_m", found.world_offset_m);
     visitor.value("light.ambient", found.ambient);
     visitor.value("light.misfit", found.misfit);

@@ -1,19 +1,35 @@
 #include "tools/program/lights_text.h"
 
+#include <string>
+
+#include <fmt/format.h>
+
 #include "tools/program/standard_streams.h"
 
 namespace patina::tools {
 
 namespace {
 
+/// What speaks for a lamp, for a person.
+std::string words_of(const FoundLight& found) {
+    const LightEvidence& evidence = found.evidence;
+    if (is_sun(found.light)) return fmt::format("a sun, in {} samples of its patches", evidence.sightings);
+    if (evidence.unseen) return "no picture shows it, found in what it lights";
+    std::string words = fmt::format("radius {:.3f} m  spread {:.1f} mm  {} sightings", found.light.radius_m,
+                                    1000 * evidence.spread_m, evidence.sightings);
+    if (!evidence.has_depth) words += ", triangulated";
+    if (evidence.shown != glm::dvec3(0)) {
+        words += ", clipped: as bright as what it lights tells";
+    } else if (evidence.clipped > 0) {
+        words += ", clipped: the true intensity is higher";
+    }
+    return words;
+}
+
 void print(const Illumination& illumination, const FoundLight& found) {
-    const auto& [light, evidence] = found;
-    const glm::dvec3 at_m = world_position_m(illumination, light);
-    print_out(
-        "{:8.3f} {:8.3f} {:8.3f} m  {:8.3f} {:8.3f} {:8.3f}  radius {:.3f} m  spread {:.1f} mm  {} sightings{}{}\n",
-        at_m.x, at_m.y, at_m.z, light.intensity.r, light.intensity.g, light.intensity.b, light.radius_m,
-        1000 * evidence.spread_m, evidence.sightings, evidence.has_depth ? "" : ", triangulated",
-        evidence.clipped > 0 ? ", clipped: the true intensity is higher" : "");
+    const glm::dvec3 at_m = world_position_m(illumination, found.light), intensity = found.light.intensity;
+    print_out("{:8.3f} {:8.3f} {:8.3f} m  {:8.3f} {:8.3f} {:8.3f}  {}\n", at_m.x, at_m.y, at_m.z, intensity.r,
+              intensity.g, intensity.b, words_of(found));
 }
 
 }  // namespace

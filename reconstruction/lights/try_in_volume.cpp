@@ -1,0 +1,43 @@
+#include "reconstruction/lights/try_in_volume.h"
+
+#include <algorithm>
+
+#include "reconstruction/lights/surface_samples.h"
+
+namespace patina {
+namespace {
+
+/// The highlights as samples of a pass, which takes whole groups.
+std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
+    std::vector<gpu::LightSample> padded = highlights;
+    padded.resize((highlights.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+    return padded;
+}
+
+}  // namespace
+
+TryLampsInVolume::TryLampsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
+                                   const LitSurface& surface)
+    : pipeline_(pipeline), drawn_(drawn), surface_(surface), highlights_(in_groups(surface.highlights())) {}
+
+std::vector<TrialLamp> TryLampsInVolume::operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
+    std::vector<TrialLamp> lamps;
+    while (!places_m.empty()) {
+        const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
+        places_m = places_m.subspan(batch.size());
+        const std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
+        const std::vector<float> reached =
+            highlights_.empty() ? std::vector<float>()
+                                : try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
+        for (size_t i = 0; i < batch.size(); ++i) {
+            const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
+            lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
+            TrialLamp& lamp = lamps.back();
+            for (size_t k = 0; k < lamp.unexplained.size(); ++k)
+                if (reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
+        }
+    }
+    return lamps;
+}
+
+}  // namespace patina

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "reconstruction/lights/search_lights.h"
+#include "reconstruction/pipeline.h"
+
+namespace patina {
+
+/// Tries lamps in the reconstruction's volume, as many at once as a pass takes. A highlight is not explained by a lamp
+/// that does not reach it. Keeps references to all that it is made with. Waits for the device.
+class TryLampsInVolume {
+  public:
+    TryLampsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, const LitSurface& surface);
+
+    std::vector<TrialLamp> operator()(std::span<const glm::vec3> places_m, uint32_t count) const;
+
+  private:
+    Pipeline& pipeline_;
+    std::span<const gpu::LightSample> drawn_;
+    const LitSurface& surface_;
+    std::vector<gpu::LightSample> highlights_;
+};
+
+}  // namespace patina

@@ -1,0 +1,203 @@
+#include "reconstruction/lights/unmeasured_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/shader_light.h"
+#include "reconstruction/lights/light_fitting.h"
+#include "reconstruction/lights/surface_samples.h"
+#include "reconstruction/lights/try_in_volume.h"
+#include "reconstruction/lights/unseen_light.h"
+
+namespace patina {
+namespace {
+
+constexpr double kMostUnexplained = 0.125;  // a room whose lamps were found had 0.09 to 0.12, one with a sun 0.25
+constexpr float kDarkWhite = 0.6f, kBrightWhite = 0.9f;     // albedos of a room's brightest surface
+constexpr double kBrightest = 0.1;                          // the share of the surface that is
+constexpr double kSomeBrighter = 0.2;                       // and what may be brighter, as in unseen_light.cpp
+constexpr double kLeastKnown = 0.05;                        // of all light, to tell how bright the rest is
+constexpr double kLeastScale = 0.05;                        // of what was fitted
+constexpr float kSamePlace = 0.35f;                         // of a lamp's distance from the middle of the surface
+constexpr double kKnownAround = 0.35, kHardlyKnown = 0.55;  // share of light that comes from unknown directions
+
+/// Whether the median of its sightings is a lower bound.
+bool is_clipped(const FoundLight& lamp) {
+    return lamp.evidence.clipped > 0 && 2 * lamp.evidence.clipped >= lamp.evidence.sightings;
+}
+
+float mean_of(glm::vec3 rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
+
+ReceivedLight received_in(const LitSurface& surface, std::span<const glm::vec3> light, LightChannel channel) {
+    std::vector<float> row;
+    row.reserve(light.size());
+    for (const glm::vec3& rgb : light)
+        row.push_back(channel == LightChannel::kMean ? mean_of(rgb) : rgb[static_cast<int>(channel)]);
+    return surface.received(row);
+}
+
+/// Light beside what is known.
+struct Unmeasured {
+    std::vector<double> intensities;  // of lamps, then of unknown directions
+    double misfit = 0;
+    bool has_scale = false;  // else they are right up to one factor
+};
+
+Unmeasured fit_beside(const ReceivedLight& known, const LitSurface& surface, std::span<const ReceivedLight> lamps,
+                      const ReceivedLight& unknown, LightChannel channel) {
+    std::vector<ReceivedLight> lights(lamps.begin(), lamps.end());
+    lights.push_back(known);
+    const FittedIntensities fitted = surface.fit(lights, kIntensitySteps, surface.size(), channel, unknown);
+    // The mean sample receives 1 of all lights together.
+    const double factor = fitted.intensities[lamps.size()];
+    const bool has_scale = factor * known->mean > kLeastKnown;
+    Unmeasured result{.intensities = fitted.intensities, .misfit = fitted.misfit, .has_scale = has_scale};
+    result.intensities.erase(result.intensities.begin() + static_cast<ptrdiff_t>(lamps.size()));
+    if (has_scale)
+        for (double& intensity : result.intensities) intensity /= factor;
+    return result;
+}
+
+/// Mean of the channels by sample.
+std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const ReceivedLight> lamps,
+                            const ReceivedLight& unknown, size_t samples) {
+    std::vector<float> light(samples);
+    for (size_t i = 0; i < samples; ++i) {
+        double sum = unmeasured.intensities.back() * unknown->by_sample[i];
+        for (size_t l = 0; l < lamps.size(); ++l) sum += unmeasured.intensities[l] * lamps[l]->by_sample[i];
+        light[i] = static_cast<float>(sum);
+    }
+    return light;
+}
+
+/// By how much brighter unmeasured light has to be, for no more than `share` of the samples to exceed an albedo.
+double scale_for(float albedo, double share, const LitSurface& surface, std::span<const float> known,
+                 std::span<const float> unmeasured) {
+    std::vector<float> scales;
+    for (size_t i = 0; i < surface.size(); ++i) {
+        const float asked = mean_of(glm::vec3(surface.samples()[i].diffuse)) / albedo - known[i];
+        if (unmeasured[i] > 0) scales.push_back(asked / unmeasured[i]);
+    }
+    if (scales.empty()) return 1;
+    const auto at = scales.begin() + static_cast<ptrdiff_t>((1 - share) * static_cast<double>(scales.size() - 1));
+    std::nth_element(scales.begin(), at, scales.end());
+    return std::max<double>(*at, kLeastScale);
+}
+
+/// Which of the lamps that were found are where lamps were found before.
+std::vector<TrialLamp> found_again(const std::vector<TrialLamp>& found, std::span<const glm::vec3> before_m,
+                                   const LitSurface& surface) {
+    glm::vec3 middle_m(0);
+    for (const gpu::LightSample& sample : surface.samples())
+        middle_m += glm::vec3(sample.point_m) / static_cast<float>(surface.size());
+    std::vector<TrialLamp> again;
+    for (const TrialLamp& lamp : found) {
+        const float near_m = kSamePlace * glm::distance(lamp.place_m, middle_m);
+        if (std::ranges::any_of(before_m, [&](glm::vec3 m) { return glm::distance(m, lamp.place_m) < near_m; }))
+            again.push_back(lamp);
+    }
+    return again;
+}
+
+/// How much is known of what is around, 0 to 1.
+double sureness(const ReceivedLight& unknown) {
+    return std::clamp((kHardlyKnown - unknown->mean) / (kHardlyKnown - kKnownAround), 0.0, 1.0);
+}
+
+}  // namespace
+
+UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
+                                     std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
+                                     const TryLamps& try_lamps) {
+    UnmeasuredLamps result;
+    if (surface.size() == 0) return result;
+    const ReceivedLight known = received_in(surface, measured.known, LightChannel::kMean);
+    const ReceivedLight unknown = surface.received(measured.unknown);
+    GivenLight given{{known}, unknown};
+    given.lights.insert(given.lights.end(), clipped.begin(), clipped.end());
+    // Most highlights are of lamps that pictures show.
+    const std::vector<TrialLamp> found = search_lights(surface, try_lamps, {}, {.highlight_share = 0}, given);
+    for (const TrialLamp& lamp : found) result.places_m.push_back(lamp.place_m);
+    const std::vector<TrialLamp> believed = found_again(found, before_m, surface);
+    std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
+    for (const TrialLamp& lamp : believed) lamps.push_back(lamp.received);
+    if (lamps.empty()) return result;
+    const Unmeasured fitted = fit_beside(known, surface, lamps, unknown, LightChannel::kMean);
+    if (fitted.misfit > kMostUnexplained) return result;
+
+    const double sure = fitted.has_scale ? sureness(unknown) : 0;
+    const std::vector<float> light = light_of(fitted, lamps, unknown, surface.size());
+    const auto scale_of = [&](float albedo, double share) {
+        return scale_for(albedo, share, surface, known->by_sample, light);
+    };
+    const double plausible = fitted.has_scale ? std::pow(std::min(scale_of(kDarkWhite, kBrightest), 1.0), 1 - sure)
+                                              : scale_of(LightFittingSettings().white_albedo, kBrightest);
+    const double scale = std::max(scale_of(kBrightWhite, kSomeBrighter), plausible);
+    std::vector<glm::dvec3> intensities(lamps.size());
+    for (int c = 0; c < 3; ++c) {
+        const auto channel = static_cast<LightChannel>(c);
+        const Unmeasured own =
+            fit_beside(received_in(surface, measured.known, channel), surface, lamps, unknown, channel);
+        for (size_t l = 0; l < lamps.size(); ++l)
+            intensities[l][c] = scale * std::lerp(measured.tint[c] * fitted.intensities[l], own.intensities[l],
+                                                  own.has_scale ? sure : 0);
+    }
+    for (size_t l = 0; l < clipped.size(); ++l) result.clipped.emplace_back(intensities[l]);
+    for (size_t l = 0; l < believed.size(); ++l)
+        result.added.push_back(
+            {.position_m = glm::dvec3(believed[l].place_m), .intensity = intensities[clipped.size() + l]});
+    return result;
+}
+
+ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m) {
+    for (gpu::LightSample& sample : drawn)
+        if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
+    std::vector<Light> sure, clipped;
+    for (const FoundLight& lamp : lamps) (is_clipped(lamp) ? clipped : sure).push_back(lamp.light);
+
+    MeasuredLight measured{.known = received_from(pipeline, drawn, sure), .unknown = {}};
+    std::vector<float> brightness;
+    for (size_t i = 0; i < gpu::kLightSamples; ++i) {
+        measured.known[i] += glm::vec3(drawn[i].around);
+        measured.unknown.push_back(drawn[i].around.w);
+        brightness.push_back(mean_of(measured.known[i]));
+    }
+    ToldLamps all{.lamps = std::vector(lamps.begin(), lamps.end()), .places_m = {}};
+    if (clipped.empty() && least_unseen_light(drawn, brightness) <= 0) return all;
+    glm::vec3 together(0);
+    for (const Light& lamp : sure) together += glm::vec3(lamp.intensity);
+    if (!sure.empty()) measured.tint = together / mean_of(together);
+
+    const LitSurface surface(drawn, LightFittingSettings().cell_m);
+    std::vector<ReceivedLight> of_clipped;
+    for (Light& lamp : clipped) {
+        lamp.intensity = glm::dvec3(1);
+        of_clipped.push_back(
+            received_in(surface, received_from(pipeline, drawn, std::span(&lamp, 1)), LightChannel::kMean));
+    }
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, measured, of_clipped, before_m, TryLampsInVolume(pipeline, drawn, surface));
+    all.places_m = told.places_m;
+    size_t next = 0;
+    for (FoundLight& lamp : all.lamps) {
+        if (!is_clipped(lamp) || told.clipped.empty()) continue;
+        lamp.evidence.shown = lamp.light.intensity;
+        lamp.light.intensity = glm::max(lamp.light.intensity, glm::dvec3(told.clipped[next++]));
+    }
+    for (const Light& lamp : told.added) all.lamps.push_back({lamp, {.unseen = true}});
+    for (FoundLight& lamp : all.lamps) lamp.light = rounded_to_float(lamp.light);
+    return all;
+}
+
+std::vector<FoundLight> as_measured(std::vector<FoundLight> lamps) {
+    std::erase_if(lamps, [](const FoundLight& lamp) { return is_sun(lamp.light) || lamp.evidence.unseen; });
+    for (FoundLight& lamp : lamps) {
+        if (lamp.evidence.shown == glm::dvec3(0)) continue;
+        lamp.light.intensity = lamp.evidence.shown;
+        lamp.evidence.shown = glm::dvec3(0);
+    }
+    return lamps;
+}
+
+}  // namespace patina

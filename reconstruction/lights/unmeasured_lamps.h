@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "reconstruction/lights/light_estimation.h"
+#include "reconstruction/lights/search_lights.h"
+#include "reconstruction/pipeline.h"
+
+namespace patina {
+
+/// Light that reaches drawn samples, by place.
+struct MeasuredLight {
+    std::vector<glm::vec3> known;  ///< irradiance over pi, from measured lamps and from what rays met
+    std::vector<float> unknown;    ///< the same of light of 1 from the directions of which nothing is known
+    glm::vec3 tint{1};             ///< of the lamps; its mean is 1
+};
+
+struct UnmeasuredLamps {
+    std::vector<glm::vec3> clipped;   ///< intensities of the clipped lamps; empty where they are not told
+    std::vector<Light> added;         ///< those that no picture shows
+    std::vector<glm::vec3> places_m;  ///< of all lamps that the search found, believed or not
+};
+
+/// Lamps that low exposure did not measure: those that it clipped, whose places are known, and those that it does not
+/// show, which are searched for. They are fitted beside measured light, which tells how bright they are: not only up to
+/// one factor, as where no light is known. While much of what is around is not known this is not sure, and lamps come
+/// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps an albedo of 0.6 or
+/// more. Where hardly any light is known, the brightest tenth begins at LightFittingSettings::white_albedo. Never has
+/// more than a fifth of the surface an albedo above 0.9. `clipped` is what these lamps give the surface at an
+/// intensity of 1. A lamp that no picture shows is believed where the search before, of fewer frames, found it, too:
+/// `before_m`. Nothing is told where the surface stays unexplained.
+UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
+                                     std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
+                                     const TryLamps& try_lamps);
+
+struct ToldLamps {
+    std::vector<FoundLight> lamps;    ///< clipped ones as bright as what they light tells, then unseen ones
+    std::vector<glm::vec3> places_m;  ///< UnmeasuredLamps
+};
+
+/// The same for what the pipeline has observed, beside `lamps`, which are as_measured(); `drawn` as draw_samples
+/// returns it. Looks for nothing where nothing is missing: no lamp is clipped, and under the measured light no more
+/// than a fifth of the surface has an albedo above 0.9. Waits for the device.
+ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m);
+
+/// Lamps as the pictures of low exposure show them: without suns, and without what find_unmeasured_lamps() told.
+std::vector<FoundLight> as_measured(std::vector<FoundLight> lamps);
+
+}  // namespace patina

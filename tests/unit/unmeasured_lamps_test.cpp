@@ -1,0 +1,121 @@
+#include "reconstruction/lights/unmeasured_lamps.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/lit_balls.h"
+
+namespace patina::unmeasured_lamps_test {
+namespace {
+
+const glm::vec3 kBefore_m = kTwoLamps[1].place_m + glm::vec3(0.3f, 0.2f, -0.1f);
+
+/// All is known of the first of two lamps, and of all directions but a share.
+MeasuredLight first_lamp(const Balls& balls, float unknown) {
+    MeasuredLight measured{.known = {}, .unknown = std::vector<float>(gpu::kLightSamples, unknown)};
+    const Lamp& lamp = kTwoLamps[0];
+    for (uint32_t i = 0; i < gpu::kLightSamples; ++i)
+        measured.known.push_back(lamp.intensity * received(balls.drawn()[i], lamp.place_m));
+    return measured;
+}
+
+void expect_second_lamp(glm::vec3 intensity, double share) {
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(intensity[c], kTwoLamps[1].intensity[c], share * kTwoLamps[1].intensity[c]) << c;
+}
+
+TEST(UnmeasuredLamps, ALampThatNoPictureShowsIsFoundBesideAMeasuredOne) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
+    EXPECT_TRUE(told.clipped.empty());
+    ASSERT_EQ(told.added.size(), 1u);
+    EXPECT_LT(glm::distance(glm::vec3(told.added[0].position_m), kTwoLamps[1].place_m), 0.15f);
+    expect_second_lamp(glm::vec3(told.added[0].intensity), 0.1);
+}
+
+TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
+    const Balls balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, first_lamp(balls, 0.2f), std::span(&clipped, 1), {}, balls.try_lamps(surface));
+    EXPECT_TRUE(told.added.empty());
+    ASSERT_EQ(told.clipped.size(), 1u);
+    expect_second_lamp(told.clipped[0], 0.05);
+}
+
+TEST(UnmeasuredLamps, OneThatNoPictureShowsIsBelievedWhenItIsFoundAgain) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const glm::vec3 elsewhere_m = kTwoLamps[1].place_m + glm::vec3(0, 0, 1);
+    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&elsewhere_m, 1),
+                                                      balls.try_lamps(surface));
+    EXPECT_TRUE(told.added.empty());
+    ASSERT_EQ(told.places_m.size(), 1u);
+    EXPECT_LT(glm::distance(told.places_m[0], kTwoLamps[1].place_m), 0.15f);
+}
+
+TEST(UnmeasuredLamps, WhatIsExplainedNeedsNone) {
+    const Balls balls({kTwoLamps[0]}, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
+    EXPECT_TRUE(told.places_m.empty());
+}
+
+TEST(UnmeasuredLamps, NothingIsToldWhereSurfaceIsNotExplained) {
+    const Balls balls(kTwoLamps, glm::vec3(0.2f), 0.6f);
+    const LitSurface surface(balls.drawn(), 1);
+    const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, first_lamp(balls, 0.2f), std::span(&clipped, 1), {}, balls.try_lamps(surface));
+    EXPECT_TRUE(told.clipped.empty());
+    EXPECT_TRUE(told.added.empty());
+    const LitSurface nothing(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
+    EXPECT_TRUE(
+        fit_unmeasured_lamps(nothing, first_lamp(balls, 0.2f), {}, {}, balls.try_lamps(nothing)).clipped.empty());
+}
+
+// The floor is the brightest surface, with 0.33. In half as much light it would have 0.66.
+TEST(UnmeasuredLamps, WhereLittleIsKnownOfTheRoomItsBrightestSurfaceIsNotDark) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    MeasuredLight measured = first_lamp(balls, 0.6f);
+    measured.tint = {1.2f, 1, 0.8f};
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, measured, {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
+    ASSERT_EQ(told.added.size(), 1u);
+    const glm::vec3 intensity(told.added[0].intensity), truth = kTwoLamps[1].intensity;
+    EXPECT_LT(intensity.g, 0.6f * truth.g);
+    EXPECT_NEAR(intensity.r / intensity.g, 1.2f, 1e-3f);
+    EXPECT_NEAR(intensity.b / intensity.g, 0.8f, 1e-3f);
+}
+
+// Then the brightest surface, the floor with a mean of 0.323, has 0.8.
+TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceAsks) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    MeasuredLight measured{.known = std::vector<glm::vec3>(gpu::kLightSamples, glm::vec3(1e-4f)),
+                           .unknown = std::vector<float>(gpu::kLightSamples, 0.1f)};
+    std::vector<ReceivedLight> clipped;
+    for (const Lamp& lamp : kTwoLamps) clipped.push_back(balls.received_from(surface, lamp.place_m));
+    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, clipped, {}, balls.try_lamps(surface));
+    ASSERT_EQ(told.clipped.size(), 2u);
+    for (size_t l = 0; l < 2; ++l) EXPECT_NEAR(told.clipped[l].g, 0.323f / 0.8f * kTwoLamps[l].intensity.g, 0.3f) << l;
+}
+
+// Albedos of 1.3 are none: then light is missing.
+TEST(UnmeasuredLamps, AFifthOfTheSurfaceAtMostIsBrighterThanPaint) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    std::vector<gpu::LightSample> drawn = balls.drawn();
+    for (gpu::LightSample& sample : drawn) sample.diffuse *= 4.0f;
+    const LitSurface surface(drawn, 1);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
+    ASSERT_EQ(told.added.size(), 1u);
+    EXPECT_GT(told.added[0].intensity.g, 1.5 * double{kTwoLamps[1].intensity.g});
+}
+
+}  // namespace
+}  // namespace patina::unmeasured_lamps_test
