@@ -37,6 +37,9 @@ endif()
 set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.SceneIsValidGltf:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
+# TESTs that take 5 to 20 s, beside others of the same code: these run with PATINA_TEST_FULL alone.
+set(PATINA_LONG_TESTS FindVisibilityTest.WhatLiesOutsideTheBallThrowsNoShadow:FindVisibilityTest.WithoutShadowsEveryLightReachesEveryRecord:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.RaysAddUpToASlidingMean:LightFitting.TheirIntensityFollowsFromWhiteAndTooLargeAMisfitMeansNone:PipelineTest.ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo:SessionUndoTest.KeepingAModelChangesNothing:StreamingTest.CellsAreTogetherTheWholeSurface:StreamingTest.ViewsBetweenFramesMakeNoDifference)
+
 # No shader uses subgroup operations, so that all that the narrower lavapipe could do otherwise is compile passes wrongly. Without
 # PATINA_TEST_FULL it runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
 set(PATINA_LAVAPIPE128_TESTS "*Reference*")
@@ -63,6 +66,9 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
         set(ALONE "${PATINA_WHOLE_SUITES}")
         set(COST_ALONE 1000)
         set(COST 100)
+        if(NOT PATINA_TEST_FULL)
+            set(TESTS_LEFT_OUT "-${PATINA_LONG_TESTS}")
+        endif()
     else()
         set(ALONE ".")
         set(COST_ALONE 0)
@@ -73,7 +79,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")
-        set(TESTS_LEFT_OUT "-${PATINA_SWIFTSHADER_LONG_TESTS}")
+        string(APPEND TESTS_LEFT_OUT ":${PATINA_SWIFTSHADER_LONG_TESTS}")
     elseif(LABEL STREQUAL lavapipe128 AND NOT PATINA_TEST_FULL)
         set(TESTS_TAKEN "${PATINA_LAVAPIPE128_TESTS}")
         set(WHOLE_FOLDERS "${PATINA_LAVAPIPE128_WHOLE_FOLDERS}")

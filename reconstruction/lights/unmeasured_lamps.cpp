@@ -13,10 +13,10 @@ namespace patina {
 namespace {
 
 constexpr double kMostUnexplained = 0.125;  // a room whose lamps were found had 0.09 to 0.12, one with a sun 0.25
-constexpr float kDarkWhite = 0.6f, kBrightWhite = 0.9f;     // albedos of a room's brightest surface
+constexpr float kDarkWhite = 0.75f, kBrightWhite = 1.125f;  // of the albedo of white surfaces
 constexpr double kBrightest = 0.1;                          // the share of the surface that is
 constexpr double kSomeBrighter = 0.2;                       // and what may be brighter, as in unseen_light.cpp
-constexpr double kLeastKnown = 0.05;                        // of all light, to tell how bright the rest is
+constexpr double kLeastKnownShare = 0.05;                   // of all light, to tell how bright the rest is
 constexpr double kLeastScale = 0.05;                        // of what was fitted
 constexpr float kSamePlace = 0.35f;                         // of a lamp's distance from the middle of the surface
 constexpr double kKnownAround = 0.35, kHardlyKnown = 0.55;  // share of light that comes from unknown directions
@@ -50,7 +50,7 @@ Unmeasured fit_beside(const ReceivedLight& known, const LitSurface& surface, std
     const FittedIntensities fitted = surface.fit(lights, kIntensitySteps, surface.size(), channel, unknown);
     // The mean sample receives 1 of all lights together.
     const double factor = fitted.intensities[lamps.size()];
-    const bool has_scale = factor * known->mean > kLeastKnown;
+    const bool has_scale = factor * known->mean > kLeastKnownShare;
     Unmeasured result{.intensities = fitted.intensities, .misfit = fitted.misfit, .has_scale = has_scale};
     result.intensities.erase(result.intensities.begin() + static_cast<ptrdiff_t>(lamps.size()));
     if (has_scale)
@@ -130,9 +130,11 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     const auto scale_of = [&](float albedo, double share) {
         return scale_for(albedo, share, surface, known->by_sample, light);
     };
-    const double plausible = fitted.has_scale ? std::pow(std::min(scale_of(kDarkWhite, kBrightest), 1.0), 1 - sure)
-                                              : scale_of(LightFittingSettings().white_albedo, kBrightest);
-    const double scale = std::max(scale_of(kBrightWhite, kSomeBrighter), plausible);
+    const float white = measured.white_albedo;
+    const double plausible = fitted.has_scale
+                                 ? std::pow(std::min(scale_of(kDarkWhite * white, kBrightest), 1.0), 1 - sure)
+                                 : scale_of(white, kBrightest);
+    const double scale = std::max(scale_of(kBrightWhite * white, kSomeBrighter), plausible);
     std::vector<glm::dvec3> intensities(lamps.size());
     for (int c = 0; c < 3; ++c) {
         const auto channel = static_cast<LightChannel>(c);
@@ -150,13 +152,14 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
 }
 
 ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m) {
+                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m,
+                                float white_albedo) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     std::vector<Light> sure, clipped;
     for (const FoundLight& lamp : lamps) (is_clipped(lamp) ? clipped : sure).push_back(lamp.light);
 
-    MeasuredLight measured{.known = received_from(pipeline, drawn, sure), .unknown = {}};
+    MeasuredLight measured{.known = received_from(pipeline, drawn, sure), .unknown = {}, .white_albedo = white_albedo};
     std::vector<float> brightness;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
         measured.known[i] += glm::vec3(drawn[i].around);

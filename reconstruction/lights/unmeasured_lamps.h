@@ -14,6 +14,7 @@ struct MeasuredLight {
     std::vector<glm::vec3> known;  ///< irradiance over pi, from measured lamps and from what rays met
     std::vector<float> unknown;    ///< the same of light of 1 from the directions of which nothing is known
     glm::vec3 tint{1};             ///< of the lamps; its mean is 1
+    float white_albedo = 0.8f;     ///< of the brightest tenth of the surface, so far as light does not tell it
 };
 
 struct UnmeasuredLamps {
@@ -25,9 +26,9 @@ struct UnmeasuredLamps {
 /// Lamps that low exposure did not measure: those that it clipped, whose places are known, and those that it does not
 /// show, which are searched for. They are fitted beside measured light, which tells how bright they are: not only up to
 /// one factor, as where no light is known. While much of what is around is not known this is not sure, and lamps come
-/// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps an albedo of 0.6 or
-/// more. Where hardly any light is known, the brightest tenth begins at LightFittingSettings::white_albedo. Never has
-/// more than a fifth of the surface an albedo above 0.9. `clipped` is what these lamps give the surface at an
+/// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps three quarters of
+/// `white_albedo` or more. Where hardly any light is known, it begins at `white_albedo`. Never has more than a fifth of
+/// the surface an albedo an eighth above that. `clipped` is what these lamps give the surface at an
 /// intensity of 1. A lamp that no picture shows is believed where the search before, of fewer frames, found it, too:
 /// `before_m`. Nothing is told where the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
@@ -43,7 +44,8 @@ struct ToldLamps {
 /// returns it. Looks for nothing where nothing is missing: no lamp is clipped, and under the measured light no more
 /// than a fifth of the surface has an albedo above 0.9. Waits for the device.
 ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m);
+                                std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m,
+                                float white_albedo);
 
 /// Lamps as the pictures of low exposure show them: without suns, and without what find_unmeasured_lamps() told.
 std::vector<FoundLight> as_measured(std::vector<FoundLight> lamps);

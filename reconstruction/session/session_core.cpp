@@ -302,7 +302,8 @@ void SessionCore::look_for_unseen_light() {
     std::vector<FoundLight>& lights = illumination_.lights;
     lights = as_measured(std::move(lights));
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
-    ToldLamps told = find_unmeasured_lamps(*pipeline_, drawn, lights, illumination_.candidates_m);
+    ToldLamps told =
+        find_unmeasured_lamps(*pipeline_, drawn, lights, illumination_.candidates_m, options_.white_albedo);
     lights = std::move(told.lamps);
     illumination_.candidates_m = std::move(told.places_m);
     const std::vector<Light> lamps = lights_of(illumination_);

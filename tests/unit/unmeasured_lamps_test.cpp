@@ -92,7 +92,7 @@ TEST(UnmeasuredLamps, WhereLittleIsKnownOfTheRoomItsBrightestSurfaceIsNotDark) {
     EXPECT_NEAR(intensity.b / intensity.g, 0.8f, 1e-3f);
 }
 
-// Then the brightest surface, the floor with a mean of 0.323, has 0.8.
+// Then the brightest surface, the floor with a mean of 0.323, has the albedo of white.
 TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceAsks) {
     const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
@@ -100,9 +100,13 @@ TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceA
                            .unknown = std::vector<float>(gpu::kLightSamples, 0.1f)};
     std::vector<ReceivedLight> clipped;
     for (const Lamp& lamp : kTwoLamps) clipped.push_back(balls.received_from(surface, lamp.place_m));
-    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, clipped, {}, balls.try_lamps(surface));
-    ASSERT_EQ(told.clipped.size(), 2u);
-    for (size_t l = 0; l < 2; ++l) EXPECT_NEAR(told.clipped[l].g, 0.323f / 0.8f * kTwoLamps[l].intensity.g, 0.3f) << l;
+    for (const float white : {0.8f, 0.4f}) {
+        measured.white_albedo = white;
+        const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, clipped, {}, balls.try_lamps(surface));
+        ASSERT_EQ(told.clipped.size(), 2u);
+        for (size_t l = 0; l < 2; ++l)
+            EXPECT_NEAR(told.clipped[l].g, 0.323f / white * kTwoLamps[l].intensity.g, 0.6f) << l << ' ' << white;
+    }
 }
 
 // Albedos of 1.3 are none: then light is missing.
