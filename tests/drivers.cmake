@@ -40,8 +40,8 @@ set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.R
 # TESTs that take 5 to 20 s, beside others of the same code: these run with PATINA_TEST_FULL alone.
 set(PATINA_LONG_TESTS FindVisibilityTest.WhatLiesOutsideTheBallThrowsNoShadow:FindVisibilityTest.WithoutShadowsEveryLightReachesEveryRecord:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.RaysAddUpToASlidingMean:LightFitting.TheirIntensityFollowsFromWhiteAndTooLargeAMisfitMeansNone:PipelineTest.ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo:SessionUndoTest.KeepingAModelChangesNothing:StreamingTest.CellsAreTogetherTheWholeSurface:StreamingTest.ViewsBetweenFramesMakeNoDifference)
 
-# No shader uses subgroup operations, so that all that the narrower lavapipe could do otherwise is compile passes wrongly. Without
-# PATINA_TEST_FULL it runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
+# No shader uses subgroup operations, so that the width of vectors changes nothing but how the driver compiles a pass. Without
+# PATINA_TEST_FULL the narrower lavapipe runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
 set(PATINA_LAVAPIPE128_TESTS "*Reference*")
 set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|surface|viewer)$")
 
