@@ -8,6 +8,7 @@
 #include "reconstruction/lights/surface_samples.h"
 #include "reconstruction/lights/try_in_volume.h"
 #include "reconstruction/lights/unseen_light.h"
+#include "shared/lighting/lights.h"
 
 namespace patina {
 namespace {
@@ -108,7 +109,7 @@ double sureness(const ReceivedLight& unknown) {
 
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
                                      std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
-                                     const TryLamps& try_lamps) {
+                                     const TryLamps& try_lamps, uint32_t most_added) {
     UnmeasuredLamps result;
     if (surface.size() == 0) return result;
     const ReceivedLight known = received_in(surface, measured.known, LightChannel::kMean);
@@ -116,7 +117,8 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     GivenLight given{{known}, unknown};
     given.lights.insert(given.lights.end(), clipped.begin(), clipped.end());
     // Most highlights are of lamps that pictures show.
-    const std::vector<TrialLamp> found = search_lights(surface, try_lamps, {}, {.highlight_share = 0}, given);
+    const std::vector<TrialLamp> found =
+        search_lights(surface, try_lamps, {}, {.most_lamps = most_added, .highlight_share = 0}, given);
     for (const TrialLamp& lamp : found) result.places_m.push_back(lamp.place_m);
     const std::vector<TrialLamp> believed = found_again(found, before_m, surface);
     std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
@@ -170,17 +172,18 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     if (clipped.empty() && least_unseen_light(drawn, brightness) <= 0) return all;
     glm::vec3 together(0);
     for (const Light& lamp : sure) together += glm::vec3(lamp.intensity);
-    if (!sure.empty()) measured.tint = together / mean_of(together);
+    if (mean_of(together) > 0) measured.tint = together / mean_of(together);
 
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
+    const TryLampsInVolume try_lamps(pipeline, drawn, surface);
+    std::vector<glm::vec3> places_m;
+    for (const Light& lamp : clipped) places_m.emplace_back(lamp.position_m);
     std::vector<ReceivedLight> of_clipped;
-    for (Light& lamp : clipped) {
-        lamp.intensity = glm::dvec3(1);
-        of_clipped.push_back(
-            received_in(surface, received_from(pipeline, drawn, std::span(&lamp, 1)), LightChannel::kMean));
-    }
-    const UnmeasuredLamps told =
-        fit_unmeasured_lamps(surface, measured, of_clipped, before_m, TryLampsInVolume(pipeline, drawn, surface));
+    for (const TrialLamp& lamp : try_lamps(places_m, gpu::kLightSamples)) of_clipped.push_back(lamp.received);
+    const auto room =
+        static_cast<uint32_t>(gpu::kMaxPointLights - std::min<size_t>(lamps.size(), gpu::kMaxPointLights));
+    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, of_clipped, before_m, try_lamps,
+                                                      std::min(room, LightSearchSettings().most_lamps));
     all.places_m = told.places_m;
     size_t next = 0;
     for (FoundLight& lamp : all.lamps) {

@@ -56,6 +56,15 @@ TEST(UnmeasuredLamps, OneThatNoPictureShowsIsBelievedWhenItIsFoundAgain) {
     EXPECT_LT(glm::distance(told.places_m[0], kTwoLamps[1].place_m), 0.15f);
 }
 
+TEST(UnmeasuredLamps, NoMoreAreSearchedForThanThereIsRoomFor) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1),
+                                                      balls.try_lamps(surface), 0);
+    EXPECT_TRUE(told.places_m.empty());
+    EXPECT_TRUE(told.added.empty());
+}
+
 TEST(UnmeasuredLamps, WhatIsExplainedNeedsNone) {
     const Balls balls({kTwoLamps[0]}, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
