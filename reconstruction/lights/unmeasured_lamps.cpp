@@ -16,7 +16,6 @@ namespace {
 constexpr double kMostUnexplained = 0.125;  // a room whose lamps were found had 0.09 to 0.12, one with a sun 0.25
 constexpr float kDarkWhite = 0.75f, kBrightWhite = 1.125f;  // of the albedo of white surfaces
 constexpr double kBrightest = 0.1;                          // the share of the surface that is
-constexpr double kSomeBrighter = 0.2;                       // and what may be brighter, as in unseen_light.cpp
 constexpr double kLeastKnownShare = 0.05;                   // of all light, to tell how bright the rest is
 constexpr double kLeastScale = 0.05;                        // of what was fitted
 constexpr float kSamePlace = 0.35f;                         // of a lamp's distance from the middle of the surface
@@ -71,20 +70,6 @@ std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const Receiv
     return light;
 }
 
-/// By how much brighter unmeasured light has to be, for no more than `share` of the samples to exceed an albedo.
-double scale_for(float albedo, double share, const LitSurface& surface, std::span<const float> known,
-                 std::span<const float> unmeasured) {
-    std::vector<float> scales;
-    for (size_t i = 0; i < surface.size(); ++i) {
-        const float asked = mean_of(glm::vec3(surface.samples()[i].diffuse)) / albedo - known[i];
-        if (unmeasured[i] > 0) scales.push_back(asked / unmeasured[i]);
-    }
-    if (scales.empty()) return 1;
-    const auto at = scales.begin() + static_cast<ptrdiff_t>((1 - share) * static_cast<double>(scales.size() - 1));
-    std::nth_element(scales.begin(), at, scales.end());
-    return std::max<double>(*at, kLeastScale);
-}
-
 /// Which of the lamps that were found are where lamps were found before.
 std::vector<TrialLamp> found_again(const std::vector<TrialLamp>& found, std::span<const glm::vec3> before_m,
                                    const LitSurface& surface) {
@@ -130,13 +115,14 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     const double sure = fitted.has_scale ? sureness(unknown) : 0;
     const std::vector<float> light = light_of(fitted, lamps, unknown, surface.size());
     const auto scale_of = [&](float albedo, double share) {
-        return scale_for(albedo, share, surface, known->by_sample, light);
+        const auto scale = least_strength(surface.samples(), known->by_sample, light, albedo, share);
+        return std::max<double>(scale.value_or(1), kLeastScale);
     };
     const float white = measured.white_albedo;
     const double plausible = fitted.has_scale
                                  ? std::pow(std::min(scale_of(kDarkWhite * white, kBrightest), 1.0), 1 - sure)
                                  : scale_of(white, kBrightest);
-    const double scale = std::max(scale_of(kBrightWhite * white, kSomeBrighter), plausible);
+    const double scale = std::max(scale_of(kBrightWhite * white, kBrighterShare), plausible);
     std::vector<glm::dvec3> intensities(lamps.size());
     for (int c = 0; c < 3; ++c) {
         const auto channel = static_cast<LightChannel>(c);

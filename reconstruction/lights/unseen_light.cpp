@@ -13,8 +13,7 @@ namespace {
 constexpr double kMostMisfit = 0.1;  // scenes of lamps and sky have 0.01 to 0.08; a room with patches of sun 0.27
 constexpr float kLeastUnseen = 1e-4f;
 constexpr float kBrightestAlbedo = 0.9f;  // of white paint; few things have more
-constexpr double kBrighter = 0.2;     // of the samples: highlights, patches of sun, light that was gathered too dark
-constexpr float kLeastReach = 0.02f;  // share of directions, below which unseen light is no explanation
+constexpr float kLeastReach = 0.02f;      // share of directions, below which unseen light is no explanation
 
 float mean_of(const auto& rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
 
@@ -36,18 +35,22 @@ std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLigh
     return std::min(*everywhere, *unknown);
 }
 
-float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received) {
+std::optional<float> least_strength(std::span<const gpu::LightSample> samples, std::span<const float> received,
+                                    std::span<const float> reached, float albedo, double share) {
     std::vector<float> asked;
-    for (size_t i = 0; i < samples.size(); ++i) {
-        const gpu::LightSample& sample = samples[i];
-        if (sample.point_m.w <= 0 || sample.around.w < kLeastReach) continue;
-        const float value = mean_of(sample.diffuse);
-        asked.push_back((value / kBrightestAlbedo - received[i]) / sample.around.w);
-    }
-    if (asked.empty()) return 0;
-    const auto at = static_cast<ptrdiff_t>((1 - kBrighter) * static_cast<double>(asked.size() - 1));
-    std::nth_element(asked.begin(), asked.begin() + at, asked.end());
-    return std::max(asked[static_cast<size_t>(at)], 0.0f);
+    for (size_t i = 0; i < samples.size(); ++i)
+        if (reached[i] > 0) asked.push_back((mean_of(samples[i].diffuse) / albedo - received[i]) / reached[i]);
+    if (asked.empty()) return std::nullopt;
+    const auto at = asked.begin() + static_cast<ptrdiff_t>((1 - share) * static_cast<double>(asked.size() - 1));
+    std::nth_element(asked.begin(), at, asked.end());
+    return *at;
+}
+
+float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received) {
+    std::vector<float> reached;
+    for (const gpu::LightSample& sample : samples)
+        reached.push_back(sample.point_m.w > 0 && sample.around.w >= kLeastReach ? sample.around.w : 0);
+    return std::max(least_strength(samples, received, reached, kBrightestAlbedo, kBrighterShare).value_or(0), 0.0f);
 }
 
 std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,

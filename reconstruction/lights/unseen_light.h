@@ -24,6 +24,16 @@ struct KnownLight {
 /// where none does: where it has many albedos of one chromaticity, or much of its light comes in patches, as a sun's.
 std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known);
 
+/// How strong light has to be that gives the samples `reached` at a strength of 1, for no more than `share` of these to
+/// have an albedo above `albedo`, beside the light that they receive. Both are irradiance over pi by sample, mean of
+/// the channels. What light does not reach (0) does not count. Below 0 where they receive more than enough; empty where
+/// it reaches none.
+std::optional<float> least_strength(std::span<const gpu::LightSample> samples, std::span<const float> received,
+                                    std::span<const float> reached, float albedo, double share);
+
+/// Of a surface, which may be brighter than paint: highlights, patches of sun, light that was gathered too dark.
+inline constexpr double kBrighterShare = 0.2;
+
 /// The least such light under which surfaces are as dark as surfaces are: a lamp that no picture of low exposure shows
 /// would make albedos of 1 and more. A fifth of the samples that it can reach may stay brighter than an albedo of 0.9,
 /// as highlights and patches of sun are. `received` is irradiance over pi by sample, mean of the channels, from all
