@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "export/coarser_mesh.h"
+#include "export/connected_vertices.h"
+#include "export/cut_off.h"
+#include "export/merge_patches.h"
 #include "export/mesh_parts.h"
-#include "export/same_positions.h"
 
 namespace patina {
 
@@ -25,71 +26,30 @@ struct Box {
     }
 };
 
-/// Which vertices hang together.
-class ConnectedVertices {
-  public:
-    /// Vertices of one position are one.
-    ConnectedVertices(std::span<const glm::vec3> positions_m, std::span<const Triangle> triangles)
-        : parent_(positions_m.size()) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-        const std::vector<uint32_t> first = first_of_position(positions_m);
-        for (uint32_t i = 0; i < first.size(); ++i) join(i, first[i]);
-        for (const Triangle& triangle : triangles) {
-            join(triangle[0], triangle[1]);
-            join(triangle[1], triangle[2]);
-        }
-    }
-
-    /// The same for all vertices of a part.
-    uint32_t part_of(uint32_t vertex) {
-        while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-        return vertex;
-    }
-
-  private:
-    void join(uint32_t a, uint32_t b) {
-        const auto [low, high] = std::minmax({part_of(a), part_of(b)});
-        parent_[high] = low;
-    }
-
-    std::vector<uint32_t> parent_;
-};
-
-/// Where a piece ends at a plane, vertices lie exactly in it, and none beyond.
-bool is_cut_off(const std::array<uint32_t, 6>& at_sides) {
-    return std::ranges::any_of(at_sides, [](uint32_t vertices) { return vertices >= 2; });
-}
-
 /// The triangles of parts that are large enough, or may be, and of the largest one.
 std::vector<Triangle> firm_triangles(const Mesh& mesh, const TidyOptions& options) {
     if (options.least_part_m <= 0 || mesh.triangles.empty()) return mesh.triangles;
     const size_t vertices = mesh.positions_m.size();
     ConnectedVertices connected(mesh.positions_m, mesh.triangles);
+    std::vector<uint32_t> part(vertices);
     std::vector<Box> boxes(vertices);
-    std::vector<std::array<uint32_t, 6>> at_sides(vertices);
     Box whole;
-    for (const glm::vec3& position : mesh.positions_m) whole.add(position);
+    for (uint32_t i = 0; i < vertices; ++i) {
+        part[i] = connected.part_of(i);
+        boxes[part[i]].add(mesh.positions_m[i]);
+        whole.add(mesh.positions_m[i]);
+    }
+    const std::vector<bool> cut_off = cut_off_parts(mesh.positions_m, part);
     const double least_part_m =
         std::max(options.least_part_m, options.least_part_share * double{glm::distance(whole.low, whole.high)});
-    for (uint32_t i = 0; i < vertices; ++i) {
-        const uint32_t part = connected.part_of(i);
-        const glm::vec3 position = mesh.positions_m[i];
-        boxes[part].add(position);
-        for (uint32_t axis = 0; axis < 3; ++axis) {
-            const auto at = static_cast<glm::length_t>(axis);
-            at_sides[part][axis] += position[at] == whole.low[at];
-            at_sides[part][3 + axis] += position[at] == whole.high[at];
-        }
-    }
     std::vector<uint32_t> triangles(vertices);
-    for (const Triangle& triangle : mesh.triangles) ++triangles[connected.part_of(triangle[0])];
+    for (const Triangle& triangle : mesh.triangles) ++triangles[part[triangle[0]]];
     const auto largest = static_cast<uint32_t>(std::ranges::max_element(triangles) - triangles.begin());
     std::vector<Triangle> firm;
     for (const Triangle& triangle : mesh.triangles) {
-        const uint32_t part = connected.part_of(triangle[0]);
-        const Box& box = boxes[part];
-        const bool large = double{glm::distance(box.low, box.high)} >= least_part_m;
-        if (large || part == largest || (options.in_pieces && is_cut_off(at_sides[part]))) firm.push_back(triangle);
+        const uint32_t of = part[triangle[0]];
+        const bool large = double{glm::distance(boxes[of].low, boxes[of].high)} >= least_part_m;
+        if (large || of == largest || (options.in_pieces && cut_off[of])) firm.push_back(triangle);
     }
     return firm;
 }
@@ -177,6 +137,8 @@ TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const Tid
     piece.reflectance = reflectance;
     leave_out_stray_parts(piece, options);
     close_holes_of(piece, options);
+    piece.reflectance.labels = merged_patches(piece.mesh, std::move(piece.reflectance.labels),
+                                              {options.least_patch_vertices, options.in_pieces});
     if (options.error_m <= 0) return piece;
     TidyPiece fewer =
         collapsed(piece, {.error_m = options.error_m, .white_m = options.white_m, .locks_border = options.in_pieces});

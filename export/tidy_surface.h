@@ -14,6 +14,8 @@ struct TidyOptions {
     /// Loose parts whose box has a shorter diagonal than this, or than so large a share of the whole's, are left out:
     /// stray readings, and backs of things that were hardly seen. 0: none are.
     double least_part_m = 0.05, least_part_share = 0.03;
+    /// Patches of a segment with fewer vertices take the segment around them (merge_patches.h). 0: none do.
+    uint32_t least_patch_vertices = 32;
     /// Holes whose border fits into a box of this diagonal are closed (close_holes.h). 0: none are.
     double most_hole_m = 0.05;
     /// Edges are collapsed while the surface stays within about this distance of what it was. 0: none are.
@@ -37,9 +39,9 @@ struct TidyPiece {
     std::vector<uint8_t> filled{};  ///< by vertex: 1 where a hole was closed and nothing was measured; empty: nowhere
 };
 
-/// A piece without its stray parts and small holes, and with as few triangles as options.error_m asks for. Vertices are
-/// some of those there were. Segments still meet without gaps, each with its own vertices. A part that a piece's end
-/// cuts off may go on in the next piece, and stays.
+/// A piece without its stray parts, small holes and specks of segments, and with as few triangles as options.error_m
+/// asks for. Vertices are some of those there were. Segments still meet without gaps, each with its own vertices. A
+/// part that a piece's end cuts off may go on in the next piece, and stays.
 TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const TidyOptions& options);
 
 /// Takes out the triangles of stray parts, such as those that collapsing cut off.

@@ -60,10 +60,12 @@ void declare_scene_choices(CLI::App& command, RunOptions& run) {
             "--surface-error",
             [&run](double error_mm) {
                 run.files.tidy.error_m = error_mm / 1000;
-                if (error_mm == 0) run.files.tidy.least_part_m = 0;
+                if (error_mm > 0) return;
+                run.files.tidy.least_part_m = 0;
+                run.files.tidy.least_patch_vertices = 0;
             },
             "About how far scene.glb's surface may be from what was reconstructed, in millimetres: 1 by default; 0 "
-            "keeps all triangles, those of stray parts too")
+            "keeps all triangles, those of stray parts too, and specks of segments")
         ->option_text("MM")
         ->check(CLI::Range(0.0, 1000.0));
 }
@@ -81,6 +83,7 @@ void take_scene_choices(const CLI::App& command, const RunOptions& given, RunOpt
     if (command.count("--surface-error") > 0) {
         run.files.tidy.error_m = given.files.tidy.error_m;
         run.files.tidy.least_part_m = given.files.tidy.least_part_m;
+        run.files.tidy.least_patch_vertices = given.files.tidy.least_patch_vertices;
     }
 }
 
