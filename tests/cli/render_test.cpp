@@ -1,8 +1,11 @@
 #include "tools/render/render.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
 
 #include "export/write_exr.h"
 #include "sensor/files/picture_file.h"
@@ -193,26 +196,66 @@ RigidTransform looking(glm::dvec3 from, glm::dvec3 at) {
     return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(from, 1)};
 }
 
-TEST(Orbit, GoesAroundLevelAtTheCamerasDistanceAndHeight) {
-    // World y points down; cameras 2 m away and 1 m above, all on one side and tilted down.
-    const glm::dvec3 center(0.5, 0.25, 3);
-    std::vector<RigidTransform> recorded;
-    for (const double degrees : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
-        const double angle = degrees * std::numbers::pi / 180;
-        recorded.push_back(looking(center + glm::dvec3(2 * std::sin(angle), -1, -2 * std::cos(angle)), center));
+/// Cameras that look at a centre from 2 m away and 1 m above it; world y points down.
+std::vector<RigidTransform> cameras_around(glm::dvec3 center, std::span<const double> degrees) {
+    std::vector<RigidTransform> cameras;
+    for (const double side : degrees) {
+        const double angle = side * std::numbers::pi / 180;
+        cameras.push_back(looking(center + glm::dvec3(2 * std::sin(angle), -1, -2 * std::cos(angle)), center));
     }
+    return cameras;
+}
+
+/// From which side a pose looks at the centre, in degrees.
+double side_of(const RigidTransform& pose, glm::dvec3 center) {
+    const glm::dvec3 offset = glm::dvec3(pose[3]) - center;
+    return std::atan2(offset.x, -offset.z) * 180 / std::numbers::pi;
+}
+
+TEST(Orbit, GoesAroundLevelAtTheCamerasDistanceAndHeight) {
+    const glm::dvec3 center(0.5, 0.25, 3);
+    const auto recorded = cameras_around(center, std::array{0.0, 80.0, 160.0, 240.0, 300.0});
     const auto poses = tools::orbit_poses(recorded, center, 8);
     ASSERT_EQ(poses.size(), 8u);
     for (size_t i = 0; i < 8; ++i) {
         const glm::dvec3 offset = glm::dvec3(poses[i][3]) - center;
         EXPECT_NEAR(glm::length(offset), std::sqrt(5.0), 1e-6) << i;
-        EXPECT_NEAR(offset.y, -1, 0.05) << i << ": level but for what one-sided cameras cannot tell";
+        EXPECT_NEAR(offset.y, -1, 0.1) << i << ": level but for what uneven sides cannot tell";
         EXPECT_LT(rotation_defect(poses[i]), 1e-12);
         EXPECT_NEAR(glm::dot(glm::dvec3(poses[i][2]), glm::normalize(-offset)), 1, 1e-12) << "looks at the centre";
         EXPECT_GT(poses[i][1].y, 0.8) << "y down";
     }
     EXPECT_LT(glm::distance(glm::dvec3(poses[0][3]), glm::dvec3(recorded[0][3])), 0.1) << "begins at the first camera";
     EXPECT_GT(glm::distance(glm::dvec3(poses[0][3]), glm::dvec3(poses[4][3])), 3.9) << "and is opposite half way";
+}
+
+TEST(Orbit, KeepsToTheSidesThatCamerasLookedFrom) {
+    const glm::dvec3 center(0.5, 0.25, 3);
+    auto recorded = cameras_around(center, std::array{-40.0, -20.0, 0.0, 20.0, 40.0});
+    // One that looks away from the centre shows nothing of it.
+    recorded.push_back(looking(center + glm::dvec3(0, -1, 2), center + glm::dvec3(0, -1, 4)));
+    const auto poses = tools::orbit_poses(recorded, center, 40);
+    std::vector<double> sides;
+    for (const RigidTransform& pose : poses) sides.push_back(side_of(pose, center));
+    const auto [low, high] = std::ranges::minmax(sides);
+    EXPECT_NEAR(low, -50, 2);
+    EXPECT_NEAR(high, 50, 2);
+    EXPECT_NEAR(sides[0], -40, 2) << "begins at the first camera";
+    EXPECT_NEAR(sides[39], sides[0], 10) << "and ends where it began";
+    for (size_t i = 1; i < sides.size(); ++i) EXPECT_LT(std::abs(sides[i] - sides[i - 1]), 10) << i;
+}
+
+TEST(Orbit, OneSideIsSwungAboutBothWaysAcrossTheSeamOfAngles) {
+    const glm::dvec3 center(0.5, 0.25, 3);
+    const auto recorded = cameras_around(center, std::array{0.0});
+    for (const RigidTransform& pose : tools::orbit_poses(recorded, center, 12))
+        EXPECT_LT(std::abs(side_of(pose, center)), 12) << "10, and what one camera cannot tell of up";
+    // The first of these is at -170 of the angles that are counted from it.
+    const auto behind = cameras_around(center, std::array{0.0, 60.0, 120.0, 170.0, 190.0});
+    for (const RigidTransform& pose : tools::orbit_poses(behind, center, 24)) {
+        const double side = side_of(pose, center);
+        EXPECT_TRUE(side > -11 || side < -159) << side;
+    }
 }
 
 TEST(Orbit, OneCameraIsEnoughAndContradictingOnesAreToldOff) {
