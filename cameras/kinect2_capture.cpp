@@ -38,6 +38,13 @@ double Kinect2Capture::now_s() const {
     return origin_ ? std::chrono::duration<double>(Clock::now() - *origin_).count() : 0;
 }
 
+sensor::LiveCounts Kinect2Capture::counts() const {
+    sensor::LiveCounts counts = newest_.counts();
+    const sensor::kinect2::StreamStatistics statistics = device_.statistics();
+    counts.lost = statistics.infrared.lost_frames + statistics.unpaired_infrared + statistics.dropped_frames;
+    return counts;
+}
+
 void Kinect2Capture::run() {
     std::exception_ptr failure;
     try {

@@ -51,7 +51,9 @@ class Kinect2Capture : public sensor::LiveCapture {
     /// frame.
     double now_s() const override;
 
-    sensor::LiveCounts counts() const override { return newest_.counts(); }
+    /// Lost is an infrared frame of which a packet did not arrive, that has no picture, or that the tap was too slow
+    /// for.
+    sensor::LiveCounts counts() const override;
 
   private:
     using Clock = std::chrono::steady_clock;

@@ -13,6 +13,8 @@ struct LiveCounts {
     uint64_t delivered = 0;  ///< by next()
     uint64_t dropped = 0;    ///< newer frames came before these were asked for; next() yields them as skipped
     uint64_t damaged = 0;
+    /// Sent by the camera and never captured, where its driver can tell: a part did not arrive, or came too late.
+    uint64_t lost = 0;
 };
 
 /// What takes frames by its own clock, whether they are asked for or not, as its user steers it. All functions may be

@@ -176,6 +176,31 @@ TEST_F(Kinect2Commands, AnUnpluggedKinectLeavesWhatWasFused) {
     EXPECT_GT(*sensor::RecordingFile(file_).sequence(sensor::SequenceRole::kMain).info.frames, 1u);
 }
 
+TEST_F(Kinect2Commands, WhatIsLostOnTheWayIsCounted) {
+    const Program::Environment losing = with_kinect({{"LOSE_EVERY", "4"}});
+    const Outcome outcome = patina({"live", "kinect2", "--seconds", "3", "--texture", "off", "--no-map", "--out", out(),
+                                    "--record", file_, "--quiet"},
+                                   losing);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json live = summary_of(out())["live"];
+    const auto captured = live["captured"].get<uint32_t>(), lost = live["lost"].get<uint32_t>();
+    EXPECT_GT(lost, 1u);
+    EXPECT_GT(captured, lost);
+    EXPECT_LE(captured, 4 * lost + 4) << "every fourth was lost, at least";
+    // The device numbers what it sends: of those from the first to the last that came, what is missing was lost.
+    sensor::RecordingFile recording(file_);
+    const auto number_of = [&](uint32_t index) {
+        return std::get<sensor::RecordedFrame>(recording.read(sensor::SequenceRole::kMain, index))
+            .payloads.at(0)
+            .number;
+    };
+    EXPECT_LE(number_of(captured - 1) - number_of(0) + 1, captured + lost);
+    EXPECT_GE(number_of(captured - 1) - number_of(0) + 4, captured + lost);
+    const Outcome recorded = patina({"record", "kinect2", "--seconds", "1", "--out", beside("other.patina")}, losing);
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+    EXPECT_THAT(recorded.out, HasSubstr("frames were lost on the way from the camera"));
+}
+
 TEST_F(Kinect2Commands, TwoPassesGoIntoOneFileTheSecondAtALowExposure) {
     Program program({"record", "kinect2", "--lighting", "kinect2", "--low-exposure", "2", "--out", file_},
                     with_kinect());

@@ -7,6 +7,7 @@
 namespace patina::live_summary_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -29,6 +30,11 @@ TEST(LiveSummary, TellsWhatARecordingBesideItHas) {
     live.dropped = 30;
     live.seconds = 3;
     EXPECT_FALSE(live_json(live).contains("recordings"));
+    EXPECT_EQ(live_json(live)["lost"], 0);
+    EXPECT_THAT(live_table(live), Not(HasSubstr("lost on the way")));
+    live.lost = 123;
+    EXPECT_EQ(live_json(live)["lost"], 123);
+    EXPECT_THAT(live_table(live), AllOf(HasSubstr("lost on the way"), HasSubstr("123")));
     EXPECT_THAT(live_table(live), Not(HasSubstr("Recorded to")));
     live.recordings = {{"a<b.patina", 90, 2, 1000, 500}, {"c.patina", 9, 0, 100, 50}};
     EXPECT_EQ(live_json(live)["recordings"][0]["dropped"], 2);

@@ -119,8 +119,10 @@ std::vector<std::string> LiveRun::shortfalls() const {
 std::string LiveRun::detail() const {
     const sensor::LiveCounts counts = input_.capture->counts();
     const LatencySummary pose = latest(to_pose_s_), picture = latest(to_picture_s_);
-    return fmt::format("{} captured, {} dropped  pose {:.0f}/{:.0f} ms, picture {:.0f}/{:.0f} ms (median/95 %)",
-                       counts.captured, counts.dropped, pose.median_ms, pose.p95_ms, picture.median_ms, picture.p95_ms);
+    const std::string lost = counts.lost > 0 ? fmt::format(", {} lost", counts.lost) : "";
+    return fmt::format("{} captured, {} dropped{}  pose {:.0f}/{:.0f} ms, picture {:.0f}/{:.0f} ms (median/95 %)",
+                       counts.captured, counts.dropped, lost, pose.median_ms, pose.p95_ms, picture.median_ms,
+                       picture.p95_ms);
 }
 
 std::vector<std::pair<std::string, std::string>> LiveRun::figures() const {
@@ -129,6 +131,7 @@ std::vector<std::pair<std::string, std::string>> LiveRun::figures() const {
     std::vector<std::pair<std::string, std::string>> lines{
         {"captured", std::to_string(counts.captured)},
         {"dropped", std::to_string(counts.dropped)},
+        {"lost on the way", std::to_string(counts.lost)},
         {"pose after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", pose.median_ms, pose.p95_ms)},
         {"picture after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", picture.median_ms, picture.p95_ms)}};
     if (const auto file = recording_->file()) {
@@ -143,6 +146,7 @@ void LiveRun::add_to(RunSummary& summary) const {
     live.captured = counts_.captured;
     live.dropped = counts_.dropped;
     live.damaged = counts_.damaged;
+    live.lost = counts_.lost;
     live.seconds = last_s_ - first_s_.value_or(last_s_);
     live.pose = summarised(to_pose_s_);
     live.picture = summarised(to_picture_s_);

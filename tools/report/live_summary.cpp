@@ -41,6 +41,7 @@ Json live_json(const LiveSummary& live) {
     Json json{{"captured", live.captured},
               {"dropped", live.dropped},
               {"damaged", live.damaged},
+              {"lost", live.lost},
               {"seconds", live.seconds},
               {"exposure_to_pose", latency_json(live.pose)},
               {"exposure_to_picture", latency_json(live.picture)}};
@@ -57,6 +58,7 @@ Json live_json(const LiveSummary& live) {
 std::string live_table(const LiveSummary& live) {
     std::string facts = report_fact("Frames captured", grouped(live.captured));
     facts += report_fact("Frames dropped, newer ones were there", grouped(live.dropped));
+    if (live.lost > 0) facts += report_fact("Frames lost on the way from the camera", grouped(live.lost));
     facts +=
         report_fact("Frames a second",
                     fmt::format("{:.1f}", live.seconds > 0 ? static_cast<double>(live.captured) / live.seconds : 0.0));

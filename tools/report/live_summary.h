@@ -29,6 +29,7 @@ struct BesideSummary {
 /// How a live run kept pace with its source: captured is used, skipped and dropped, and those that came after the end.
 struct LiveSummary {
     uint64_t captured = 0, dropped = 0, damaged = 0;
+    uint64_t lost = 0;                        ///< not among the captured ones (sensor/live/live_source.h)
     double seconds = 0;                       ///< from the first frame to the last
     LatencySummary pose;                      ///< of the frames that were fused
     LatencySummary picture;                   ///< of those that the model was rendered for
