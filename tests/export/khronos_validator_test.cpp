@@ -8,6 +8,7 @@
 #include "export/write_glb.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/test_meshes.h"
+#include "tests/export/textured_scene.h"
 
 namespace patina::khronos_validator_test {
 namespace {
@@ -103,6 +104,27 @@ TEST_F(KhronosValidator, AcceptsSegmentsMaterialsAndLights) {
         for (int piece = 0; piece < 3; ++piece) writer.add(mesh, &reflectance);
         writer.finish(info);
         expect_valid_file();
+    }
+}
+
+TEST_F(KhronosValidator, AcceptsPagesNormalMapsAndASun) {
+    TextureLayout layout = test::three_quads();  // the third is a metal
+    layout.pieces[0].tangents.resize(layout.pieces[0].place_px.size(), glm::vec4(0, 1, 0, -1));
+    std::vector<TexturePage> pages = test::painted(layout, glm::vec3(0.2f, 1.2f, 0.1f));
+    for (const bool detailed : {false, true}) {
+        if (detailed)
+            for (TexturePage& page : pages)
+                page.detail = Image<glm::vec3>({page.kd.extent().width / 2, page.kd.extent().height / 2},
+                                               glm::vec3(0.28f, -0.6f, 0.75f));
+        GlbWriter writer(file_);
+        writer.add_textured(layout, pages);
+        writer.finish({.version = "0.0",
+                       .lights = {{{1, 2, 3}, {4, 5, 6}, 0.1}},
+                       .suns = {{{0, 0, 10'000}, {4e8, 5e8, 6e8}, 46}},
+                       .candela_per_intensity = 42});
+        expect_valid_file();
+        EXPECT_EQ(test::bytes_of(file_).find("\"normalTexture\"") != std::string::npos, detailed);
+        EXPECT_NE(test::bytes_of(file_).find("\"suns\""), std::string::npos);
     }
 }
 
