@@ -134,6 +134,28 @@ TEST(Kinect2Infrared, DuplicatedSubImageInPlaceOfAnotherCostsItsFrame) {
     EXPECT_THAT(received.frames, ElementsAre(0, 2, 3));
 }
 
+TEST(Kinect2Infrared, ASubImageThatComesTwiceIsTheSame) {
+    InfraredSignal signal(patterned_frame, {7, 4321}, {});
+    InfraredAssembler assembler;
+    std::vector<std::vector<uint8_t>> packets;  // of sub-image 3, which comes once more when it has ended
+    uint32_t before = 0;
+    bool done = false;
+    while (!done) {
+        const SentPacket packet = signal.next_interval();
+        ASSERT_EQ(signal.place().frame, 0u) << "the frame did not become complete";
+        if (signal.place().sub_image == 4 && before == 3) {
+            for (const auto& again : packets) EXPECT_FALSE(assembler.add(true, again));
+        }
+        before = signal.place().sub_image;
+        if (before == 3) packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
+        done = assembler.add(packet.complete, packet.bytes);
+    }
+    InfraredFrame frame;
+    assembler.take(frame);
+    EXPECT_EQ(frame.bytes, *patterned_frame(0));
+    EXPECT_EQ(assembler.statistics().frames, 1u);
+}
+
 TEST(Kinect2Infrared, SubImagesInAnotherOrderArePutInPlace) {
     // Sent as 1, 0, 2, ..., so that the bytes sent first are those of sub-image 1.
     InfraredSignal::Images swapped = [](uint32_t n) {
