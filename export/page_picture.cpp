@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -73,8 +74,9 @@ void fill_gaps(Level& finest) {
 
 }  // namespace
 
-Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<TextureBox>& boxes, uint32_t number,
-                              const std::function<float(uint32_t)>& factor_of) {
+PagePicture page_picture(const TexturePage& page, const std::vector<TextureBox>& boxes, uint32_t number,
+                         const std::function<float(uint32_t)>& factor_of) {
+    uint64_t clamped = 0;
     Level colors{page.kd.extent(), std::vector<glm::vec4>(page.kd.extent().area(), glm::vec4(0))};
     for (const TextureBox& box : boxes) {
         if (box.page != number) continue;
@@ -82,7 +84,9 @@ Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<Texture
         for (uint32_t y = box.low.y; y < box.high.y; ++y) {
             for (uint32_t x = box.low.x; x < box.high.x; ++x) {
                 if (page.states.at(x, y) == TexelState::kEmpty) continue;
-                colors.colors[size_t{y} * colors.extent.width + x] = glm::vec4(factor * page.kd.at(x, y), 1);
+                const glm::vec3 color = factor * page.kd.at(x, y);
+                clamped += glm::any(glm::greaterThan(color, glm::vec3(1)));
+                colors.colors[size_t{y} * colors.extent.width + x] = glm::vec4(color, 1);
             }
         }
     }
@@ -90,7 +94,7 @@ Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<Texture
     const SrgbTable table;
     Image<SrgbPixel> picture(colors.extent);
     for (size_t i = 0; i < colors.colors.size(); ++i) picture.pixels()[i] = table.of(glm::vec3(colors.colors[i]));
-    return picture;
+    return {std::move(picture), clamped};
 }
 
 Image<SrgbPixel> detail_picture(const Image<glm::vec3>& detail) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,10 +11,15 @@
 
 namespace patina {
 
+struct PagePicture {
+    Image<SrgbPixel> picture;
+    uint64_t clamped = 0;  ///< texels with a channel above 1
+};
+
 /// A page as an 8-bit picture. `factor_of`: what a segment's base colour is over its diffuse albedo. Texels without
 /// surface have the colours around them.
-Image<SrgbPixel> page_picture(const TexturePage& page, const std::vector<TextureBox>& boxes, uint32_t number,
-                              const std::function<float(uint32_t label)>& factor_of);
+PagePicture page_picture(const TexturePage& page, const std::vector<TextureBox>& boxes, uint32_t number,
+                         const std::function<float(uint32_t label)>& factor_of);
 
 /// Unit normals as glTF's normalTexture has them: n / 2 + 1/2 of 255. Where there is none, the mesh's own.
 Image<SrgbPixel> detail_picture(const Image<glm::vec3>& detail);

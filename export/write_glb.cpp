@@ -337,7 +337,8 @@ void GlbWriter::State::add_page(const TextureLayout& layout, const TexturePage& 
         const auto segment = segments.find(label);
         return segment == segments.end() ? 1.0f : segment->second.base_over_kd;
     };
-    const EncodedPicture picture = encoded(page_picture(page, layout.boxes, number, factor_of));
+    const PagePicture shown = page_picture(page, layout.boxes, number, factor_of);
+    const EncodedPicture picture = encoded(shown.picture);
     const auto seen = static_cast<uint64_t>(std::ranges::count(page.states.pixels(), TexelState::kSeen));
     const auto filled = static_cast<uint64_t>(std::ranges::count(page.states.pixels(), TexelState::kFilled));
     tinygltf::Image image;
@@ -353,6 +354,7 @@ void GlbWriter::State::add_page(const TextureLayout& layout, const TexturePage& 
     model.textures.push_back(std::move(texture));
     summary.seen_texels += seen;
     summary.filled_texels += filled;
+    summary.clamped_texels += shown.clamped;
 }
 
 void GlbWriter::State::add_detail(const Image<glm::vec3>& detail, uint32_t number) {

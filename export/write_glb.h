@@ -53,10 +53,11 @@ struct GlbSummary {
     uint64_t clamped_colors = 0;        ///< vertices with a channel outside 0..1: of the base colour, or of their own
     uint64_t unknown_albedo = 0;        ///< vertices whose kd is their fused colour, for want of anything better
     uint64_t texture_pages = 0;
-    uint64_t detail_pages = 0;   ///< normal maps: as many, or none
-    double texel_m = 0;          ///< edge of a texel on the surface; 0 without a texture
-    uint64_t seen_texels = 0;    ///< that a picture showed
-    uint64_t filled_texels = 0;  ///< that none showed: what the vertices around know
+    uint64_t detail_pages = 0;    ///< normal maps: as many, or none
+    double texel_m = 0;           ///< edge of a texel on the surface; 0 without a texture
+    uint64_t seen_texels = 0;     ///< that a picture showed
+    uint64_t filled_texels = 0;   ///< that none showed: what the vertices around know
+    uint64_t clamped_texels = 0;  ///< with a channel above 1
 };
 
 /// Writes a binary glTF 2.0: a root node that turns and moves the world upright, below it the surface and the lights.

@@ -167,17 +167,28 @@ TEST(PagePicture, WhatShowsNoSurfaceHasTheColoursAroundIt) {
     page.kd.at(15, 1) = glm::vec3(0.6f);
     page.states.at(0, 1) = TexelState::kSeen;
     page.states.at(15, 1) = TexelState::kFilled;
-    const Image<SrgbPixel> picture = page_picture(page, {{0, {0, 0}, {16, 3}, 0}}, 0, [](uint32_t) { return 1.0f; });
+    const Image<SrgbPixel> picture =
+        page_picture(page, {{0, {0, 0}, {16, 3}, 0}}, 0, [](uint32_t) { return 1.0f; }).picture;
     for (const uint32_t x : {0u, 1u, 5u}) EXPECT_NEAR(linear_color(picture.at(x, 0)).r, 0.2f, 0.003f) << x;
     for (const uint32_t x : {9u, 13u, 15u}) EXPECT_NEAR(linear_color(picture.at(x, 2)).r, 0.6f, 0.004f) << x;
 }
 
-TEST(PagePicture, ASegmentsFactorStaysInItsBox) {
+TEST(PagePicture, ASegmentsFactorStaysInItsBoxAndWhatItClampsIsCounted) {
     TexturePage page{Image<glm::vec3>({4, 1}, glm::vec3(0.2f)), Image<TexelState>({4, 1}, TexelState::kSeen)};
-    const Image<SrgbPixel> picture = page_picture(page, {{0, {0, 0}, {2, 1}, 1}, {0, {2, 0}, {4, 1}, 2}}, 0,
-                                                  [](uint32_t label) { return label == 1 ? 1.0f : 2.0f; });
-    EXPECT_NEAR(linear_color(picture.at(1, 0)).r, 0.2f, 0.003f);
-    EXPECT_NEAR(linear_color(picture.at(2, 0)).r, 0.4f, 0.004f);
+    page.kd.at(2, 0) = glm::vec3(0.2f, 0.6f, 0.2f);
+    const PagePicture page_shown = page_picture(page, {{0, {0, 0}, {2, 1}, 1}, {0, {2, 0}, {4, 1}, 2}}, 0,
+                                                [](uint32_t label) { return label == 1 ? 1.0f : 2.0f; });
+    EXPECT_NEAR(linear_color(page_shown.picture.at(1, 0)).r, 0.2f, 0.003f);
+    EXPECT_NEAR(linear_color(page_shown.picture.at(2, 0)).r, 0.4f, 0.004f);
+    EXPECT_EQ(page_shown.picture.at(2, 0).g, 255);
+    EXPECT_EQ(page_shown.clamped, 1u);
+}
+
+TEST(GlbTexture, ClampedTexelsAreCounted) {
+    const TextureLayout layout = three_quads();
+    EXPECT_EQ(written_and_read(layout, painted(layout, glm::vec3(0.2f))).summary.clamped_texels, 0u);
+    EXPECT_EQ(written_and_read(layout, painted(layout, glm::vec3(0.2f, 1.2f, 0.2f))).summary.clamped_texels, 128u)
+        << "two pages of 64";
 }
 
 }  // namespace

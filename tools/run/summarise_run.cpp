@@ -140,6 +140,7 @@ RunSummary summarise(const RunOptions& options, SessionCore& session, const GlbS
                       {"normal maps", scene.detail_pages},
                       {"texels that a picture showed", scene.seen_texels},
                       {"texels that no picture showed", scene.filled_texels},
+                      {"texels whose base colour was clamped", scene.clamped_texels},
                       {"blocks removed without surface", counters.map.deleted_blocks}};
     add_stream_totals(summary, pipeline);
     if (pipeline.segmentation()) add_segment_totals(summary, counters);
