@@ -1,9 +1,7 @@
 #include "export/merge_patches.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -17,18 +15,18 @@ namespace {
 /// Small patches by their first vertex, each with how many edges lead to which other patch.
 using SmallPatches = std::map<uint32_t, std::map<uint32_t, uint32_t>>;
 
-SmallPatches small_patches(const Mesh& mesh, std::span<const uint32_t> part, const PatchMerging& merging) {
+SmallPatches small_patches(const Mesh& mesh, std::span<const uint32_t> part, uint32_t least, bool in_pieces) {
     std::vector<uint32_t> vertices(part.size());
     for (const uint32_t of : part) ++vertices[of];
     const std::vector<bool> cut_off =
-        merging.in_pieces ? cut_off_parts(mesh.positions_m, part) : std::vector<bool>(part.size());
+        in_pieces ? cut_off_parts(mesh.positions_m, part) : std::vector<bool>(part.size());
     SmallPatches small;
     for (const auto& triangle : mesh.triangles) {
         for (size_t corner = 0; corner < 3; ++corner) {
             const uint32_t a = part[triangle[corner]], b = part[triangle[(corner + 1) % 3]];
             if (a == b) continue;
             for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
-                if (vertices[from] < merging.least_vertices && !cut_off[from]) ++small[from][to];
+                if (vertices[from] < least && !cut_off[from]) ++small[from][to];
         }
     }
     return small;
@@ -46,13 +44,13 @@ uint32_t neighbour_of(const std::map<uint32_t, uint32_t>& edges, const SmallPatc
 
 }  // namespace
 
-std::vector<uint32_t> merged_patches(const Mesh& mesh, std::vector<uint32_t> labels, const PatchMerging& merging) {
-    if (labels.empty() || merging.least_vertices == 0) return labels;
+std::vector<uint32_t> merged_patches(const Mesh& mesh, std::vector<uint32_t> labels, uint32_t least, bool in_pieces) {
+    if (labels.empty() || least == 0) return labels;
     ConnectedVertices connected(mesh.positions_m, mesh.triangles, labels);
     std::vector<uint32_t> part(labels.size());
     for (uint32_t i = 0; i < part.size(); ++i) part[i] = connected.part_of(i);
     std::vector<uint32_t> label_of_patch = labels;  // by a patch's first vertex
-    SmallPatches waiting = small_patches(mesh, part, merging);
+    SmallPatches waiting = small_patches(mesh, part, least, in_pieces);
     // Round by round, from what is around them inwards.
     for (bool any = true; any;) {
         std::map<uint32_t, uint32_t> merged;

@@ -138,7 +138,7 @@ TidyPiece tidied(const Mesh& mesh, const MeshReflectance& reflectance, const Tid
     leave_out_stray_parts(piece, options);
     close_holes_of(piece, options);
     piece.reflectance.labels = merged_patches(piece.mesh, std::move(piece.reflectance.labels),
-                                              {options.least_patch_vertices, options.in_pieces});
+                                              options.least_patch_vertices, options.in_pieces);
     if (options.error_m <= 0) return piece;
     TidyPiece fewer =
         collapsed(piece, {.error_m = options.error_m, .white_m = options.white_m, .locks_border = options.in_pieces});

@@ -13,7 +13,7 @@ namespace patina::merge_patches_test {
 namespace {
 
 constexpr uint32_t kWidth = 40, kHeight = 30;
-constexpr PatchMerging kWhole{.least_vertices = 32, .in_pieces = false};
+constexpr uint32_t kLeast = 32;
 
 /// A sheet of label 1 left of column 20, and of label 2 from there on.
 struct Sheet {
@@ -32,8 +32,8 @@ struct Sheet {
 
     uint32_t at(const std::vector<uint32_t>& all, uint32_t x, uint32_t y) const { return all[y * kWidth + x]; }
 
-    std::vector<uint32_t> merged(const PatchMerging& merging = kWhole) const {
-        return merged_patches(mesh, labels, merging);
+    std::vector<uint32_t> merged(uint32_t least = kLeast, bool in_pieces = false) const {
+        return merged_patches(mesh, labels, least, in_pieces);
     }
 };
 
@@ -74,6 +74,11 @@ TEST(MergePatches, NoSegmentIsNoNeighbourAndTakesOne) {
     std::ranges::fill(sheet.labels, 0);
     sheet.put(3, 5, 5, 3, 3);
     EXPECT_EQ(sheet.merged(), sheet.labels) << "of surface without a label it would lose its own";
+    sheet.put(2, 20, 0, 20, kHeight);
+    sheet.put(3, 16, 10, 5, 3);  // one column in label 2, four in none
+    Sheet expected = sheet;
+    expected.put(2, 16, 10, 5, 3);
+    EXPECT_EQ(sheet.merged(), expected.labels);
     Sheet hole;
     hole.put(0, 5, 5, 3, 3);
     EXPECT_EQ(hole.merged(), Sheet().labels);
@@ -84,36 +89,14 @@ TEST(MergePatches, WhatAPieceCutsOffMayGoOn) {
     sheet.put(3, 0, 5, 3, 3);
     for (uint32_t y = 0; y < kHeight; ++y) sheet.mesh.positions_m[y * kWidth].x = 0;
     EXPECT_EQ(sheet.at(sheet.merged(), 1, 6), 1u);
-    PatchMerging piece = kWhole;
-    piece.in_pieces = true;
-    EXPECT_EQ(sheet.merged(piece), sheet.labels);
-}
-
-TEST(MergePatches, VerticesOfOnePositionAreOne) {
-    Sheet sheet;
-    sheet.put(3, 5, 5, 4, 10);  // 40 vertices
-    // The same surface with corners of its own for each triangle: 40 positions still, though most patches are larger.
-    Mesh apart;
-    std::vector<uint32_t> labels;
-    for (const auto& triangle : sheet.mesh.triangles) {
-        const auto first = static_cast<uint32_t>(apart.positions_m.size());
-        for (const uint32_t vertex : triangle) {
-            apart.positions_m.push_back(sheet.mesh.positions_m[vertex]);
-            labels.push_back(sheet.labels[vertex]);
-        }
-        apart.triangles.push_back({first, first + 1, first + 2});
-    }
-    ConnectedVertices connected(apart.positions_m, apart.triangles, labels);
-    std::set<uint32_t> parts;
-    for (uint32_t i = 0; i < labels.size(); ++i) parts.insert(connected.part_of(i));
-    EXPECT_EQ(parts.size(), 3u);
+    EXPECT_EQ(sheet.merged(kLeast, true), sheet.labels);
 }
 
 TEST(MergePatches, NothingIsMergedWhereNoneIsAskedForOrThereAreNoLabels) {
     Sheet sheet;
     sheet.put(3, 5, 5, 3, 3);
-    EXPECT_EQ(sheet.merged({.least_vertices = 0, .in_pieces = false}), sheet.labels);
-    EXPECT_TRUE(merged_patches(sheet.mesh, {}, kWhole).empty());
+    EXPECT_EQ(sheet.merged(0), sheet.labels);
+    EXPECT_TRUE(merged_patches(sheet.mesh, {}, kLeast, false).empty());
 }
 
 TEST(MergePatches, ATidiedSurfaceHasNoSpecks) {
@@ -129,6 +112,26 @@ TEST(MergePatches, ATidiedSurfaceHasNoSpecks) {
     };
     EXPECT_EQ(labels_of({}), (std::set<uint32_t>{1, 2}));
     EXPECT_EQ(labels_of({.least_patch_vertices = 0}), (std::set<uint32_t>{1, 2, 3}));
+}
+
+TEST(ConnectedVertices, ThoseOfOnePositionAndLabelHangTogether) {
+    Sheet sheet;
+    sheet.put(3, 5, 5, 4, 10);
+    // The same surface, each triangle with corners of its own.
+    Mesh apart;
+    std::vector<uint32_t> labels;
+    for (const auto& triangle : sheet.mesh.triangles) {
+        const auto first = static_cast<uint32_t>(apart.positions_m.size());
+        for (const uint32_t vertex : triangle) {
+            apart.positions_m.push_back(sheet.mesh.positions_m[vertex]);
+            labels.push_back(sheet.labels[vertex]);
+        }
+        apart.triangles.push_back({first, first + 1, first + 2});
+    }
+    ConnectedVertices connected(apart.positions_m, apart.triangles, labels);
+    std::set<uint32_t> parts;
+    for (uint32_t i = 0; i < labels.size(); ++i) parts.insert(connected.part_of(i));
+    EXPECT_EQ(parts.size(), 3u);
 }
 
 }  // namespace

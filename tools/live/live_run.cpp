@@ -131,9 +131,9 @@ std::vector<std::pair<std::string, std::string>> LiveRun::figures() const {
     std::vector<std::pair<std::string, std::string>> lines{
         {"captured", std::to_string(counts.captured)},
         {"dropped", std::to_string(counts.dropped)},
-        {"lost on the way", std::to_string(counts.lost)},
         {"pose after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", pose.median_ms, pose.p95_ms)},
         {"picture after", fmt::format("{:.0f} ms, 95 %: {:.0f} ms", picture.median_ms, picture.p95_ms)}};
+    if (counts.lost > 0) lines.emplace_back("lost on the way", std::to_string(counts.lost));
     if (const auto file = recording_->file()) {
         const std::string problem = recording_->problem();
         lines.emplace_back("recording", problem.empty() ? file->string() : problem);

@@ -56,8 +56,7 @@ class Recording {
         }
         capture.stop();
         if (const uint64_t lost = capture.counts().lost; lost > 0)
-            advice_.push_back(
-                fmt::format("{} frames were lost on the way from the camera: a part of them did not arrive", lost));
+            advice_.push_back(fmt::format("{} frames were lost on the way from the camera", lost));
     }
 
     /// The same of a camera whose exposure cannot be set: what it shows of itself.

@@ -31,9 +31,9 @@ RigidTransform look_at(glm::dvec3 from_m, glm::dvec3 at_m, glm::dvec3 up) {
 }
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kFacingCosine = 0.7;                    // of a camera that looks at the centre: within 45 degrees
-constexpr double kLeastGap = std::numbers::pi / 2;       // between such cameras: what lies there was not seen
-constexpr double kBeyond = 10 * std::numbers::pi / 180;  // the outermost of them, it is still much the same
+constexpr double kFacingCosine = 0.7;                    // a camera within 45 degrees of the centre looks at it
+constexpr double kLeastGap = std::numbers::pi / 2;       // a narrower one between such cameras counts as seen
+constexpr double kBeyond = 10 * std::numbers::pi / 180;  // so far past the outermost of them things look the same
 
 /// From which sides a centre was seen: angles from `middle - half` to `middle + half`.
 struct SeenSides {
@@ -84,18 +84,15 @@ glm::dvec3 median_point(std::span<const glm::vec3> points) {
 
 std::vector<RigidTransform> orbit_poses(std::span<const RigidTransform> recorded, glm::dvec3 center_m, uint32_t count) {
     const glm::dvec3 up = up_of(recorded);
+    const glm::dvec3 first = position_of(recorded.front()) - center_m, level = first - glm::dot(first, up) * up;
+    const glm::dvec3 ahead = glm::length(level) > 1e-6 ? glm::normalize(level) : across(up);
+    const glm::dvec3 aside = glm::cross(up, ahead);
     std::vector<double> radii, heights, sides;
     for (const RigidTransform& pose : recorded) {
         const glm::dvec3 offset = position_of(pose) - center_m;
         heights.push_back(glm::dot(offset, up));
         radii.push_back(glm::length(offset - heights.back() * up));
-    }
-    const glm::dvec3 first = position_of(recorded.front()) - center_m, level = first - glm::dot(first, up) * up;
-    const glm::dvec3 ahead = glm::length(level) > 1e-6 ? glm::normalize(level) : across(up);
-    const glm::dvec3 aside = glm::cross(up, ahead);
-    for (const RigidTransform& pose : recorded) {
-        const glm::dvec3 offset = position_of(pose) - center_m;
-        if (glm::dot(glm::dvec3(pose[2]), glm::normalize(-offset)) > kFacingCosine)
+        if (glm::dot(glm::dvec3(pose[2]), -offset) > kFacingCosine * glm::length(offset))
             sides.push_back(std::atan2(glm::dot(offset, aside), glm::dot(offset, ahead)));
     }
     const SeenSides seen = seen_sides(std::move(sides));
