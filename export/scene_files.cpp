@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/version.h"
+#include "export/atlas/level_seams.h"
 #include "export/drawable_mesh.h"
 #include "export/fill_unseen.h"
 #include "export/materials.h"
@@ -160,7 +161,9 @@ WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene
         without_area = surface.triangles_held();
         const TextureLayout layout = lay_out_texture(std::move(surface.held), *options.texture);
         for (const TexturedSurface& piece : layout.pieces) without_area -= piece.mesh.triangles.size();
-        writer.add_textured(layout, bake(layout));
+        std::vector<TexturePage> pages = bake(layout);
+        level_seams(layout, pages);
+        writer.add_textured(layout, pages);
     } else {
         for (TidyPiece& piece : surface.held) {
             writer.add(piece.mesh, &piece.reflectance, piece.filled);

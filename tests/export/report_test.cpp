@@ -132,6 +132,13 @@ TEST(Report, TheVerdictComesBeforeEverythingElse) {
     EXPECT_LT(html.find("<details>"), html.find("GPU time per pass"));
 }
 
+TEST(Report, LinesDoNotBreakWithinOptions) {
+    RunSummary summary = test::full_summary();
+    summary.shortfalls = {"no lamp is known: give <lights> (--lights FILE, --lighting self)"};
+    EXPECT_THAT(report_html(summary, {}),
+                HasSubstr("&lt;lights&gt; (<code>--lights</code> FILE, <code>--lighting</code> self)"));
+}
+
 TEST(Report, BarsAreInProportion) {
     // The longest median, 24.125 ms, takes half the width; fusion.integrate's 4.75 ms the corresponding part.
     EXPECT_THAT(report(), HasSubstr("width='50.00' height='6'"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <regex>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,7 @@ constexpr std::string_view kStyle = R"css(
 .verdict li { padding: .15rem 0 .15rem 1.7rem; position: relative; }
 .verdict span { display: inline-block; }
 .verdict span::first-letter { text-transform: uppercase; }
+.verdict code { font: inherit; white-space: nowrap; }
 .verdict li::before { position: absolute; left: .2rem; font-weight: 700; }
 .verdict .good::before { content: "\2713"; color: var(--bar); }
 .verdict .unknown::before { content: "?"; color: var(--warn); }
@@ -57,9 +59,11 @@ std::string folded(std::string_view title, const std::string& html) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_escaped(title), html);
 }
 
-/// One point of the verdict.
+/// One point of the verdict. Lines do not break at the dashes of the program's options.
 std::string verdict_item(const char* kind, const std::string& sentence) {
-    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, html_escaped(sentence));
+    static const std::regex option("--[a-z-]+");
+    const std::string html = std::regex_replace(html_escaped(sentence), option, "<code>$&</code>");
+    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, html);
 }
 
 std::string verdict_list(const RunSummary& summary) {

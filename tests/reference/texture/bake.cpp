@@ -72,7 +72,7 @@ glm::dvec4 blend_picture(const BakePicture& picture, const glm::dvec3& position_
     if (border <= 1) return none;
     const double range_m = glm::distance(eye_m, position_m);
     const double cosine = glm::dot(glm::normalize(normal), eye_m - position_m) / range_m;
-    if (cosine < 0.2) return none;
+    if (cosine < 0.1) return none;
 
     const glm::dvec2 scale(static_cast<double>(picture.position_m.extent().width) / camera.extent.width,
                            static_cast<double>(picture.position_m.extent().height) / camera.extent.height);

@@ -92,7 +92,7 @@ SaidToEye blend_diffuse(const BakePicture& picture, const DiffusePicture& taken,
     const double border = std::min({at.x, at.y, camera.extent.width - 1.0 - at.x, camera.extent.height - 1.0 - at.y});
     const double range_m = glm::distance(camera_m, position_m), away_m = glm::distance(eye_m, position_m);
     const double cosine = glm::dot(normal, camera_m - position_m) / range_m;
-    if (border <= 1 || cosine < 0.2) return {};
+    if (border <= 1 || cosine < 0.1) return {};
     const Extent2D cast = picture.position_m.extent();
     const double scale_x = static_cast<double>(cast.width) / camera.extent.width;
     const double scale_y = static_cast<double>(cast.height) / camera.extent.height;
@@ -119,7 +119,7 @@ SaidToEye blend_diffuse(const BakePicture& picture, const DiffusePicture& taken,
     if (worth == 0) return {};
     const glm::dvec3 to_eye = (eye_m - position_m) / away_m, to_camera = (camera_m - position_m) / range_m;
     const double sight =
-        std::min(cosine / (range_m * range_m), std::max(glm::dot(normal, to_eye), 0.2) / (away_m * away_m));
+        std::min(cosine / (range_m * range_m), std::max(glm::dot(normal, to_eye), 0.1) / (away_m * away_m));
     const double apart = glm::distance(to_eye, to_camera) / kEyesApart_rad;
     if (worth == 0.25 && apart > 2) return {};
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);

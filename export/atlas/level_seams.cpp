@@ -1,0 +1,184 @@
+#include "export/atlas/level_seams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "export/atlas/find_seams.h"
+
+namespace patina {
+namespace {
+
+constexpr int kRounds = 3;             // each leaves a part of the jump, as texels lie on both sides of a place
+constexpr float kFilledTrust = 0.02f;  // of a texel that no picture shows
+constexpr float kAround = 0.25f;       // weight of what a level tells of the one below, in samples
+constexpr float kOnSeam = 0.1f;        // samples that reach a texel which lies on a seam
+
+glm::vec3 root_of(glm::vec3 albedo) { return glm::sqrt(glm::max(albedo, glm::vec3(0))); }
+
+/// The four texels around a place, and their shares.
+struct Corners {
+    std::array<glm::uvec2, 4> at;
+    std::array<float, 4> shares;
+};
+
+/// Of a place within an image by half a texel at least.
+Corners corners_of(glm::vec2 place_px, Extent2D extent) {
+    const glm::ivec2 last(static_cast<int>(extent.width) - 1, static_cast<int>(extent.height) - 1);
+    const glm::vec2 at = glm::clamp(place_px - 0.5f, glm::vec2(0), glm::vec2(last));
+    const glm::uvec2 low(at), high = glm::min(low + 1u, glm::uvec2(last));
+    const glm::vec2 t = at - glm::vec2(low), s = 1.0f - t;
+    return {{low, {high.x, low.y}, {low.x, high.y}, high}, {s.x * s.y, t.x * s.y, s.x * t.y, t.x * t.y}};
+}
+
+struct Seen {
+    glm::vec3 root{0};
+    float trust = 0;
+};
+
+Seen seen_at(const TexturePage& page, glm::vec2 place_px) {
+    const Corners corners = corners_of(place_px, page.kd.extent());
+    Seen seen;
+    for (size_t i = 0; i < 4; ++i) {
+        const glm::uvec2 at = corners.at[i];
+        const bool shown = page.states.at(at.x, at.y) == TexelState::kSeen;
+        seen.root += corners.shares[i] * root_of(page.kd.at(at.x, at.y));
+        seen.trust += corners.shares[i] * (shown ? 1.0f : kFilledTrust);
+    }
+    return seen;
+}
+
+/// What a side of a seam has to change by, at a place of its page.
+struct Change {
+    uint32_t box = 0;
+    glm::vec2 place_px{0};
+    glm::vec3 root{0};
+};
+
+void add_changes(const Seam& seam, const std::vector<TexturePage>& pages, std::vector<Change>& changes) {
+    const SeamSide& first = seam.sides.front();
+    const auto samples = static_cast<uint32_t>(std::ceil(2 * glm::distance(first.from_px, first.to_px))) + 1;
+    for (uint32_t k = 0; k < samples; ++k) {
+        const float along = (static_cast<float>(k) + 0.5f) / static_cast<float>(samples);
+        Seen mean;
+        const size_t begin = changes.size();
+        for (const SeamSide& side : seam.sides) {
+            const glm::vec2 place_px = glm::mix(side.from_px, side.to_px, along);
+            const Seen seen = seen_at(pages[side.page], place_px);
+            mean.root += seen.trust * seen.root;
+            mean.trust += seen.trust;
+            changes.push_back({side.box, place_px, seen.root});
+        }
+        mean.root /= mean.trust;
+        for (Change& change : std::span(changes).subspan(begin)) change.root = mean.root - change.root;
+    }
+}
+
+/// An image of a box, or one of 2, 4, 8 ... times as large pixels.
+struct Level {
+    Extent2D extent;
+    std::vector<glm::vec4> sums;  ///< rgb: of changes; a: of their weights
+
+    explicit Level(Extent2D of) : extent(of), sums(of.area(), glm::vec4(0)) {}
+    glm::vec4& at(glm::uvec2 pixel) { return sums[size_t{pixel.y} * extent.width + pixel.x]; }
+};
+
+Level halved(const Level& fine) {
+    Level coarse({(fine.extent.width + 1) / 2, (fine.extent.height + 1) / 2});
+    for (uint32_t y = 0; y < fine.extent.height; ++y)
+        for (uint32_t x = 0; x < fine.extent.width; ++x)
+            coarse.at({x / 2, y / 2}) += fine.sums[size_t{y} * fine.extent.width + x];
+    return coarse;
+}
+
+/// The mean change around each pixel of the finest level: of as near samples as there are (pull-push, Gortler et al.
+/// 1996, "The lumigraph").
+std::vector<glm::vec3> spread(const Level& finest) {
+    std::vector<Level> levels{finest};
+    while (levels.back().extent.area() > 1) levels.push_back(halved(levels.back()));
+    std::vector<glm::vec3> means{glm::vec3(levels.back().sums[0]) / levels.back().sums[0].a};
+    for (size_t i = levels.size() - 1; i-- > 0;) {
+        const Level& level = levels[i];
+        const Extent2D coarse = levels[i + 1].extent;
+        std::vector<glm::vec3> finer(level.sums.size());
+        for (uint32_t y = 0; y < level.extent.height; ++y) {
+            for (uint32_t x = 0; x < level.extent.width; ++x) {
+                const Corners corners = corners_of((glm::vec2(x, y) + 0.5f) * 0.5f, coarse);
+                glm::vec3 around(0);
+                for (size_t k = 0; k < 4; ++k)
+                    around += corners.shares[k] * means[size_t{corners.at[k].y} * coarse.width + corners.at[k].x];
+                const size_t at = size_t{y} * level.extent.width + x;
+                finer[at] = (glm::vec3(level.sums[at]) + kAround * around) / (level.sums[at].a + kAround);
+            }
+        }
+        means = std::move(finer);
+    }
+    return means;
+}
+
+/// From each pixel to the nearest one on a seam, in pixels; steps are straight or diagonal.
+std::vector<float> distances_px(const Level& finest) {
+    const auto width = static_cast<int>(finest.extent.width), height = static_cast<int>(finest.extent.height);
+    std::vector<float> away(finest.sums.size());
+    std::ranges::transform(finest.sums, away.begin(), [](const glm::vec4& sum) {
+        return sum.a >= kOnSeam ? 0 : std::numeric_limits<float>::max();
+    });
+    const auto look = [&](int x, int y, int step) {
+        float& nearest = away[static_cast<size_t>(y * width + x)];
+        const std::array<glm::ivec2, 4> before{glm::ivec2(-step, 0), {-step, -step}, {0, -step}, {step, -step}};
+        for (const glm::ivec2 by : before) {
+            const int u = x + by.x, v = y + by.y;
+            if (u < 0 || v < 0 || u >= width || v >= height) continue;
+            const float length = by.x != 0 && by.y != 0 ? std::numbers::sqrt2_v<float> : 1.0f;
+            nearest = std::min(nearest, away[static_cast<size_t>(v * width + u)] + length);
+        }
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) look(x, y, 1);
+    for (int y = height; y-- > 0;)
+        for (int x = width; x-- > 0;) look(x, y, -1);
+    return away;
+}
+
+void apply(std::span<const Change> changes, const TextureBox& box, float reach_px, TexturePage& page) {
+    Level finest({box.high.x - box.low.x, box.high.y - box.low.y});
+    for (const Change& change : changes) {
+        const Corners corners = corners_of(change.place_px - glm::vec2(box.low), finest.extent);
+        for (size_t i = 0; i < 4; ++i) finest.at(corners.at[i]) += corners.shares[i] * glm::vec4(change.root, 1);
+    }
+    const std::vector<glm::vec3> means = spread(finest);
+    const std::vector<float> away_px = distances_px(finest);
+    for (size_t i = 0; i < means.size(); ++i) {
+        const glm::uvec2 at = box.low + glm::uvec2(i % finest.extent.width, i / finest.extent.width);
+        if (away_px[i] >= reach_px || page.states.at(at.x, at.y) == TexelState::kEmpty) continue;
+        glm::vec3& kd = page.kd.at(at.x, at.y);
+        const glm::vec3 root = root_of(kd) + glm::smoothstep(reach_px, 0.0f, away_px[i]) * means[i];
+        const glm::vec3 within = glm::clamp(root, 0.0f, 1.0f);
+        kd = within * within;
+    }
+}
+
+}  // namespace
+
+void level_seams(const TextureLayout& layout, std::vector<TexturePage>& pages) {
+    const std::vector<Seam> seams = find_seams(layout);
+    const auto reach_px = static_cast<float>(kSeamReach_m / layout.texel_m);
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<Change> changes;
+        for (const Seam& seam : seams) add_changes(seam, pages, changes);
+        std::ranges::stable_sort(changes, {}, &Change::box);
+        for (auto first = changes.begin(); first != changes.end();) {
+            const auto last = std::find_if(first, changes.end(), [&](const Change& c) { return c.box != first->box; });
+            const TextureBox& box = layout.boxes[first->box];
+            apply({first, last}, box, reach_px, pages[box.page]);
+            first = last;
+        }
+    }
+}
+
+}  // namespace patina
