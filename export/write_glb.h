@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "export/environment.h"
 #include "export/gltf_material.h"
 #include "export/upright.h"
 #include "patina/scene.h"
@@ -32,7 +34,8 @@ struct GlbInfo {
     std::vector<Light> lights{};
     /// Told in the scene's extras alone: viewers would let them in through walls that were never seen.
     std::vector<Light> suns{};
-    double candela_per_intensity = 1;  ///< of the lights, see candela_per_intensity()
+    double candela_per_intensity = 1;             ///< of the lights, see candela_per_intensity()
+    std::optional<GlbEnvironment> environment{};  ///< that stands beside the file, told in the scene's extras
 };
 
 /// A mesh, and what it reflects.

@@ -51,7 +51,7 @@ void put_glb(const fs::path& file, const fs::path& scene) {
 
 void put_lights(const fs::path& file, const fs::path& source, const SceneParts& scene,
                 const std::optional<glm::dvec3>& from_m) {
-    if (scene.lights.empty() && scene.ambient == glm::dvec3(0))
+    if (scene.lights.empty() && scene.ambient == glm::dvec3(0) && scene.environment.empty())
         throw Error(file, " is not written: the scene in '", source.string(), "' has no lights");
     const auto [low, high] = bounds_of(scene);
     const Image<glm::vec3> map = light_map(scene, from_m.value_or(glm::dvec3(low + high) / 2.0), kLightMap);
@@ -91,11 +91,12 @@ std::string content_of(SceneFormat format, const SceneParts& scene) {
     return fmt::format("{} triangles of {} segments", scene.triangles(), scene.materials.size());
 }
 
-/// The scene's parts, with the ambient light that stands beside it.
+/// The scene's parts, with the ambient light and the environment that stand beside it.
 SceneParts parts_of(const fs::path& glb, const fs::path& scene) {
     SceneParts parts = read_scene_parts(glb);
     const fs::path lights = scene.parent_path() / "lights.json";
     if (path_exists(lights)) parts.ambient = read_lighting(lights).ambient;
+    read_environment(parts, scene.parent_path());
     return parts;
 }
 
