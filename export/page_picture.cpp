@@ -158,6 +158,21 @@ Image<SrgbPixel> decoded(const EncodedPicture& picture) {
     return pixels;
 }
 
+Image<SrgbPixel> halved(const Image<SrgbPixel>& fine) {
+    Image<SrgbPixel> coarse({std::max(fine.extent().width / 2, 1u), std::max(fine.extent().height / 2, 1u)});
+    for (uint32_t y = 0; y < coarse.extent().height; ++y) {
+        for (uint32_t x = 0; x < coarse.extent().width; ++x) {
+            glm::uvec3 sum(2);
+            for (const auto& [i, k] : {std::pair(0u, 0u), {1u, 0u}, {0u, 1u}, {1u, 1u}}) {
+                sum += glm::uvec3(fine.at(std::min(2 * x + i, fine.extent().width - 1),
+                                          std::min(2 * y + k, fine.extent().height - 1)));
+            }
+            coarse.at(x, y) = SrgbPixel(sum / 4u);
+        }
+    }
+    return coarse;
+}
+
 Image<glm::vec3> linear_page(const EncodedPicture& picture) {
     const Image<SrgbPixel> codes = decoded(picture);
     Image<glm::vec3> linear(codes.extent());

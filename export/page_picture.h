@@ -41,6 +41,9 @@ EncodedPicture encoded_as_jpeg(const Image<SrgbPixel>& picture, int quality);
 Image<SrgbPixel> decoded(const EncodedPicture& picture);
 Image<glm::vec3> linear_page(const EncodedPicture& picture);
 
+/// At half the resolution: each pixel is the mean of four codes.
+Image<SrgbPixel> halved(const Image<SrgbPixel>& fine);
+
 /// The linear colour between the four texels around a place, which is 0 to 1 from the page's top left corner.
 glm::vec3 texel_at(const Image<glm::vec3>& page, glm::vec2 place);
 
