@@ -75,6 +75,7 @@ struct GlbWriter::State {
     void add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents, bool has_detail);
     void add_page(const TextureLayout& layout, const TexturePage& page, uint32_t number);
     void add_detail(const Image<glm::vec3>& detail, uint32_t number);
+    void add_seen(const Image<TexelState>& states, uint32_t number);
     GlbSummary finish(const GlbInfo& info);
 
     std::filesystem::path path;
@@ -328,6 +329,19 @@ void GlbWriter::State::add_detail(const Image<glm::vec3>& detail, uint32_t numbe
     model.textures.push_back(std::move(texture));
 }
 
+/// No material shows it: extras of the page's picture name it.
+void GlbWriter::State::add_seen(const Image<TexelState>& states, uint32_t number) {
+    const EncodedPicture picture = seen_mask(states);
+    tinygltf::Image image;
+    image.name = "seen, page " + std::to_string(number + 1);
+    image.mimeType = picture.mime_type;
+    image.bufferView = arrays.add_bytes(image.name.c_str(), std::as_bytes(std::span(picture.bytes)));
+    auto extras = model.images[number].extras.Get<Value::Object>();
+    extras["seen_image"] = Value(static_cast<int>(model.images.size()));
+    model.images[number].extras = Value(std::move(extras));
+    model.images.push_back(std::move(image));
+}
+
 /// A triangle's vertices are of one segment and in one page.
 void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents,
                                     bool has_detail) {
@@ -391,6 +405,10 @@ void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<Text
     for (uint32_t number = 0; number < pages.size(); ++number) state_->add_page(layout, pages[number], number);
     for (uint32_t number = 0; detailed && number < pages.size(); ++number)
         state_->add_detail(pages[number].detail, number);
+    for (uint32_t number = 0; number < pages.size(); ++number) {
+        const auto& states = pages[number].states;
+        if (std::ranges::count(states.pixels(), TexelState::kFilled) > 0) state_->add_seen(states, number);
+    }
     state_->summary.texture_pages = pages.size();
     state_->summary.detail_pages = detailed ? pages.size() : 0;
     state_->summary.texel_m = layout.texel_m;

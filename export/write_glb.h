@@ -80,7 +80,7 @@ struct GlbSummary {
 /// A surface that lies in a texture has TEXCOORD_0 in place of COLOR_0, and its base colour is that of the texture's
 /// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a
 /// page's picture have the edge of a texel, "texel_m", and the share of its texels that a picture of the recording
-/// showed, "seen".
+/// showed, "seen". Where some are not, "seen_image" is the number of a picture that says which (seen_mask()).
 ///
 /// Pages with detail have a normalTexture each, and its primitives TANGENT.
 ///
