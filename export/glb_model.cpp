@@ -114,13 +114,14 @@ std::vector<std::array<uint32_t, 3>> GlbArrays::triangles(const tinygltf::Primit
 }
 
 size_t base_color_pages(const tinygltf::Model& model) {
-    size_t pages = model.images.size();
+    size_t pages = 0;
     for (const tinygltf::Material& material : model.materials) {
-        const auto texture = static_cast<size_t>(material.normalTexture.index);
-        if (material.normalTexture.index < 0 || texture >= model.textures.size()) continue;
-        pages = std::min(pages, static_cast<size_t>(std::max(model.textures[texture].source, 0)));
+        const int texture = material.pbrMetallicRoughness.baseColorTexture.index;
+        if (texture < 0 || static_cast<size_t>(texture) >= model.textures.size()) continue;
+        const int source = model.textures[static_cast<size_t>(texture)].source;
+        pages = std::max(pages, static_cast<size_t>(std::max(source + 1, 0)));
     }
-    return pages;
+    return std::min(pages, model.images.size());
 }
 
 int attribute_of(const tinygltf::Primitive& primitive, const char* name) {

@@ -20,7 +20,16 @@ struct Covered {
     double solid_angle;
 };
 
-void add(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
+/// The environment's radiance from a direction in glTF's axes.
+glm::vec3 from_afar(const SceneParts& scene, glm::dvec3 direction) {
+    if (scene.environment.empty()) return glm::vec3(scene.ambient);
+    const glm::dvec3 in_picture = glm::normalize(scene.environment_from_gltf * direction);
+    return scene.environment.pixels()[pixel_of_direction(in_picture, scene.environment.extent())];
+}
+
+}  // namespace
+
+void add_to_map(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
     const Extent2D extent = map.extent();
     const glm::dvec3 offset_m = light.position_m - from_m;
     const double distance_m = std::max(glm::length(offset_m), kNearest_m);
@@ -29,7 +38,9 @@ void add(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
     const double radius = std::max(std::asin(std::min(light.radius_m / distance_m, 1.0)), least);
     std::vector<Covered> covered;
     double sum = 0;
+    const double tilt = std::asin(std::clamp(towards.y, -1.0, 1.0));
     for (uint32_t y = 0; y < extent.height; ++y) {
+        if (std::abs(kPi * (0.5 - (y + 0.5) / extent.height) - tilt) > radius + least) continue;
         for (uint32_t x = 0; x < extent.width; ++x) {
             if (glm::dot(direction_of_place({x + 0.5, y + 0.5}, extent), towards) < std::cos(radius)) continue;
             covered.push_back({size_t{y} * extent.width + x, solid_angle_of_row(y, extent)});
@@ -40,11 +51,12 @@ void add(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
         map.pixels()[each.pixel] += glm::vec3(light.intensity / (distance_m * distance_m * sum));
 }
 
-}  // namespace
-
 Image<glm::vec3> light_map(const SceneParts& scene, glm::dvec3 from_m, Extent2D extent) {
-    Image<glm::vec3> map(extent, glm::vec3(scene.ambient));
-    for (const Light& light : scene.lights) add(light, from_m, map);
+    Image<glm::vec3> map(extent);
+    for (uint32_t y = 0; y < extent.height; ++y)
+        for (uint32_t x = 0; x < extent.width; ++x)
+            map.at(x, y) = from_afar(scene, direction_of_place({x + 0.5, y + 0.5}, extent));
+    for (const Light& light : scene.lights) add_to_map(light, from_m, map);
     return map;
 }
 

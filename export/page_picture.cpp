@@ -125,6 +125,30 @@ EncodedPicture encoded(const Image<SrgbPixel>& picture, const char* mime_type, c
 
 }  // namespace
 
+EncodedPicture seen_mask(const Image<TexelState>& states) {
+    constexpr uint32_t kBlock = 4;
+    const Extent2D fine = states.extent();
+    cv::Mat mask(static_cast<int>((fine.height + kBlock - 1) / kBlock),
+                 static_cast<int>((fine.width + kBlock - 1) / kBlock), CV_8UC1);
+    for (int row = 0; row < mask.rows; ++row) {
+        for (int column = 0; column < mask.cols; ++column) {
+            const uint32_t x0 = static_cast<uint32_t>(column) * kBlock, y0 = static_cast<uint32_t>(row) * kBlock;
+            int filled = 0, seen = 0;
+            for (uint32_t y = y0; y < std::min(y0 + kBlock, fine.height); ++y) {
+                for (uint32_t x = x0; x < std::min(x0 + kBlock, fine.width); ++x) {
+                    filled += states.at(x, y) == TexelState::kFilled;
+                    seen += states.at(x, y) == TexelState::kSeen;
+                }
+            }
+            mask.at<uchar>(row, column) = filled > 0 && filled >= seen ? 0 : 255;
+        }
+    }
+    EncodedPicture result{"image/png", {}};
+    if (!cv::imencode(".png", mask, result.bytes, {cv::IMWRITE_PNG_COMPRESSION, 9}))
+        throw Error("a mask of ", fine, " texels could not be encoded");
+    return result;
+}
+
 const char* extension_of(const EncodedPicture& picture) { return picture.mime_type == "image/png" ? ".png" : ".jpg"; }
 
 EncodedPicture encoded(const Image<SrgbPixel>& picture) {
@@ -156,6 +180,21 @@ Image<SrgbPixel> decoded(const EncodedPicture& picture) {
         }
     }
     return pixels;
+}
+
+Image<SrgbPixel> halved(const Image<SrgbPixel>& fine) {
+    Image<SrgbPixel> coarse({std::max(fine.extent().width / 2, 1u), std::max(fine.extent().height / 2, 1u)});
+    for (uint32_t y = 0; y < coarse.extent().height; ++y) {
+        for (uint32_t x = 0; x < coarse.extent().width; ++x) {
+            glm::uvec3 sum(2);
+            for (const auto& [i, k] : {std::pair(0u, 0u), {1u, 0u}, {0u, 1u}, {1u, 1u}}) {
+                sum += glm::uvec3(fine.at(std::min(2 * x + i, fine.extent().width - 1),
+                                          std::min(2 * y + k, fine.extent().height - 1)));
+            }
+            coarse.at(x, y) = SrgbPixel(sum / 4u);
+        }
+    }
+    return coarse;
 }
 
 Image<glm::vec3> linear_page(const EncodedPicture& picture) {

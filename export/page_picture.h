@@ -37,9 +37,16 @@ EncodedPicture encoded_as_png(const Image<SrgbPixel>& picture);
 /// As JPEG of a quality from 1 to 100.
 EncodedPicture encoded_as_jpeg(const Image<SrgbPixel>& picture, int quality);
 
+/// Where a page's colours are filled in rather than seen: a grey PNG of a quarter of its width and height. A pixel is 0
+/// where at least half of the surface in its 4 x 4 texels was shown by no picture, else 255.
+EncodedPicture seen_mask(const Image<TexelState>& states);
+
 /// The pixels of an encoded picture. Throws Error where it is damaged.
 Image<SrgbPixel> decoded(const EncodedPicture& picture);
 Image<glm::vec3> linear_page(const EncodedPicture& picture);
+
+/// At half the resolution: each pixel is the mean of four codes.
+Image<SrgbPixel> halved(const Image<SrgbPixel>& fine);
 
 /// The linear colour between the four texels around a place, which is 0 to 1 from the page's top left corner.
 glm::vec3 texel_at(const Image<glm::vec3>& page, glm::vec2 place);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "engine/core/latitude_longitude.h"
 #include "engine/core/luminance.h"
 
 namespace patina {
@@ -35,6 +37,17 @@ double candela_per_intensity(std::span<const Light> lights, std::span<const Patc
         for (const Light& light : lights) power += irradiance(light, patch) * own_m2;
     }
     return power > 0 ? with_six_digits(kMeanIlluminance_lux * area_m2 / power) : 1;
+}
+
+double luminance_per_pixel_value(const Image<glm::vec3>& environment) {
+    const Extent2D extent = environment.extent();
+    double sum = 0;
+    for (uint32_t y = 0; y < extent.height; ++y) {
+        double row = 0;
+        for (uint32_t x = 0; x < extent.width; ++x) row += luminance(glm::dvec3(environment.at(x, y)));
+        sum += row * solid_angle_of_row(y, extent);
+    }
+    return with_six_digits(4 * kMeanIlluminance_lux / sum);
 }
 
 }  // namespace patina

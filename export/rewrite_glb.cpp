@@ -1,6 +1,7 @@
 #include "export/rewrite_glb.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,6 +31,8 @@ uint64_t triangles_in(const tinygltf::Model& model) {
     }
     return indices / 3;
 }
+
+constexpr uint32_t kLeastPage = 32;  // texels along a side
 
 /// A GLB that is read, and written with changes.
 class Rewriter {
@@ -143,10 +146,41 @@ class Rewriter {
             }
             return;
         }
-        for (tinygltf::Image& image : model_.images) {
+        const std::set<size_t> pages = pages_of_surface();
+        for (size_t i = 0; i < model_.images.size(); ++i) {
+            tinygltf::Image& image = model_.images[i];
+            if (pages.contains(i))
+                for (uint32_t k = 0; k < changes_.halvings; ++k) halve(image);
             image.bufferView = arrays_.add_bytes(image.name.c_str(), std::as_bytes(std::span(image.image)));
             image.image.clear();
         }
+    }
+
+    /// The pictures that materials show: base colours and detail.
+    std::set<size_t> pages_of_surface() const {
+        std::set<size_t> pages;
+        for (const tinygltf::Material& material : model_.materials) {
+            for (const int texture :
+                 {material.pbrMetallicRoughness.baseColorTexture.index, material.normalTexture.index}) {
+                if (texture < 0) continue;
+                pages.insert(static_cast<size_t>(in_.at(old_.textures, texture, "texture").source));
+            }
+        }
+        return pages;
+    }
+
+    /// Extras have the edge of a texel, which doubles.
+    static void halve(tinygltf::Image& image) {
+        const Image<SrgbPixel> fine = decoded({image.mimeType, image.image});
+        if (std::min(fine.extent().width, fine.extent().height) < 2 * kLeastPage) return;
+        const bool is_png = image.mimeType == "image/png";
+        EncodedPicture coarse = is_png ? encoded_as_png(halved(fine)) : encoded(halved(fine));
+        image.image = std::move(coarse.bytes);
+        image.mimeType = coarse.mime_type;
+        if (!image.extras.IsObject() || !image.extras.Has("texel_m")) return;
+        auto extras = image.extras.Get<tinygltf::Value::Object>();
+        extras["texel_m"] = tinygltf::Value(2 * extras["texel_m"].GetNumberAsDouble());
+        image.extras = tinygltf::Value(std::move(extras));
     }
 
     void survey(const std::vector<glm::vec3>& positions_m, const MeshPart& part) {

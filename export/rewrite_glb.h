@@ -13,8 +13,9 @@ struct GlbChanges {
     std::optional<uint64_t> triangles{};  ///< about so many; empty: as many as there are
     bool without_texture = false;         ///< vertices have the texture's colours in its place
     std::optional<glm::dvec3> up{};       ///< direction in the recording's world, of any length but 0; empty: as it is
+    uint32_t halvings = 0;                ///< of the resolution of the texture's pages; they stay 32 wide
 
-    bool any() const { return triangles || without_texture || up; }
+    bool any() const { return triangles || without_texture || halvings > 0 || up; }
 };
 
 /// Triangles of a scene.glb. Throws Error where it cannot be read.

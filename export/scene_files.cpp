@@ -11,6 +11,7 @@
 #include "export/photometric.h"
 #include "export/segment_names.h"
 #include "export/trajectory.h"
+#include "sensor/files/exr_file.h"
 #include "sensor/files/text_file.h"
 #include "sensor/output/output_file.h"
 
@@ -145,6 +146,17 @@ class TidiedSurface {
     uint64_t triangles_ = 0, loose_ = 0, collapsed_ = 0, holes_ = 0, unseen_ = 0;
 };
 
+/// On the lamps' photometric scale; without lamps on one of its own.
+void add_environment(const Scene& scene, const std::string& file, WrittenGlb& written) {
+    GlbInfo& info = written.info;
+    written.environment = environment_of(scene, info.upright.y_up_from_world);
+    if (written.environment.empty()) return;
+    const double scale =
+        info.lights.empty() ? luminance_per_pixel_value(written.environment) : info.candela_per_intensity;
+    for (glm::vec3& radiance : written.environment.pixels()) radiance *= static_cast<float>(scale);
+    info.environment = GlbEnvironment{file, scale, info.upright.y_up_from_world};
+}
+
 }  // namespace
 
 WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene, const GivePieces& pieces,
@@ -172,22 +184,36 @@ WrittenGlb write_scene_glb(const std::filesystem::path& file, const Scene& scene
     }
     WrittenGlb written;
     written.info = glb_info(scene, surface.survey, options, version);
+    if (!options.environment.empty()) add_environment(scene, options.environment, written);
     written.summary = writer.finish(written.info);
     surface.count(written.summary);
     written.summary.degenerate_triangles += without_area;
     return written;
 }
 
-void Scene::save_glb(const std::filesystem::path& file) const {
-    const auto whole = [this](const TakePiece& take) { take(mesh, reflectance); };
-    put(file, [&](const auto& partial) { write_scene_glb(partial, *this, whole, {}, kVersion); });
+namespace {
+
+/// scene.glb, in one piece.
+WrittenGlb put_scene(const Scene& scene, const std::filesystem::path& file, const SceneFileOptions& options) {
+    const auto whole = [&](const TakePiece& take) { take(scene.mesh, scene.reflectance); };
+    WrittenGlb written;
+    put(file, [&](const auto& partial) { written = write_scene_glb(partial, scene, whole, options, kVersion); });
+    return written;
 }
+
+}  // namespace
+
+void Scene::save_glb(const std::filesystem::path& file) const { put_scene(*this, file, {}); }
 
 void Scene::save(const std::filesystem::path& folder) const {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw Error("the folder '", folder.string(), "' cannot be made: ", failure.message());
-    save_glb(folder / "scene.glb");
+    const WrittenGlb written = put_scene(*this, folder / "scene.glb", {.environment = kEnvironmentFile});
+    if (!written.environment.empty()) {
+        put(folder / kEnvironmentFile,
+            [&](const auto& partial) { sensor::write_exr_color(partial, written.environment); });
+    }
     std::vector<TimedPose> poses = trajectory;
     for (TimedPose& pose : poses) pose.world_from_camera[3] += glm::dvec4(world_offset_m, 0);
     put(folder / "trajectory.txt", [&](const auto& partial) { sensor::write_bytes(partial, trajectory_text(poses)); });

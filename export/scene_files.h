@@ -27,6 +27,7 @@ struct SceneFileOptions {
     TidyOptions tidy{};                       ///< of scene.glb; tiles have all that was reconstructed
     std::optional<TextureOptions> texture{};  ///< of scene.glb; empty: vertices have colours in its place
     std::optional<glm::dvec3> up{};           ///< direction in the world, of any length but 0; empty: it is found
+    std::string environment{};  ///< the name of the picture of light from afar beside scene.glb; empty: there is none
 };
 
 /// What its scene.glb and tiles say besides the surface, which the survey is of: where up is, the factor to candela,
@@ -45,6 +46,7 @@ using BakeTexture = std::function<std::vector<TexturePage>(const TextureLayout&)
 struct WrittenGlb {
     GlbSummary summary;
     GlbInfo info;
+    Image<glm::vec3> environment;  ///< in cd/m^2, to be written as the options name it; empty where no light arrives
 };
 
 /// Writes scene.glb, with the surface in pieces in place of the scene's, tidied piece by piece; `version`: of Patina.

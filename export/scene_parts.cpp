@@ -6,7 +6,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "export/glb_model.h"
+#include "sensor/files/exr_file.h"
 
 namespace patina {
 
@@ -92,6 +94,7 @@ class Reader {
         for (size_t i = 0; i < base_color_pages(model_); ++i)
             scene_.pages.push_back({model_.images[i].mimeType, model_.images[i].image});
         const glm::dmat4 to_gltf = transform_of(root);
+        if (extras.IsObject() && extras.Has("environment")) take_environment(extras.Get("environment"), to_gltf);
         for (const int child : root.children) {
             const tinygltf::Node& node = arrays_.at(model_.nodes, child, "node");
             if (node.mesh >= 0) add_mesh(node, to_gltf * transform_of(node));
@@ -101,6 +104,24 @@ class Reader {
     }
 
   private:
+    void take_environment(const Value& environment, const glm::dmat4& to_gltf) {
+        const auto text = [&](const char* name) {
+            return environment.IsObject() && environment.Has(name) && environment.Get(name).IsString()
+                       ? environment.Get(name).Get<std::string>()
+                       : std::string();
+        };
+        const std::filesystem::path name = text("file");
+        const double scale = number(environment, "luminance_per_pixel_value", 0);
+        if (name.empty() || name != name.filename() || !(scale > 0)) return;  // nothing outside the folder is read
+        tinygltf::Node axes;
+        for (size_t i = 0; i < 4 && environment.Has("y_up_from_root"); ++i)
+            axes.rotation.push_back(environment.Get("y_up_from_root").Get(i).GetNumberAsDouble());
+        scene_.environment_file = name.string();
+        scene_.luminance_per_pixel_value = scale;
+        scene_.environment_from_gltf =
+            glm::quat_cast(glm::dmat3(transform_of(axes)) * glm::transpose(glm::dmat3(to_gltf)));
+    }
+
     void add_mesh(const tinygltf::Node& node, const glm::dmat4& to_gltf) {
         for (const tinygltf::Primitive& primitive : arrays_.at(model_.meshes, node.mesh, "mesh").primitives) {
             const tinygltf::Material& material = arrays_.at(model_.materials, primitive.material, "material");
@@ -173,6 +194,13 @@ uint64_t SceneParts::vertices() const {
 }
 
 SceneParts read_scene_parts(const std::filesystem::path& file) { return Reader(file).read(); }
+
+void read_environment(SceneParts& scene, const std::filesystem::path& folder) {
+    if (scene.environment_file.empty() || !path_exists(folder / scene.environment_file)) return;
+    scene.environment = sensor::read_exr_color(folder / scene.environment_file);
+    for (glm::vec3& radiance : scene.environment.pixels())
+        radiance /= static_cast<float>(scene.luminance_per_pixel_value);
+}
 
 std::vector<std::vector<glm::vec3>> base_colors(const SceneParts& scene) {
     std::vector<std::vector<glm::vec3>> colors(scene.parts.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "export/gltf_material.h"
 #include "export/page_picture.h"
@@ -54,6 +55,11 @@ struct SceneParts {
     std::vector<Light> lights;          ///< in glTF's axes; intensity in linear pixel values times square metre
     double candela_per_intensity = 1;
     glm::dvec3 ambient{0};  ///< as Lighting::ambient; no glTF holds it
+    /// The picture of light from afar that the file names; empty: it names none. read_environment() reads it.
+    std::string environment_file;
+    double luminance_per_pixel_value = 1;          ///< of that picture (GlbEnvironment)
+    glm::dquat environment_from_gltf{1, 0, 0, 0};  ///< the picture's axes from glTF's
+    Image<glm::vec3> environment;                  ///< radiance, linear pixel values; empty: not read, or none
 
     uint64_t triangles() const;
     uint64_t vertices() const;
@@ -61,6 +67,10 @@ struct SceneParts {
 
 /// Reads the scene.glb of a run. Throws Error, naming the file, where it is missing, damaged, or not Patina's.
 SceneParts read_scene_parts(const std::filesystem::path& file);
+
+/// Reads the environment that stands in a folder, where the scene names one and it is there. Throws Error where it is
+/// damaged.
+void read_environment(SceneParts& scene, const std::filesystem::path& folder);
 
 /// The surface's colours by vertex: base colours, of parts in a page those of the texel there.
 std::vector<std::vector<glm::vec3>> base_colors(const SceneParts& scene);

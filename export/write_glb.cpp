@@ -12,6 +12,7 @@
 
 #include "engine/core/error.h"
 #include "export/drawable_mesh.h"
+#include "export/glb_extras.h"
 #include "export/glb_file.h"
 #include "export/gltf_arrays.h"
 #include "export/gltf_material.h"
@@ -37,50 +38,6 @@ GltfColor encode(glm::vec3 linear) {
 }
 
 bool displayable(glm::vec3 linear) { return linear == glm::clamp(linear, 0.0f, 1.0f); }
-
-Value array_of(glm::dvec3 v) { return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)}); }
-
-/// What is known of a segment's gloss, as it is; `observed`: of its glTF material.
-Value ward_extras(const SegmentReflectance& segment, bool observed) {
-    Value::Object ward{{"variant", Value(std::string("ward"))}, {"observed", Value(observed)}};
-    if (segment.gloss) {
-        Value::Object values{{"ks", array_of(glm::dvec3(segment.gloss->ks))},
-                             {"alpha", Value(double{segment.gloss->alpha})}};
-        if (is_observed(*segment.gloss)) {
-            ward.merge(values);
-        } else {
-            ward["guess"] = Value(std::move(values));
-        }
-    }
-    if (!ward.contains("ks")) ward["gloss"] = Value(std::string("not observed"));
-    return Value(Value::Object{{"ward", Value(std::move(ward))}});
-}
-
-Value photometric(double candela_per_intensity) {
-    return Value(Value::Object{
-        {"candela_per_intensity", Value(candela_per_intensity)},
-        {"meaning", Value(std::string("intensity of a light / candela_per_intensity = linear pixel value of the "
-                                      "recording * m^2; the factor gives a white surface at the scene's mean "
-                                      "irradiance 500 lux, and is no measurement"))}});
-}
-
-/// In the root node's frame; irradiance in linear pixel values of the recording, of a surface that faces the sun.
-Value suns_array(const std::vector<Light>& suns) {
-    Value::Array all;
-    for (const Light& sun : suns) {
-        const glm::dvec3 irradiance = sun.intensity / glm::dot(sun.position_m, sun.position_m);
-        all.emplace_back(Value::Object{{"direction", array_of(glm::normalize(sun.position_m))},
-                                       {"irradiance", array_of(irradiance)}});
-    }
-    return Value(std::move(all));
-}
-
-Value light_extras(const GlbInfo& info) {
-    Value::Object extras;
-    if (!info.lights.empty()) extras["photometric"] = photometric(info.candela_per_intensity);
-    if (!info.suns.empty()) extras["suns"] = suns_array(info.suns);
-    return extras.empty() ? Value() : Value(std::move(extras));
-}
 
 /// A mesh with what it reflects, and its normals.
 struct Piece {
@@ -118,6 +75,7 @@ struct GlbWriter::State {
     void add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents, bool has_detail);
     void add_page(const TextureLayout& layout, const TexturePage& page, uint32_t number);
     void add_detail(const Image<glm::vec3>& detail, uint32_t number);
+    void add_seen(const Image<TexelState>& states, uint32_t number);
     GlbSummary finish(const GlbInfo& info);
 
     std::filesystem::path path;
@@ -148,7 +106,7 @@ struct GlbWriter::State {
         tinygltf::Scene scene;
         scene.name = info.name;
         scene.nodes = {0};
-        scene.extras = light_extras(info);
+        scene.extras = scene_extras(info);
         model.scenes.push_back(std::move(scene));
         model.defaultScene = 0;
         model.asset.version = "2.0";
@@ -371,6 +329,19 @@ void GlbWriter::State::add_detail(const Image<glm::vec3>& detail, uint32_t numbe
     model.textures.push_back(std::move(texture));
 }
 
+/// No material shows it: extras of the page's picture name it.
+void GlbWriter::State::add_seen(const Image<TexelState>& states, uint32_t number) {
+    const EncodedPicture picture = seen_mask(states);
+    tinygltf::Image image;
+    image.name = "seen, page " + std::to_string(number + 1);
+    image.mimeType = picture.mime_type;
+    image.bufferView = arrays.add_bytes(image.name.c_str(), std::as_bytes(std::span(picture.bytes)));
+    auto extras = model.images[number].extras.Get<Value::Object>();
+    extras["seen_image"] = Value(static_cast<int>(model.images.size()));
+    model.images[number].extras = Value(std::move(extras));
+    model.images.push_back(std::move(image));
+}
+
 /// A triangle's vertices are of one segment and in one page.
 void GlbWriter::State::add_textured(const TexturedSurface& surface, const std::vector<Extent2D>& extents,
                                     bool has_detail) {
@@ -434,6 +405,10 @@ void GlbWriter::add_textured(const TextureLayout& layout, const std::vector<Text
     for (uint32_t number = 0; number < pages.size(); ++number) state_->add_page(layout, pages[number], number);
     for (uint32_t number = 0; detailed && number < pages.size(); ++number)
         state_->add_detail(pages[number].detail, number);
+    for (uint32_t number = 0; number < pages.size(); ++number) {
+        const auto& states = pages[number].states;
+        if (std::ranges::count(states.pixels(), TexelState::kFilled) > 0) state_->add_seen(states, number);
+    }
     state_->summary.texture_pages = pages.size();
     state_->summary.detail_pages = detailed ? pages.size() : 0;
     state_->summary.texel_m = layout.texel_m;

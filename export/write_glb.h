@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "export/environment.h"
 #include "export/gltf_material.h"
 #include "export/upright.h"
 #include "patina/scene.h"
@@ -32,7 +34,8 @@ struct GlbInfo {
     std::vector<Light> lights{};
     /// Told in the scene's extras alone: viewers would let them in through walls that were never seen.
     std::vector<Light> suns{};
-    double candela_per_intensity = 1;  ///< of the lights, see candela_per_intensity()
+    double candela_per_intensity = 1;             ///< of the lights, see candela_per_intensity()
+    std::optional<GlbEnvironment> environment{};  ///< that stands beside the file, told in the scene's extras
 };
 
 /// A mesh, and what it reflects.
@@ -77,7 +80,7 @@ struct GlbSummary {
 /// A surface that lies in a texture has TEXCOORD_0 in place of COLOR_0, and its base colour is that of the texture's
 /// page, a picture within the file. A segment in several pages has a primitive and a material for each. Extras of a
 /// page's picture have the edge of a texel, "texel_m", and the share of its texels that a picture of the recording
-/// showed, "seen".
+/// showed, "seen". Where some are not, "seen_image" is the number of a picture that says which (seen_mask()).
 ///
 /// Pages with detail have a normalTexture each, and its primitives TANGENT.
 ///

@@ -226,6 +226,12 @@ std::vector<SegmentReflectance> Pipeline::segments() {
     return segments;
 }
 
+Image<glm::vec4> Pipeline::far_field() {
+    if (!stages_.reflectance || fusion_.frames() == 0) return {};
+    wait();
+    return read_far_field(runner_, *stages_.reflectance);
+}
+
 MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     std::vector<SegmentReflectance> known = segments();

@@ -95,6 +95,10 @@ class Pipeline {
     /// What all segments reflect, by label, brought up to date before; waits. Empty without reflectance.
     std::vector<SegmentReflectance> segments();
 
+    /// What arrives from where there is no surface, as Scene::far_field has it; waits. Empty where no light is
+    /// gathered.
+    Image<glm::vec4> far_field();
+
     /// The surface piece by piece, so that memory need not hold it at once: in cells of `cell_m`, with the vertices at
     /// their borders on both sides. A map that fits into one is one piece, the mesh of extract_surface(). `segments`:
     /// of segments(); empty: without what pieces reflect. Waits. Throws Error as SurfaceCells does, and what `take`

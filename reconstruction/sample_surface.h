@@ -14,6 +14,10 @@ namespace patina {
 /// What all segments reflect, by label, but for how sure their gloss is; waits for the device.
 std::vector<SegmentReflectance> read_segments(graph::Runner& runner, ReflectanceStage& model);
 
+/// What arrives from where there is no surface, as Scene::far_field has it; waits for the device. Empty where no light
+/// is gathered.
+Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& model);
+
 /// What the vertices of a mesh reflect, without the segments; waits for the device. At most `batch_points` vertices
 /// (above 0) are sampled at once, which changes nothing about the result. Throws Error when memory runs out.
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,

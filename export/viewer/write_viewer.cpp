@@ -117,22 +117,6 @@ Arrays arrays_of(const std::vector<ViewerGroup>& groups) {
     return arrays;
 }
 
-/// Every 2 x 2 pixels become one: their mean, of sRGB codes.
-Image<SrgbPixel> halved(const Image<SrgbPixel>& fine) {
-    Image<SrgbPixel> coarse({std::max(fine.extent().width / 2, 1u), std::max(fine.extent().height / 2, 1u)});
-    for (uint32_t y = 0; y < coarse.extent().height; ++y) {
-        for (uint32_t x = 0; x < coarse.extent().width; ++x) {
-            glm::uvec3 sum(2);
-            for (const auto& [i, k] : {std::pair(0u, 0u), {1u, 0u}, {0u, 1u}, {1u, 1u}}) {
-                sum += glm::uvec3(fine.at(std::min(2 * x + i, fine.extent().width - 1),
-                                          std::min(2 * y + k, fine.extent().height - 1)));
-            }
-            coarse.at(x, y) = SrgbPixel(sum / 4u);
-        }
-    }
-    return coarse;
-}
-
 /// Pages as JPEG, at half the resolution again and again until they fit.
 std::vector<EncodedPicture> fitted_pages(const std::vector<EncodedPicture>& pages, uint64_t most_bytes) {
     std::vector<EncodedPicture> fitted;

@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "patina/camera.h"
+#include "patina/image.h"
 #include "patina/lighting.h"
 
 namespace patina {
@@ -77,13 +78,17 @@ struct Scene {
     std::vector<TimedPose> trajectory;  ///< of the depth camera, in the frames that were fused
     glm::dvec3 world_offset_m{0};
     std::optional<glm::dvec3> gravity{};  ///< direction in which things fall; empty where it is not recorded
+    /// What pictures showed where there is no surface, such as a sky: a square octahedral map of directions in the
+    /// world, +z in the middle, -z in the corners. rgb: radiance, linear pixel value; a: 1 where a picture looked, else
+    /// 0, and ambient light arrives. Empty where no light was gathered.
+    Image<glm::vec4> far_field{};
 
     /// Writes a binary glTF 2.0 with materials and lights, upright and on the floor, whole or not at all. Throws Error
     /// for a value that is not finite, a mesh that is too large for glTF, or a file that cannot be written.
     void save_glb(const std::filesystem::path& file) const;
 
-    /// Writes scene.glb, trajectory.txt and, where there are any, materials.json and lights.json into a folder, which
-    /// is created where there is none. Throws Error as save_glb() does.
+    /// Writes scene.glb, trajectory.txt and, where there are any, materials.json, lights.json and environment.exr (the
+    /// light from afar) into a folder, which is created where there is none. Throws Error as save_glb() does.
     void save(const std::filesystem::path& folder) const;
 };
 

@@ -65,6 +65,7 @@ Scene Reconstruction::finish() {
     Scene scene;
     scene.mesh = state_->pipeline.extract_surface();
     scene.reflectance = state_->pipeline.sample_reflectance(scene.mesh);
+    scene.far_field = state_->pipeline.far_field();
     scene.lighting = state_->lighting;
     scene.trajectory = state_->trajectory;
     return scene;

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/latitude_longitude.h"
 #include "engine/core/luminance.h"
+#include "engine/core/octahedral.h"
 #include "shared/reflectance/far_field.h"
 
 namespace patina {
@@ -134,13 +135,6 @@ std::vector<Cluster> clusters_of(std::span<Bright> pixels, size_t most) {
     return clusters;
 }
 
-/// The direction in the world that a place of the octahedral map stands for (lib/math/octahedral.glsl).
-glm::dvec3 from_octahedral(glm::dvec2 point) {
-    const double z = 1 - std::abs(point.x) - std::abs(point.y), folded = std::max(-z, 0.0);
-    return glm::normalize(
-        glm::dvec3(point.x - std::copysign(folded, point.x), point.y - std::copysign(folded, point.y), z));
-}
-
 std::vector<glm::vec3> far_field_of(const Image<glm::vec3>& picture, const glm::dmat3& picture_from_world) {
     std::vector<glm::vec3> field;
     field.reserve(gpu::kFarFieldTexels);
@@ -150,7 +144,7 @@ std::vector<glm::vec3> far_field_of(const Image<glm::vec3>& picture, const glm::
         glm::dvec3 sum(0);
         for (uint32_t i = 0; i < kSamples * kSamples; ++i) {
             const glm::dvec2 at = glm::dvec2(first + glm::uvec2(i % kSamples, i / kSamples)) + 0.5;
-            const glm::dvec3 direction = picture_from_world * from_octahedral(at * (2.0 / kAcross) - 1.0);
+            const glm::dvec3 direction = picture_from_world * direction_of_octahedral(at * (2.0 / kAcross) - 1.0);
             sum += picture.pixels()[pixel_of_direction(direction, picture.extent())];
         }
         field.emplace_back(sum / double{kSamples * kSamples});

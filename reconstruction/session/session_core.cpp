@@ -424,6 +424,7 @@ Scene SessionCore::scene() {
     Scene scene = scene_without_surface();
     scene.mesh = pipeline_->extract_surface();
     scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
+    scene.far_field = pipeline_->far_field();
     scene.segment_names = segment_names();
     return scene;
 }

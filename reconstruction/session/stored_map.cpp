@@ -52,6 +52,7 @@ Scene StoredMap::scene() {
     scene.world_offset_m = world_offset_m_;
     scene.mesh = pipeline_->extract_surface();
     scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
+    scene.far_field = pipeline_->far_field();
     return scene;
 }
 

@@ -78,6 +78,7 @@ TEST_F(Endings, WithLightsSwitchedOffThereAreNoMaterials) {
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.out, HasSubstr("no materials"));
     EXPECT_FALSE(fs::exists(out() / "materials.json"));
+    EXPECT_FALSE(fs::exists(out() / "environment.exr"));
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no materials"));
 }
 
@@ -90,6 +91,9 @@ TEST_F(Endings, WithoutALampThereIsAmbientLight) {
     EXPECT_GT(summary["lights"]["ambient"][0], 0);
     EXPECT_EQ(summary["settings"]["specular"], "fit") << "mirrors need no lamp";
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
+    EXPECT_TRUE(fs::exists(out() / "environment.exr"));
+    EXPECT_EQ(summary["gltf"]["environment"]["file"], "environment.exr");
+    EXPECT_GT(summary["gltf"]["environment"]["luminance_per_pixel_value"], 0);
     EXPECT_NEAR(sensor::read_ambient(out() / "lights.json").x, summary["lights"]["ambient"][0], 1e-6);
     EXPECT_THAT(read_text(out() / "scene.glb"), HasSubstr("\"ward\""));
 }

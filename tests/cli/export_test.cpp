@@ -35,7 +35,7 @@ class Export : public RunFolderTest {
 TEST_F(Export, EndingsChooseTheFormat) {
     run_into(out());
     export_quietly({out(), file("a.ply"), file("a.obj"), file("a.usdz"), file("a.glb"), "--html", file("b"), "--points",
-                    file("points.ply")});
+                    file("points.ply"), "--lods"});
     EXPECT_THAT(read_text(beside("a.ply")), StartsWith("ply\nformat binary_little_endian"));
     EXPECT_THAT(read_text(beside("a.obj")), HasSubstr("mtllib a.mtl"));
     EXPECT_THAT(read_text(beside("a.mtl")), HasSubstr("newmtl"));
@@ -43,6 +43,8 @@ TEST_F(Export, EndingsChooseTheFormat) {
     EXPECT_THAT(read_text(beside("b")), AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("ward_point_light")));
     EXPECT_LT(read_text(beside("points.ply")).size(), read_text(beside("a.ply")).size());
     EXPECT_EQ(read_text(beside("a.glb")), read_text(out() / "scene.glb"));
+    EXPECT_LT(read_text(beside("a_lod1.glb")).size(), read_text(beside("a.glb")).size());
+    EXPECT_LT(read_text(beside("a_lod2.glb")).size(), read_text(beside("a_lod1.glb")).size());
     for (const auto& entry : fs::directory_iterator(beside(".")))
         EXPECT_THAT(entry.path().filename().string(), ::testing::Not(HasSubstr("partial")));
 }
@@ -65,6 +67,7 @@ TEST_F(Export, WhatNeedsTheMapSaysSo) {
     run_into(beside("dark"), {"--lighting", "none"});
     EXPECT_THAT(expect_failure(patina({"export", beside("dark"), file("a.exr")})), HasSubstr("has no lights"));
     EXPECT_THAT(expect_failure(patina({"export", out()}), 2), HasSubstr("a file to write"));
+    EXPECT_THAT(expect_failure(patina({"export", out(), file("a.ply"), "--lods"}), 2), HasSubstr("a .glb to write"));
 }
 
 TEST_F(Export, AMapGivesWhatARunWithTheseChoicesWould) {

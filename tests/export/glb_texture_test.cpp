@@ -67,6 +67,15 @@ TEST(GlbTexture, EachSegmentShowsItsPage) {
     EXPECT_EQ(page.height, 32);
     EXPECT_NEAR(page.extras.Get("seen").GetNumberAsDouble(), 0.75, 1e-9);
     EXPECT_EQ(page.extras.Get("texel_m").GetNumberAsDouble(), 0.002);
+    // What is filled: texels 10 and 11 of rows 4 to 11.
+    const int mask = page.extras.Get("seen_image").GetNumberAsInt();
+    EXPECT_EQ(mask, 2) << "after the pages with colours";
+    const tinygltf::Image& seen = written.model.images.at(static_cast<size_t>(mask));
+    ASSERT_EQ(std::pair(seen.width, seen.height), std::pair(16, 8));
+    for (size_t i = 0; i < 16 * 8; ++i) {
+        const bool filled = i % 16 == 2 && (i / 16 == 1 || i / 16 == 2);
+        EXPECT_EQ(seen.image.at(i * static_cast<size_t>(seen.component)), filled ? 0 : 255) << i;
+    }
     const tinygltf::Primitive& second = mesh_of(written.model, "object 2").primitives.at(0);
     EXPECT_EQ(image_of(written.model, material_of(written.model, second)).width, 16);
 }

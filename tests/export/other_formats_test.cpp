@@ -8,11 +8,17 @@
 #include <glm/gtc/constants.hpp>
 #include <gmock/gmock.h>
 
+#include "engine/core/latitude_longitude.h"
+#include "engine/core/octahedral.h"
+#include "export/environment.h"
 #include "export/light_map.h"
+#include "export/rewrite_glb.h"
 #include "export/stored_zip.h"
+#include "export/upright.h"
 #include "export/write_obj.h"
 #include "export/write_ply.h"
 #include "export/write_usdz.h"
+#include "sensor/files/exr_file.h"
 #include "tests/export/small_scene.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
@@ -208,6 +214,85 @@ TEST(LightMap, AmbientLightIsEverywhere) {
     scene.ambient = {0.1, 0.2, 0.3};
     const Image<glm::vec3> map = light_map(scene, glm::dvec3(0), {8, 4});
     for (const glm::vec3 pixel : map.pixels()) EXPECT_EQ(pixel, glm::vec3(0.1f, 0.2f, 0.3f));
+}
+
+/// What arrives of a picture's light, without what every pixel has.
+glm::dvec3 arriving(const Image<glm::vec3>& map, glm::dvec3 everywhere) {
+    glm::dvec3 sum(0);
+    for (uint32_t y = 0; y < map.extent().height; ++y)
+        for (uint32_t x = 0; x < map.extent().width; ++x)
+            sum += (glm::dvec3(map.at(x, y)) - everywhere) * solid_angle_of_row(y, map.extent());
+    return sum;
+}
+
+constexpr Extent2D kSmall{256, 128};
+
+TEST(LightMap, EnvironmentHasAmbientLightAndSunsButNoLamps) {
+    Scene scene;
+    EXPECT_TRUE(environment_of(scene, kYDownToYUp, kSmall).empty());
+    scene.lighting.lights = {{{0, -2, 0}, glm::dvec3(8), 0.1}};
+    EXPECT_TRUE(environment_of(scene, kYDownToYUp, kSmall).empty()) << "scene.glb has the lamp";
+    scene.lighting.ambient = {0.5, 0.25, 1};
+    scene.lighting.lights.push_back({{0, -1e4, 0}, {3e8, 2e8, 1e8}, 0});
+    const Image<glm::vec3> map = environment_of(scene, kYDownToYUp, kSmall);
+    EXPECT_LT(glm::distance(arriving(map, scene.lighting.ambient), {3, 2, 1}), 1e-3);
+    EXPECT_GT(map.at(0, 0).r, 100) << "the sun, straight up";
+    EXPECT_EQ(map.at(128, 120), glm::vec3(0.5f, 0.25f, 1));
+}
+
+TEST(LightMap, EnvironmentShowsTheFarFieldWhereItIsKnown) {
+    const auto radiance = [](glm::dvec3 direction) { return glm::dvec3(2) + direction; };
+    Scene scene;
+    scene.far_field = Image<glm::vec4>({32, 32});
+    for (uint32_t y = 0; y < 32; ++y) {
+        for (uint32_t x = 0; x < 32; ++x) {
+            const glm::dvec3 direction = direction_of_octahedral((glm::dvec2(x, y) + 0.5) / 16.0 - 1.0);
+            scene.far_field.at(x, y) = glm::vec4(radiance(direction), 1);
+        }
+    }
+    const Image<glm::vec3> map = environment_of(scene, kYDownToYUp, kSmall);
+    double most = 0;
+    for (uint32_t y = 0; y < kSmall.height; ++y) {
+        for (uint32_t x = 0; x < kSmall.width; ++x) {
+            const glm::dvec3 in_world = glm::conjugate(kYDownToYUp) * direction_of_place({x + 0.5, y + 0.5}, kSmall);
+            most = std::max(most, glm::distance(glm::dvec3(map.at(x, y)), radiance(in_world)));
+        }
+    }
+    EXPECT_LT(most, 0.037) << "0.042 where the map's borders do not go on";
+    for (glm::vec4& texel : scene.far_field.pixels()) texel.a = 0;
+    scene.lighting.ambient = glm::dvec3(0.5);
+    EXPECT_EQ(environment_of(scene, kYDownToYUp, kSmall).at(7, 9), glm::vec3(0.5));
+}
+
+TEST(LightMap, TheEnvironmentBesideASceneIsTurnedWithIt) {
+    const TemporaryFolder folder;
+    Scene scene;
+    scene.mesh.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.mesh.normals.assign(3, {0, 0, -1});
+    scene.mesh.colors.assign(3, glm::vec3(0.5f));
+    scene.mesh.triangles = {{0, 2, 1}};
+    scene.far_field = Image<glm::vec4>({32, 32}, glm::vec4(0.5, 0.5, 0.5, 1));
+    for (uint32_t y = 0; y < 8; ++y)  // around the direction (0, -1, 0)
+        for (uint32_t x = 8; x < 24; ++x) scene.far_field.at(x, y) = glm::vec4(2, 2, 2, 1);
+    scene.gravity = glm::dvec3(0, 1, 0);
+    scene.save(folder.path());
+    const auto lights = [&](const std::filesystem::path& glb) {
+        SceneParts parts = read_scene_parts(glb);
+        read_environment(parts, folder.path());
+        return light_map(parts, glm::dvec3(0), {64, 32});
+    };
+    const Image<glm::vec3> map = lights(folder / "scene.glb");
+    EXPECT_NEAR(map.at(16, 31).r, 0.5, 1e-5) << "in pixel values again";
+    EXPECT_NEAR(map.at(16, 0).r, 2, 1e-5) << "up";
+    rewrite_glb(folder / "scene.glb", folder / "down.glb", {.up = glm::dvec3(0, 1, 0)});
+    const Image<glm::vec3> turned = lights(folder / "down.glb");
+    EXPECT_NEAR(turned.at(16, 31).r, 2, 1e-5);
+    EXPECT_NEAR(turned.at(16, 0).r, 0.5, 1e-5);
+    // A white surface under it has 500 lux on average, as it may face any way.
+    const Image<glm::vec3> written = sensor::read_exr_color(folder / "environment.exr");
+    EXPECT_NEAR(arriving(written, glm::dvec3(0)).g / 4, 500, 0.1);
+    scene.save_glb(folder / "alone.glb");
+    EXPECT_EQ(read_scene_parts(folder / "alone.glb").environment_file, "");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "export/photometric.h"
 
+#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
 namespace patina::photometric_test {
@@ -25,6 +26,15 @@ TEST(Photometric, TheMeanIsOverTheAreaOfAllLampsByLuminance) {
 TEST(Photometric, SurfaceInALampCountsAsBesideIt) {
     const std::vector<Light> lights{{{0, 1e-6, 0}, glm::dvec3(1), 0.2}};
     EXPECT_GE(candela_per_intensity(lights, std::vector<Patch>{level_patch({0, 0, 0}, 1)}), 500 * 0.2 * 0.2);
+}
+
+TEST(Photometric, AWhiteSurfaceUnderAnEnvironmentGets500Lux) {
+    EXPECT_NEAR(luminance_per_pixel_value(Image<glm::vec3>({64, 32}, glm::vec3(2))), 500 / (2 * glm::pi<double>()),
+                1e-3);
+    Image<glm::vec3> upper({64, 32}, glm::vec3(0));
+    for (uint32_t y = 0; y < 16; ++y)
+        for (uint32_t x = 0; x < 64; ++x) upper.at(x, y) = glm::vec3(2);
+    EXPECT_NEAR(luminance_per_pixel_value(upper), 500 / glm::pi<double>(), 1e-3) << "half of what it may face";
 }
 
 TEST(Photometric, WithoutLightTheFactorIs1) {

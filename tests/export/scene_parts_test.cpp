@@ -6,6 +6,7 @@
 
 #include "export/fewer_triangles.h"
 #include "export/glb_model.h"
+#include "export/page_picture.h"
 #include "export/rewrite_glb.h"
 #include "tests/export/small_scene.h"
 #include "tests/export/temporary_folder.h"
@@ -170,6 +171,15 @@ TEST_F(RewriteGlb, WithoutTextureVerticesHaveItsColours) {
     EXPECT_TRUE(after.pages.empty());
     const float scale = after.materials[after.parts[0].material].kd_over_base();
     for (const glm::vec3 base : after.parts[0].base) expect_near(glm::dvec3(scale * base), glm::dvec3(kTexel), 5e-3);
+}
+
+TEST_F(RewriteGlb, PagesOfHalfTheResolution) {
+    const SceneParts before = read_scene_parts(folder_ / "small.glb"), after = changed("small.glb", {.halvings = 2});
+    EXPECT_EQ(after.parts[0].places, before.parts[0].places);
+    ASSERT_EQ(after.pages.size(), 1u);
+    EXPECT_EQ(decoded(after.pages[0]).extent(), (Extent2D{32, 32})) << "as small as pages become";
+    EXPECT_EQ(decoded(after.pages[0]).at(3, 3), decoded(before.pages[0]).at(3, 3));
+    EXPECT_EQ(read_glb(folder_ / "new.glb").images[0].extras.Get("texel_m").GetNumberAsDouble(), 0.004);
 }
 
 TEST_F(RewriteGlb, FewerTriangles) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "engine/core/error.h"
@@ -25,6 +26,7 @@ struct Arguments {
     std::string html, points, native, format;
     std::vector<double> from_m;
     RunOptions choices;  ///< how the scene is written
+    bool lods = false;
     bool quiet = false;
 };
 
@@ -71,6 +73,10 @@ int export_scene_of(const CLI::App& command, const Arguments& arguments) {
     options.source = fs::absolute(arguments.source);
     options.outputs = outputs_of(arguments);
     options.quiet = arguments.quiet;
+    options.lods = arguments.lods;
+    const auto is_glb = [](const SceneOutput& output) { return output.format == SceneFormat::kGlb; };
+    if (options.lods && std::ranges::none_of(options.outputs, is_glb))
+        throw CLI::RequiredError("--lods: a .glb to write");
     if (!arguments.from_m.empty())
         options.from_m = glm::dvec3(arguments.from_m[0], arguments.from_m[1], arguments.from_m[2]);
     const fs::path map = map_at(options.source);
@@ -109,6 +115,10 @@ void add_export(CLI::App& app, int& exit_code) {
         ->delimiter(',')
         ->option_text("X,Y,Z");
     declare_scene_choices(*command, arguments->choices);
+    command->add_flag(
+        "--lods", arguments->lods,
+        "Also write levels of detail beside each .glb: NAME_lod1.glb and NAME_lod2.glb, with down to a quarter and "
+        "a sixteenth of its triangles");
     CLI::Option* native =
         command->add_option("--native", arguments->native, "Folder to create: a recording in Patina's own format");
     for (CLI::Option* each : {files, html, points}) native->excludes(each);

@@ -49,9 +49,23 @@ void put_glb(const fs::path& file, const fs::path& scene) {
     put_bytes(file, scene, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+void put_lods(const fs::path& file, const fs::path& scene, bool quiet) {
+    const uint64_t triangles = triangles_in(scene);
+    for (uint32_t level = 1; level <= kLods; ++level) {
+        const fs::path coarse = lod_file(file, level);
+        const GlbChanges changes{.triangles = triangles >> (2 * level), .halvings = level};
+        uint64_t left = 0;
+        put(coarse, scene, [&](const fs::path& place) {
+            rewrite_glb(scene, place, changes);
+            left = triangles_in(place);
+        });
+        if (!quiet) print_out("{}: {} triangles\n", printable(coarse.string()), left);
+    }
+}
+
 void put_lights(const fs::path& file, const fs::path& source, const SceneParts& scene,
                 const std::optional<glm::dvec3>& from_m) {
-    if (scene.lights.empty() && scene.ambient == glm::dvec3(0))
+    if (scene.lights.empty() && scene.ambient == glm::dvec3(0) && scene.environment.empty())
         throw Error(file, " is not written: the scene in '", source.string(), "' has no lights");
     const auto [low, high] = bounds_of(scene);
     const Image<glm::vec3> map = light_map(scene, from_m.value_or(glm::dvec3(low + high) / 2.0), kLightMap);
@@ -91,11 +105,12 @@ std::string content_of(SceneFormat format, const SceneParts& scene) {
     return fmt::format("{} triangles of {} segments", scene.triangles(), scene.materials.size());
 }
 
-/// The scene's parts, with the ambient light that stands beside it.
+/// The scene's parts, with the ambient light and the environment that stand beside it.
 SceneParts parts_of(const fs::path& glb, const fs::path& scene) {
     SceneParts parts = read_scene_parts(glb);
     const fs::path lights = scene.parent_path() / "lights.json";
     if (path_exists(lights)) parts.ambient = read_lighting(lights).ambient;
+    read_environment(parts, scene.parent_path());
     return parts;
 }
 
@@ -112,6 +127,10 @@ SceneFormat format_by_ending(const fs::path& file) {
     if (ending == ".html") return SceneFormat::kHtml;
     throw Error("'", file.string(), "' ends in '", ending,
                 "', which is no format of a scene: .glb, .ply, .obj, .usdz, .exr (lights) and .html are");
+}
+
+fs::path lod_file(const fs::path& glb, uint32_t level) {
+    return glb.parent_path() / fmt::format("{}_lod{}{}", glb.stem().string(), level, glb.extension().string());
 }
 
 fs::path scene_at(const fs::path& source) {
@@ -135,6 +154,7 @@ Outcome export_scene(const ExportSceneOptions& options) {
         if (interrupt.requested()) throw Interrupted("interrupted before '", output.file.string(), "' was written");
         write_output(output, glb, parts, options);
         if (!options.quiet) print_out("{}: {}\n", printable(output.file.string()), content_of(output.format, parts));
+        if (options.lods && output.format == SceneFormat::kGlb) put_lods(output.file, glb, options.quiet);
     }
     return {};
 }

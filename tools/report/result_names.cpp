@@ -19,9 +19,9 @@ using sensor::is_real_file;
 using sensor::is_real_folder;
 using sensor::is_taken;
 
-constexpr std::array<std::string_view, 9> kRunFiles{"run.json",    "scene.glb",           "materials.json",
-                                                    "lights.json", "gains.txt",           "trajectory.txt",
-                                                    "report.html", "held_out/scores.txt", "tiles/tileset.json"};
+constexpr std::array<std::string_view, 10> kRunFiles{
+    "run.json",  "scene.glb",      "environment.exr", "materials.json",      "lights.json",
+    "gains.txt", "trajectory.txt", "report.html",     "held_out/scores.txt", "tiles/tileset.json"};
 constexpr std::array<std::string_view, 2> kEvaluationFiles{"eval.json", "report.html"};
 
 /// A folder of a run that holds numbered files: of frames, of tiles.

@@ -6,6 +6,7 @@
 
 #include "export/materials.h"
 #include "export/write_tiles.h"
+#include "sensor/files/exr_file.h"
 
 namespace patina::tools {
 
@@ -22,6 +23,10 @@ GlbSummary SceneFiles::write_glb(OutputFolder& folder, const GivePieces& pieces,
                                  const BakeTexture& bake) {
     const WrittenGlb written = write_scene_glb(folder.stage("scene.glb"), scene_, pieces, options_, version, bake);
     folder.publish("scene.glb");
+    if (!written.environment.empty()) {
+        sensor::write_exr_color(folder.stage(options_.environment), written.environment);
+        folder.publish(options_.environment);
+    }
     info_ = written.info;
     return written.summary;
 }
@@ -54,6 +59,9 @@ nlohmann::ordered_json gltf_json(const GlbInfo& info) {
     nlohmann::ordered_json json{{"up", {{"source", name_of(info.upright.source)}, {"direction", {up.x, up.y, up.z}}}},
                                 {"gltf_from_world", std::move(rows)}};
     if (!info.lights.empty()) json["candela_per_intensity"] = info.candela_per_intensity;
+    if (info.environment)
+        json["environment"] = {{"file", info.environment->file},
+                               {"luminance_per_pixel_value", info.environment->luminance_per_pixel_value}};
     return json;
 }
 

@@ -16,7 +16,9 @@ namespace patina::tools {
 class SceneFiles {
   public:
     /// The scene has no surface: it comes in pieces.
-    SceneFiles(Scene scene, const SceneFileOptions& options) : scene_(std::move(scene)), options_(options) {}
+    SceneFiles(Scene scene, const SceneFileOptions& options) : scene_(std::move(scene)), options_(options) {
+        options_.environment = kEnvironmentFile;
+    }
 
     /// How fine the texture of scene.glb is to be; empty: it has none.
     void set_texture(const std::optional<TextureOptions>& texture) { options_.texture = texture; }
@@ -24,7 +26,8 @@ class SceneFiles {
 
     /// Writes materials.json and lights.json, where there are any. Throws Error where the disk refuses.
     void write_lists(OutputFolder& folder) const;
-    /// Writes scene.glb; `version`: of Patina. Throws Error as write_scene_glb() does.
+    /// Writes scene.glb, and environment.exr where light arrives from afar; `version`: of Patina. Throws Error as
+    /// write_scene_glb() does.
     GlbSummary write_glb(OutputFolder& folder, const GivePieces& pieces, const std::string& version,
                          const BakeTexture& bake);
     /// Writes tiles/ (TileWriter), placed as scene.glb is.

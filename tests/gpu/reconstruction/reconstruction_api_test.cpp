@@ -62,9 +62,24 @@ TEST_F(ReconstructionApiTest, LightMakesSegmentsWithMaterials) {
 TEST_F(ReconstructionApiTest, WithoutLabelsAlbedoIsAllThereIs) {
     ReconstructionOptions options = lit();
     options.labels = Labels::kOff;
+    for (size_t i = 0; i < wall_.depth.size(); ++i)
+        if (i % kCamera.extent.width >= 32) wall_.depth[i] = 0;
     const Scene scene = scene_of(Reconstruction(device_, options));
     EXPECT_THAT(scene.reflectance.kd, Contains(Truly([](glm::vec4 kd) { return kd.a == 1; })));
     EXPECT_THAT(scene.reflectance.labels, Not(Contains(Ne(0u))));
+    // Right of the wall there is light from afar.
+    ASSERT_EQ(scene.far_field.extent(), (Extent2D{32, 32}));
+    int known = 0;
+    for (uint32_t y = 0; y < 32; ++y) {
+        for (uint32_t x = 0; x < 32; ++x) {
+            const glm::vec4 radiance = scene.far_field.at(x, y);
+            if (radiance.a == 0) continue;
+            ++known;
+            EXPECT_GE(x, 16u);
+            EXPECT_NEAR(radiance.g, 0.2159, 1e-3);
+        }
+    }
+    EXPECT_GT(known, 5);
 }
 
 TEST_F(ReconstructionApiTest, WithoutLightThereAreSegmentsButNoMaterials) {

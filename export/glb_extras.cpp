@@ -1,0 +1,70 @@
+#include "export/glb_extras.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patina {
+
+using Value = tinygltf::Value;
+
+Value array_of(glm::dvec3 v) { return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)}); }
+
+Value ward_extras(const SegmentReflectance& segment, bool observed) {
+    Value::Object ward{{"variant", Value(std::string("ward"))}, {"observed", Value(observed)}};
+    if (segment.gloss) {
+        Value::Object values{{"ks", array_of(glm::dvec3(segment.gloss->ks))},
+                             {"alpha", Value(double{segment.gloss->alpha})}};
+        if (is_observed(*segment.gloss)) {
+            ward.merge(values);
+        } else {
+            ward["guess"] = Value(std::move(values));
+        }
+    }
+    if (!ward.contains("ks")) ward["gloss"] = Value(std::string("not observed"));
+    return Value(Value::Object{{"ward", Value(std::move(ward))}});
+}
+
+namespace {
+
+Value photometric(double candela_per_intensity) {
+    return Value(Value::Object{
+        {"candela_per_intensity", Value(candela_per_intensity)},
+        {"meaning", Value(std::string("intensity of a light / candela_per_intensity = linear pixel value of the "
+                                      "recording * m^2; the factor gives a white surface at the scene's mean "
+                                      "irradiance 500 lux, and is no measurement"))}});
+}
+
+/// In the root node's frame; irradiance in linear pixel values of the recording, of a surface that faces the sun.
+Value suns_array(const std::vector<Light>& suns) {
+    Value::Array all;
+    for (const Light& sun : suns) {
+        const glm::dvec3 irradiance = sun.intensity / glm::dot(sun.position_m, sun.position_m);
+        all.emplace_back(Value::Object{{"direction", array_of(glm::normalize(sun.position_m))},
+                                       {"irradiance", array_of(irradiance)}});
+    }
+    return Value(std::move(all));
+}
+
+Value environment_extras(const GlbEnvironment& environment) {
+    const glm::dquat turn = environment.y_up_from_root;
+    return Value(Value::Object{
+        {"file", Value(environment.file)},
+        {"luminance_per_pixel_value", Value(environment.luminance_per_pixel_value)},
+        {"y_up_from_root", Value(Value::Array{Value(turn.x), Value(turn.y), Value(turn.z), Value(turn.w)})},
+        {"meaning", Value(std::string("light from afar without the lamps: latitude-longitude picture of radiance in "
+                                      "cd/m^2; y is up, the middle is +x, the right half +z; divided by "
+                                      "luminance_per_pixel_value: linear pixel values of the recording"))}});
+}
+
+}  // namespace
+
+Value scene_extras(const GlbInfo& info) {
+    Value::Object extras;
+    if (!info.lights.empty()) extras["photometric"] = photometric(info.candela_per_intensity);
+    if (!info.suns.empty()) extras["suns"] = suns_array(info.suns);
+    if (info.environment) extras["environment"] = environment_extras(*info.environment);
+    return extras.empty() ? Value() : Value(std::move(extras));
+}
+
+}  // namespace patina
