@@ -22,7 +22,7 @@ struct BlendPictureInputs {
 
 /// Adds to the sums of a band's texels what a picture says of them: (colour / gain - highlight) / light (paper, Eq. 7),
 /// per channel. A texel counts where all four pixels of the cast image around show its surface, at least 0.1 of it
-/// faces the camera, no pixel of the picture around is clipped, and enough light arrives. Its weight is the cube of
+/// faces the camera, no pixel of the picture around is clipped, and enough light arrives. Its weight is the square of
 /// cosine over squared distance, less towards the picture's border and under a highlight.
 TextureBandIds add_blend_picture(graph::FrameGraph& frame, const TextureBand& band, const TextureBandIds& ids,
                                  const BlendPictureInputs& inputs);

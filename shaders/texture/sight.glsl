@@ -6,7 +6,7 @@
 const float kLeastCosine = 0.1;
 const float kBorder = 0.06;    // of the picture's width, over which weights fall to 0
 const float kOffVox = 1.5;     // farther from the cast surface is another one
-const float kSharpness = 3.0;  // of the preference for views that see most of a point
+const float kSharpness = 2.0;  // of the preference for views that see most of a point
 
 struct Sight {
     bool within;        // the picture, and turned towards it

@@ -369,9 +369,9 @@ TEST_F(BakeTest, ANearPictureCountsForMuchMoreThanAFarOne) {
     BakePicture far = picture_of_wall(0.6, glm::dvec3(0.5), [](auto, auto) { return glm::dvec3(0.8); });
     far.world_from_camera = glm::translate(RigidTransform(1.0), glm::dvec3(0, 0, -0.3));
     bake(layout, {near, far});
-    // Weights are as 1 to 2^-6, all else is alike.
+    // Weights are as 1 to 2^-4, all else is alike.
     const glm::vec4 sum = sums[at(37, 26)];
-    EXPECT_NEAR(sum.r / sum.a, 0.2 + 0.6 / 65, 1e-3);
+    EXPECT_NEAR(sum.r / sum.a, 0.2 + 0.6 / 17, 1e-3);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ glm::dvec4 blend_picture(const BakePicture& picture, const glm::dvec3& position_
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);
     const double fade = into * into * (3 - 2 * into);
     const double centred = std::max(std::exp(-32 * glm::dot(at - glm::round(at), at - glm::round(at))), 0.05);
-    const double weight = std::pow(cosine / (range_m * range_m), 3) * fade * std::max(clear * clear, 1e-3) * centred;
+    const double weight = std::pow(cosine / (range_m * range_m), 2) * fade * std::max(clear * clear, 1e-3) * centred;
     return glm::dvec4(weight * albedo, weight);
 }
 

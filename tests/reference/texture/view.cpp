@@ -123,7 +123,7 @@ SaidToEye blend_diffuse(const BakePicture& picture, const DiffusePicture& taken,
     const double apart = glm::distance(to_eye, to_camera) / kEyesApart_rad;
     if (worth == 0.25 && apart > 2) return {};
     const double into = std::clamp(border / (0.06 * camera.extent.width), 0.0, 1.0);
-    const double weight = std::pow(sight, 3) * into * into * (3 - 2 * into) / std::pow(1 + apart * apart, 2);
+    const double weight = std::pow(sight, 2) * into * into * (3 - 2 * into) / std::pow(1 + apart * apart, 2);
     return {worth == 1 ? glm::dvec4(weight * albedo, weight) : glm::dvec4(0), glm::dvec4(weight * leaves, weight)};
 }
 
