@@ -3,7 +3,7 @@
   blender --python tools/blender_import.py -- RUN [--pose N] [--render OUT.png] [--plain] [--bounces N]
 
 Replaces all objects of the open file. Sets what the importer gets wrong: materials, brightness and radius of lamps,
-bulbs, ambient light, colour management. --pose places the camera at pose N of RUN/trajectory.txt, from 0. --render
+bulbs, light from afar, colour management. --pose places the camera at pose N of RUN/trajectory.txt, from 0. --render
 writes a picture of the recording's size; add -b before --python to do without a window. --plain leaves materials and
 lamps as Blender's importer makes them, and sets exposure, colours and ambient light alone. --bounces is how often light
 is reflected on its way, 0 as in Patina's re-rendering. docs/guide/blender.md has the same by hand.
@@ -112,6 +112,32 @@ def set_world(scene, ambient, strength):
     background.inputs["Strength"].default_value = strength
 
 
+def set_environment(scene, picture, strength):
+    """Light from afar, which stands beside scene.glb."""
+    nodes, links = scene.world.node_tree.nodes, scene.world.node_tree.links
+    environment = nodes.new("ShaderNodeTexEnvironment")
+    environment.image = bpy.data.images.load(str(picture.absolute()))
+    links.new(environment.outputs["Color"], nodes["Background"].inputs["Color"])
+    nodes["Background"].inputs["Strength"].default_value = strength
+
+
+def luminance_per_pixel_value(extras):
+    """Of lamps and of light from afar: where there are both they have one scale."""
+    photometric, environment = extras.get("photometric", {}), extras.get("environment", {})
+    return photometric.get("candela_per_intensity", environment.get("luminance_per_pixel_value", 1))
+
+
+def light_from_afar(scene, run, extras, plain):
+    luminance = luminance_per_pixel_value(extras)
+    picture = run / extras["environment"]["file"] if "environment" in extras else None
+    if picture and picture.exists():
+        set_environment(scene, picture, 1 / (LUMENS_PER_WATT if plain else luminance))
+        return
+    lights = run / "lights.json"
+    ambient = json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0)
+    set_world(scene, ambient, luminance / LUMENS_PER_WATT if plain else 1)
+
+
 def add_camera(scene, root, pose, camera):
     """`pose` is a pose of trajectory.txt; `camera` has width, height, fx, cx and cy in pixels."""
     x, y, z, qx, qy, qz, qw = map(float, pose.split()[1:])
@@ -154,19 +180,18 @@ def main():
         sys.exit("tools/blender_import.py sets what Blender 3.4's importer makes; this is " + bpy.app.version_string)
     scene = bpy.context.scene
     description = description_of(given.run / "scene.glb")
-    candela = description["scenes"][0].get("extras", {}).get("photometric", {}).get("candela_per_intensity", 1)
+    extras = description["scenes"][0].get("extras", {})
+    luminance = luminance_per_pixel_value(extras)
     root = import_scene(given.run / "scene.glb", given.plain)
     bpy.context.view_layer.update()  # of matrix_world
     if given.plain:
-        scene.view_settings.exposure = math.log2(LUMENS_PER_WATT / candela)
+        scene.view_settings.exposure = math.log2(LUMENS_PER_WATT / luminance)
     else:
         for material in description.get("materials", []):
             if material["name"] in bpy.data.materials:
                 set_material(bpy.data.materials[material["name"]], material)
-        set_lamps(list(bpy.data.objects), candela)
-    lights = given.run / "lights.json"
-    ambient = json.loads(lights.read_text()).get("ambient", (0, 0, 0)) if lights.exists() else (0, 0, 0)
-    set_world(scene, ambient, candela / LUMENS_PER_WATT if given.plain else 1)
+        set_lamps(list(bpy.data.objects), luminance)
+    light_from_afar(scene, given.run, extras, given.plain)
     poses = [line for line in (given.run / "trajectory.txt").read_text().splitlines() if not line.startswith("#")]
     add_camera(scene, root, poses[given.pose], json.loads((given.run / "run.json").read_text())["sequence"]["depth"])  # whose poses they are
     set_render(scene, given.bounces)

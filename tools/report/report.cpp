@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <string_view>
 #include <vector>
 
@@ -59,11 +58,21 @@ std::string folded(std::string_view title, const std::string& html) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", html_escaped(title), html);
 }
 
-/// One point of the verdict. Lines do not break at the dashes of the program's options.
+/// The program's options as code, where lines do not break at their dashes.
+std::string with_marked_options(std::string_view html) {
+    constexpr std::string_view kOptionLetters = "abcdefghijklmnopqrstuvwxyz-";
+    std::string marked;
+    for (size_t at = html.find("--"); at != std::string_view::npos; at = html.find("--")) {
+        const size_t end = std::min(html.find_first_not_of(kOptionLetters, at), html.size());
+        marked += fmt::format("{}<code>{}</code>", html.substr(0, at), html.substr(at, end - at));
+        html.remove_prefix(end);
+    }
+    return marked.append(html);
+}
+
+/// One point of the verdict.
 std::string verdict_item(const char* kind, const std::string& sentence) {
-    static const std::regex option("--[a-z-]+");
-    const std::string html = std::regex_replace(html_escaped(sentence), option, "<code>$&</code>");
-    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, html);
+    return fmt::format("<li class='{}'><span>{}</span></li>\n", kind, with_marked_options(html_escaped(sentence)));
 }
 
 std::string verdict_list(const RunSummary& summary) {
