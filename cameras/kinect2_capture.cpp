@@ -19,7 +19,7 @@ void Kinect2Capture::fix_exposure(const sensor::kinect2::ManualExposure& exposur
     device_.set_exposure(exposure);
 }
 
-std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
+std::optional<RawReading> Kinect2Capture::next() {
     if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
     return newest_.take();
 }

@@ -181,7 +181,7 @@ TEST(PlayedSource, TheTapIsNotCalledOnceItIsStopped) {
 }
 
 TEST(PlayedSource, StopEndsAWait) {
-    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after PlayedSource::kLongestGap_s
+    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after Player<Frame>::kLongestGap_s
     ASSERT_TRUE(source.next());
     const auto start = now();
     std::jthread stopper([&] {
@@ -189,7 +189,7 @@ TEST(PlayedSource, StopEndsAWait) {
         source.stop();
     });
     EXPECT_FALSE(source.next());
-    EXPECT_LT(now() - start, std::chrono::duration<double>(PlayedSource::kLongestGap_s));
+    EXPECT_LT(now() - start, std::chrono::duration<double>(Player<Frame>::kLongestGap_s));
 }
 
 }  // namespace

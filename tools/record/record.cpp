@@ -1,5 +1,3 @@
-#include "tools/record/record.h"
-
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -23,7 +21,7 @@
 #include "tools/program/mebibytes.h"
 #include "tools/program/progress.h"
 #include "tools/program/standard_streams.h"
-#include "tools/record/camera_pass.h"
+#include "tools/record/record.h"
 
 namespace patina::tools {
 
@@ -46,13 +44,12 @@ class Recording {
     /// exposure where that was asked for. The camera runs on between the two: its calibration holds for one run.
     void add(cameras::Kinect2Capture& capture) {
         const bool twice = !options_.lighting.empty();
-        const auto pass = std::make_shared<CameraPass>(recorder_);
-        capture.set_tap([pass](const sensor::RecordedFrame& frame) { pass->take(frame); });
-        add_pass(capture, *pass, SequenceRole::kMain, twice ? "sequence 1 of 2: " : "");
+        const auto pass = tapped(capture);
+        add_pass(capture, *pass, SequenceRole::kMain, !twice, twice ? "sequence 1 of 2" : "");
         if (twice && recorder_->problem().empty() && !interrupt_.must_end()) {
             interrupt_.forget();
             capture.fix_exposure({static_cast<float>(options_.low_exposure_ms), 1});
-            add_pass(capture, *pass, SequenceRole::kLighting, "sequence 2 of 2: ");
+            add_pass(capture, *pass, SequenceRole::kLighting, true, "sequence 2 of 2");
         }
         capture.stop();
         if (const uint64_t lost = capture.counts().lost; lost > 0)
@@ -61,7 +58,7 @@ class Recording {
 
     /// The same of a camera whose exposure cannot be set: what it shows of itself.
     void add(sensor::CameraSource& camera) {
-        if (!options_.quiet) print_error("{}\n", sensor::instruction(SequenceRole::kMain));
+        instruct(SequenceRole::kMain, "");
         sensor::ExposureCheck exposure(SequenceRole::kMain);
         begin(SequenceRole::kMain, camera.info());
         camera.set_tap(sensor::tap_to(recorder_));
@@ -71,10 +68,12 @@ class Recording {
 
     /// Records one sequence to its end.
     void add(SequenceRole role, const std::string& path, const std::string& format, const std::string& place) {
+        if (const auto raw = options_.simulate ? open_raw_to_play(path) : nullptr)
+            return add_pass(*raw, *tapped(*raw), role, true, place);
         sensor::ExposureCheck exposure(role);
         if (options_.simulate) {
-            if (!options_.quiet) print_error("{}: {}\n", place, sensor::instruction(role));
-            play(role, open_to_play(path, format), exposure);
+            instruct(role, place);
+            play(role, sensor::open_sequence(path, format), exposure);
         } else if (sensor::names_recording(path)) {
             copy_rows(role, path, exposure);
         } else {
@@ -154,12 +153,25 @@ class Recording {
             advice_.push_back(fmt::format("{} sequence: {}", name_of(role), advice));
     }
 
-    void add_pass(cameras::Kinect2Capture& capture, CameraPass& pass, SequenceRole role, const char* place) {
-        if (!options_.quiet) print_error("{}{}\n", place, sensor::instruction(role));
+    /// What a person is to do now. `place`: of the sequence among others; empty where it is alone.
+    void instruct(SequenceRole role, const std::string& place) const {
+        if (!options_.quiet) print_error("{}{}{}\n", place, place.empty() ? "" : ": ", sensor::instruction(role));
+    }
+
+    /// Takes what a capture sends, on its thread.
+    std::shared_ptr<CameraPass> tapped(cameras::RawCapture& capture) {
+        auto pass = std::make_shared<CameraPass>(recorder_);
+        capture.set_tap([pass](const cameras::RawReading& reading) { pass->take(reading); });
+        return pass;
+    }
+
+    /// `last`: the capture ends with this pass.
+    void add_pass(cameras::RawCapture& capture, CameraPass& pass, SequenceRole role, bool last,
+                  const std::string& place) {
+        instruct(role, place);
         begin_pass(role);
         pass.begin(role, capture.sequence());
         sensor::ExposureCheck exposure(role);
-        const bool last = options_.lighting.empty() || role == SequenceRole::kLighting;
         std::optional<CameraWatch> watch;  // who ends the first pass of two wants the camera to go on
         if (last) watch.emplace(capture, interrupt_);
         Progress progress("Recording", std::nullopt, options_.quiet);
@@ -321,8 +333,8 @@ Outcome record_camera(const RecordOptions& options) {
 
 /// Wrong paths are found before the file is there.
 void expect_readable(const RecordOptions& options, const std::string& source, const std::string& format) {
-    if (options.simulate) {
-        open_to_play(source, format);
+    if (options.simulate && !open_raw_to_play(source)) {
+        sensor::open_sequence(source, format);
     } else if (sensor::names_recording(source)) {
         const auto [file, role] = sensor::named_sequence(source);
         sensor::RecordingFile(file).sequence(role);
