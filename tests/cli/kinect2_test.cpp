@@ -8,6 +8,7 @@
 #include "cameras/kinect2_decoder.h"
 #include "scenes/kinect2/infrared_frame.h"
 #include "sensor/files/picture_file.h"
+#include "sensor/open.h"
 #include "sensor/recording/container.h"
 #include "tests/cli/run_folder.h"
 #include "tests/simulated_kinect2/pages.h"
@@ -127,6 +128,19 @@ class Kinect2Commands : public RunFolderTest {
         EXPECT_NEAR(light.at(256, 212), kMeanGain * 16 * 0.5 * 2000 / (kBox_m * kBox_m), 250);
     }
 
+    /// Decoded frames read as the raw ones do, but for the infrared pictures.
+    static void expect_the_same_decoded(const fs::path& raw, const fs::path& raw_exported, const fs::path& decoded) {
+        const Outcome recorded = patina({"record", raw, "--decoded", "--out", decoded, "--quiet"});
+        ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+        EXPECT_LT(fs::file_size(decoded), fs::file_size(raw) / 2);
+        const fs::path exported = decoded.string() + "-native";
+        const Outcome outcome = patina({"export", decoded, "--native", exported, "--quiet"});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        auto expected = files_in(raw_exported);
+        std::erase_if(expected, [](const auto& file) { return file.first.starts_with("infrared/"); });
+        EXPECT_TRUE(files_in(exported) == expected);
+    }
+
     /// Frames that were fused, or repeat what was: this device sends the same picture again and again.
     static uint64_t taken(const nlohmann::json& summary) {
         return summary["frames"]["used"].get<uint64_t>() + summary["frames"].value("repeated", uint64_t{0});
@@ -179,8 +193,9 @@ TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
     expect_copies_of_its_rows(file_);
     expect_to_play_live(file_);
     expect_infrared_in_export(file_, beside("native"));
+    expect_the_same_decoded(file_, beside("native"), beside("decoded.patina"));
     const nlohmann::json summary =
-        run_quietly(file_, {"--frames", "3", "--lighting", "none", "--texture", "off", "--no-map"});
+        run_quietly(beside("decoded.patina"), {"--frames", "3", "--lighting", "none", "--texture", "off", "--no-map"});
     EXPECT_EQ(taken(summary), 3u);
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
 }
@@ -191,9 +206,12 @@ TEST_F(Kinect2Commands, AnUnpluggedKinectLeavesWhatWasFused) {
     EXPECT_THAT(expect_failure(outcome), AllOf(HasSubstr("unplugged"), HasSubstr("holds what could still be written")));
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
     const Outcome recorded =
-        patina({"record", "kinect2", "--out", file_, "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
+        patina({"record", "kinect2", "--decoded", "--out", file_, "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
     EXPECT_THAT(expect_failure(recorded), AllOf(HasSubstr("unplugged"), HasSubstr("frames")));
-    EXPECT_GT(*sensor::RecordingFile(file_).sequence(sensor::SequenceRole::kMain).info.frames, 1u);
+    const auto source = sensor::open_sequence(file_);  // without a device
+    EXPECT_GT(*source->info().frames, 1u);
+    const auto frame = std::get<Frame>(*source->next());
+    EXPECT_NEAR(std::get<Image<float>>(frame.depth).at(256, 212), kBox_m, 0.01);
 }
 
 TEST_F(Kinect2Commands, WhatIsLostOnTheWayIsCounted) {
