@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -44,7 +45,7 @@ class Kinect2Capture : public RawCapture {
     double now_s() const override;
 
     /// Lost is an infrared frame of which a packet did not arrive, that has no picture, or that the tap was too slow
-    /// for.
+    /// for; from the first next() on, as nobody wants those before.
     sensor::LiveCounts counts() const override;
 
   private:
@@ -52,12 +53,16 @@ class Kinect2Capture : public RawCapture {
     void run();
     void note_time(double timestamp_s);
     bool hand_over(sensor::RecordedFrame frame);
+    uint64_t lost() const;
+
+    static constexpr uint64_t kNotAsked = UINT64_MAX;
 
     sensor::kinect2::Device device_;
     sensor::RecordedSequence sequence_;
     Kinect2Packer packer_;  ///< of the capturing thread alone
     Tap tap_;
     sensor::Newest<sensor::RecordedFrame> newest_;
+    std::atomic<uint64_t> lost_before_ = kNotAsked;  ///< before the first next()
     std::mutex tap_mutex_;                           ///< held while the tap runs
     bool stopped_ = false;                           ///< of tap_mutex_
     mutable std::mutex clock_mutex_;

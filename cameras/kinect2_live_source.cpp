@@ -6,7 +6,9 @@ namespace patina::cameras {
 
 Kinect2LiveSource::Kinect2LiveSource(vulkan::Device& device, std::shared_ptr<RawCapture> capture)
     : capture_(std::move(capture)),
-      decoder_([&device]() -> vulkan::Device& { return device; }, capture_->sequence(), capture_->name()) {}
+      decoder_([&device]() -> vulkan::Device& { return device; }, capture_->sequence(), capture_->name()) {
+    decoder_.prepare();  // a camera does not wait
+}
 
 std::optional<Reading> Kinect2LiveSource::next() {
     auto taken = capture_->next();
