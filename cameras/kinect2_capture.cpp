@@ -19,8 +19,12 @@ void Kinect2Capture::fix_exposure(const sensor::kinect2::ManualExposure& exposur
     device_.set_exposure(exposure);
 }
 
-std::optional<std::variant<RecordedFrame, Skipped>> Kinect2Capture::next() {
-    if (!thread_.joinable()) thread_ = std::jthread([this] { run(); });
+std::optional<RawReading> Kinect2Capture::next() {
+    if (!thread_.joinable()) {
+        lost_before_ = lost();
+        device_.forget_waiting();  // they are as old as the wait for this call
+        thread_ = std::jthread([this] { run(); });
+    }
     return newest_.take();
 }
 
@@ -40,9 +44,14 @@ double Kinect2Capture::now_s() const {
 
 sensor::LiveCounts Kinect2Capture::counts() const {
     sensor::LiveCounts counts = newest_.counts();
-    const sensor::kinect2::StreamStatistics statistics = device_.statistics();
-    counts.lost = statistics.infrared.lost_frames + statistics.unpaired_infrared + statistics.dropped_frames;
+    const uint64_t before = lost_before_;
+    counts.lost = before == kNotAsked ? 0 : lost() - before;
     return counts;
+}
+
+uint64_t Kinect2Capture::lost() const {
+    const sensor::kinect2::StreamStatistics statistics = device_.statistics();
+    return statistics.infrared.lost_frames + statistics.unpaired_infrared + statistics.dropped_frames;
 }
 
 void Kinect2Capture::run() {

@@ -1,15 +1,15 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
-#include <variant>
 
 #include "cameras/kinect2_recorded.h"
+#include "cameras/raw_capture.h"
 #include "sensor/kinect2/device.h"
 #include "sensor/live/newest_frame.h"
 
@@ -17,33 +17,26 @@ namespace patina::cameras {
 
 /// A Kinect v2 that runs: a thread takes its raw frames as they come. The newest one waits to be asked for; the tap
 /// sees all. Nothing is decoded.
-class Kinect2Capture : public sensor::LiveCapture {
+class Kinect2Capture : public RawCapture {
   public:
-    /// Sees every frame before any is dropped, on the capturing thread; must return before the next one.
-    using Tap = std::function<void(const sensor::RecordedFrame&)>;
-
     /// Starts the device. Throws Error as sensor::kinect2::Device.
     explicit Kinect2Capture(std::unique_ptr<sensor::kinect2::Transport> transport);
     ~Kinect2Capture() override;
 
-    /// What holds for all frames.
-    const sensor::RecordedSequence& sequence() const { return sequence_; }
+    const sensor::RecordedSequence& sequence() const override { return sequence_; }
     /// "Kinect v2 at 2-1".
-    const std::string& name() const { return device_.name(); }
+    const std::string& name() const override { return device_.name(); }
     /// What works less well than it should; empty: nothing.
     std::string warning() const { return device_.warning(); }
 
     /// Fixes the exposure, and the white balance as it is. From any thread. Throws as sensor::kinect2::Device.
     void fix_exposure(const sensor::kinect2::ManualExposure& exposure);
 
-    /// To be called before the first next().
-    void set_tap(Tap tap) { tap_ = std::move(tap); }
+    void set_tap(Tap tap) override { tap_ = std::move(tap); }
 
-    /// The next frame, or why there is none; waits for it. Empty after stop(). Frames are taken from the first call on.
-    /// Throws Error where the device fails or is unplugged, after the frames that came before.
-    std::optional<std::variant<sensor::RecordedFrame, Skipped>> next();
+    /// Throws Error where the device fails or is unplugged.
+    std::optional<RawReading> next() override;
 
-    /// Once this returns, the tap is not called any more.
     void stop() override;
 
     /// The device's clock is known by its frames alone: the one that came soonest after its time stamp counts as
@@ -52,7 +45,7 @@ class Kinect2Capture : public sensor::LiveCapture {
     double now_s() const override;
 
     /// Lost is an infrared frame of which a packet did not arrive, that has no picture, or that the tap was too slow
-    /// for.
+    /// for; from the first next() on, as nobody wants those before.
     sensor::LiveCounts counts() const override;
 
   private:
@@ -60,14 +53,18 @@ class Kinect2Capture : public sensor::LiveCapture {
     void run();
     void note_time(double timestamp_s);
     bool hand_over(sensor::RecordedFrame frame);
+    uint64_t lost() const;
+
+    static constexpr uint64_t kNotAsked = UINT64_MAX;
 
     sensor::kinect2::Device device_;
     sensor::RecordedSequence sequence_;
     Kinect2Packer packer_;  ///< of the capturing thread alone
     Tap tap_;
     sensor::Newest<sensor::RecordedFrame> newest_;
-    std::mutex tap_mutex_;  ///< held while the tap runs
-    bool stopped_ = false;  ///< of tap_mutex_
+    std::atomic<uint64_t> lost_before_ = kNotAsked;  ///< before the first next()
+    std::mutex tap_mutex_;                           ///< held while the tap runs
+    bool stopped_ = false;                           ///< of tap_mutex_
     mutable std::mutex clock_mutex_;
     std::optional<Clock::time_point> origin_;  ///< of clock_mutex_: when the device's clock was at 0, at the latest
     std::jthread thread_;                      // last: joins before what it uses is destroyed

@@ -1,14 +1,14 @@
 #include "cameras/kinect2_decoder.h"
 
 #include <algorithm>
-#include <utility>
 #include <variant>
+#include <vector>
 
 #include "passes/kinect2/decode.h"
 #include "passes/kinect2/measure_phases.h"
 #include "passes/kinect2/register_color.h"
-#include "sensor/files/picture_file.h"
 #include "sensor/kinect2/raw_frame.h"
+#include "sensor/recording/payload_codec.h"
 #include "sensor/recording/recording_source.h"
 
 namespace patina::cameras {
@@ -19,19 +19,12 @@ static_assert(kinect2::kSubImageBytes == sensor::kinect2::kSubImageBytes);
 
 /// The picture in a JPEG, as the world is.
 Image<SrgbPixel> color_of(std::span<const uint8_t> jpeg, const std::string& name) {
-    ColorImage decoded;
     try {
-        decoded = sensor::decode_color(name, jpeg, kinect2::kColorExtent);
+        return std::get<Image<SrgbPixel>>(
+            sensor::decode_color(sensor::kMirroredJpegPicture, jpeg, kinect2::kColorExtent, name));
     } catch (const Error& error) {
         throw sensor::DamagedFrame(error.what());
     }
-    if (!std::holds_alternative<Image<SrgbPixel>>(decoded))
-        throw sensor::DamagedFrame(name, " has a colour picture in OpenEXR, not in JPEG");
-    Image<SrgbPixel> picture = std::get<Image<SrgbPixel>>(std::move(decoded));
-    const auto width = static_cast<ptrdiff_t>(picture.extent().width);
-    auto row = picture.pixels().begin();
-    for (uint32_t y = 0; y < picture.extent().height; ++y, row += width) std::reverse(row, row + width);
-    return picture;
 }
 
 }  // namespace
@@ -85,6 +78,14 @@ Kinect2Pictures Kinect2Decoder::decode(std::span<const uint8_t> infrared, std::s
     pictures.depth_m = depth_m.image<float>();
     if (with_infrared_) pictures.infrared = light.image<float>();
     return pictures;
+}
+
+void Kinect2Decoder::prepare() {
+    const std::vector<uint8_t> dark(gpu::kPhaseImages * kinect2::kSubImageBytes);
+    graph::FrameGraph frame = runner_.begin();
+    frame.read_back(kinect2::add_decode(frame, tables_.import(frame), dark).depth_m);
+    runner_.submit(std::move(frame));
+    runner_.wait();
 }
 
 }  // namespace patina::cameras

@@ -41,6 +41,9 @@ class Kinect2Decoder {
     /// another size; Error where the device fails.
     Kinect2Pictures decode(std::span<const uint8_t> infrared, std::span<const uint8_t> jpeg, const std::string& name);
 
+    /// Lets the device build what decode() needs, with a frame that shows nothing. Throws Error where the device fails.
+    void prepare();
+
     const Intrinsics& depth_camera() const { return tables_.host().depth; }
 
   private:

@@ -4,9 +4,11 @@
 
 namespace patina::cameras {
 
-Kinect2LiveSource::Kinect2LiveSource(vulkan::Device& device, std::shared_ptr<Kinect2Capture> capture)
+Kinect2LiveSource::Kinect2LiveSource(vulkan::Device& device, std::shared_ptr<RawCapture> capture)
     : capture_(std::move(capture)),
-      decoder_([&device]() -> vulkan::Device& { return device; }, capture_->sequence(), capture_->name()) {}
+      decoder_([&device]() -> vulkan::Device& { return device; }, capture_->sequence(), capture_->name()) {
+    decoder_.prepare();  // a camera does not wait
+}
 
 std::optional<Reading> Kinect2LiveSource::next() {
     auto taken = capture_->next();
@@ -17,6 +19,8 @@ std::optional<Reading> Kinect2LiveSource::next() {
     frame.index = recorded.index;
     frame.timestamp_s = recorded.timestamp_s;
     frame.exposure = recorded.exposure;
+    frame.world_from_camera = recorded.world_from_camera;
+    frame.pose_defect = recorded.pose_defect;
     try {
         decoder_.decode(recorded, frame);
     } catch (const sensor::DamagedFrame& error) {

@@ -89,12 +89,16 @@ Kinect2PayloadDecoder::Kinect2PayloadDecoder(GiveDevice give_device, const senso
       streams_(sequence.streams),
       model_(camera_model(sensor::kinect2::parse_calibration(pages_in(sequence, where_), where_))) {}
 
-void Kinect2PayloadDecoder::decode(const sensor::RecordedFrame& recorded, Frame& frame) {
+Kinect2Decoder& Kinect2PayloadDecoder::decoder() {
     if (!decoder_) decoder_ = std::make_unique<Kinect2Decoder>(give_device_(), model_, on_infrared_ != nullptr);
+    return *decoder_;
+}
+
+void Kinect2PayloadDecoder::decode(const sensor::RecordedFrame& recorded, Frame& frame) {
     std::span<const uint8_t> infrared, jpeg;
     for (const sensor::Payload& payload : recorded.payloads)
         (streams_.at(payload.stream).name == "color" ? jpeg : infrared) = payload.content;
-    Kinect2Pictures pictures = decoder_->decode(infrared, jpeg, text(where_, ": frame ", recorded.index));
+    Kinect2Pictures pictures = decoder().decode(infrared, jpeg, text(where_, ": frame ", recorded.index));
     if (on_infrared_) on_infrared_(std::move(pictures.infrared));
     frame.color = std::move(pictures.color);
     frame.depth = std::move(pictures.depth_m);

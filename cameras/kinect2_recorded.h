@@ -42,7 +42,12 @@ class Kinect2PayloadDecoder : public sensor::PayloadDecoder {
 
     void decode(const sensor::RecordedFrame& recorded, Frame& frame) override;
 
+    /// Makes the tables, and lets the device build what it needs, before the first decode().
+    void prepare() { decoder().prepare(); }
+
   private:
+    Kinect2Decoder& decoder();
+
     GiveDevice give_device_;
     OnInfrared on_infrared_;
     std::string where_;

@@ -115,7 +115,7 @@ uint64_t Context::available_memory() const {
     vk::PhysicalDeviceMemoryProperties2 properties;
     if (has_memory_budget_) properties.pNext = &budget;  // a driver without the extension may warn of the structure
     (*physical_).getMemoryProperties2(&properties, *physical_.getDispatcher());
-    const uint64_t held = static_cast<uint64_t>(allocated_bytes_.load());
+    const uint64_t held = held_memory();
     uint64_t available = 0;
     for (uint32_t i = 0; i < properties.memoryProperties.memoryHeapCount; ++i) {
         const vk::MemoryHeap& heap = properties.memoryProperties.memoryHeaps[i];

@@ -98,6 +98,8 @@ class Context {
     void note_memory(int64_t bytes) { allocated_bytes_ += bytes; }
     /// See Device::available_memory.
     uint64_t available_memory() const;
+    /// See Device::held_memory.
+    uint64_t held_memory() const { return static_cast<uint64_t>(allocated_bytes_.load()); }
 
   private:
     void open_device(uint32_t index);

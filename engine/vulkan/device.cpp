@@ -210,6 +210,8 @@ MemoryRequirement Device::requirement(const ImageDesc& desc) const {
 
 uint64_t Device::available_memory() const { return context_->available_memory(); }
 
+uint64_t Device::held_memory() const { return context_->held_memory(); }
+
 void Device::wait_idle() {
     guarded("waiting for the device", [&] { context_->device().waitIdle(); });
 }

@@ -112,6 +112,9 @@ class Device {
     /// than DeviceOptions::memory_limit leaves.
     uint64_t available_memory() const;
 
+    /// Bytes of memory that this device holds now: those of all its buffers, images and blocks.
+    uint64_t held_memory() const;
+
     /// Waits until the device has done all that was submitted.
     void wait_idle();
 

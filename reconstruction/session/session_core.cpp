@@ -17,6 +17,7 @@
 #include "reconstruction/session/session_lights.h"
 #include "reconstruction/session/session_materials.h"
 #include "reconstruction/session/session_state.h"
+#include "reconstruction/session/warm_up.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "sensor/look_ahead_source.h"
@@ -146,7 +147,12 @@ void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::d
 }
 
 void SessionCore::start_pipeline(std::optional<NetworkDescription> network) {
-    pipeline_.emplace(device_, choose_settings(options_, info_, illumination_, std::move(network)));
+    const ReconstructionSettings settings = choose_settings(options_, info_, illumination_, std::move(network));
+    if (!info_.frames) {  // a camera does not wait
+        report(options_.callbacks, "the device builds its programs; then the source begins");
+        warm_up(device_, settings, info_, illumination_);
+    }
+    pipeline_.emplace(device_, settings);
     if (!pipeline_->reflectance()) return;
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
     if (options_.materials != Materials::kTruth) return;

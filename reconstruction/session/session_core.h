@@ -39,7 +39,8 @@ std::string full_pool_warning(const PoolState& pool);
 class SessionCore {
   public:
     /// Opens options.sequence where `source` is null, looks at its first frames, and finds the lights. A world far from
-    /// its origin is moved there (world_offset_m). Throws Error for what cannot be read or met, Interrupted when the
+    /// its origin is moved there (world_offset_m). Before a source without a length, which does not wait, the device
+    /// builds what it needs (warm_up). Throws Error for what cannot be read or met, Interrupted when the
     /// caller stops it. The device must outlive this.
     SessionCore(vulkan::Device& device, const SessionOptions& options, std::unique_ptr<Source> source = nullptr);
 

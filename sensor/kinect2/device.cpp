@@ -82,6 +82,10 @@ bool Device::next(RawFrame& frame) {
     return result == FrameQueue::Result::kFrame;
 }
 
+void Device::forget_waiting() {
+    if (const std::shared_ptr<Stream> running = stream()) running->frames().forget();
+}
+
 void Device::fail_silent(const StreamStatistics& statistics) const {
     const char* silent = "the two streams' time stamps do not fit";
     if (statistics.color.frames == 0) silent = "no colour picture arrived whole";

@@ -41,6 +41,10 @@ class Device {
     /// Unplugged, Error when no frame comes for a while, with what was lost on the way, or Error when the streams end.
     bool next(RawFrame& frame);
 
+    /// Throws away the frames that wait for next(), so that it yields what comes from now on. Does nothing when no
+    /// streams run.
+    void forget_waiting();
+
     /// Stops the streams. Does nothing when none run. Throws Error when the device refuses; not when it is gone.
     void stop();
 

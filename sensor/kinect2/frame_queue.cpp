@@ -48,6 +48,12 @@ FrameQueue::Result FrameQueue::pop(RawFrame& frame, std::chrono::milliseconds pa
     return Result::kFrame;
 }
 
+void FrameQueue::forget() {
+    const std::lock_guard lock(mutex_);
+    for (RawFrame& frame : frames_) spare_.push_back(std::move(frame));
+    frames_.clear();
+}
+
 uint64_t FrameQueue::dropped() const {
     const std::lock_guard lock(mutex_);
     return dropped_;

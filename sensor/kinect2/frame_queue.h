@@ -29,6 +29,9 @@ class FrameQueue {
     /// what closed the queue.
     Result pop(RawFrame& frame, std::chrono::milliseconds patience);
 
+    /// Throws away the frames that wait; they do not count as dropped.
+    void forget();
+
     uint64_t dropped() const;
 
   private:

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -9,11 +8,13 @@
 #include <variant>
 
 #include "sensor/live/live_source.h"
+#include "sensor/live/waiting_skips.h"
 
 namespace patina::sensor {
 
 /// Where a camera's thread leaves readings for the consumer: the newest item, and before it, one after the other, what
-/// was dropped or damaged. Both sides may be on any thread. An Item is a frame, decoded or not, with an `index`.
+/// was dropped or damaged. Its memory is bounded by one item and WaitingSkips. Both sides may be on any thread. An Item
+/// is a frame, decoded or not, with an `index`.
 template <class Item>
 class Newest {
   public:
@@ -27,7 +28,7 @@ class Newest {
             ++counts_.captured;
             drop_waiting();
             if (auto* skipped = std::get_if<Skipped>(&reading)) {
-                before_.push_back(std::move(*skipped));
+                before_.push(std::move(*skipped));
                 ++counts_.damaged;
             } else {
                 item_ = std::get<Item>(std::move(reading));
@@ -51,11 +52,7 @@ class Newest {
     std::optional<ItemOrSkipped> take() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return !before_.empty() || item_ || ended_; });
-        if (!before_.empty()) {
-            Skipped skipped = std::move(before_.front());
-            before_.pop_front();
-            return skipped;
-        }
+        if (auto skipped = before_.pop()) return std::move(*skipped);
         if (item_) {
             ++counts_.delivered;
             return std::exchange(item_, std::nullopt);
@@ -72,14 +69,14 @@ class Newest {
   private:
     void drop_waiting() {
         if (!item_) return;
-        before_.push_back({item_->index, "dropped: a newer frame came before it was asked for", true});
+        before_.push({item_->index, "dropped: a newer frame came before it was asked for", true});
         item_.reset();
         ++counts_.dropped;
     }
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::deque<Skipped> before_;  ///< dropped and damaged, older than item_
+    WaitingSkips before_;  ///< dropped and damaged, older than item_
     std::optional<Item> item_;
     bool ended_ = false;
     std::exception_ptr failure_;

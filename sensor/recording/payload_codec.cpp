@@ -1,5 +1,6 @@
 #include "sensor/recording/payload_codec.h"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -108,6 +109,16 @@ bool is_picture_file(std::string_view encoding) {
     return encoding == kPngPicture || encoding == kJpegPicture || encoding == kExrPicture;
 }
 
+Image<SrgbPixel> mirrored_jpeg(std::span<const uint8_t> content, Extent2D expected, const std::string& where) {
+    ColorImage decoded = decode_color(where, content, expected);
+    auto* picture = std::get_if<Image<SrgbPixel>>(&decoded);
+    if (!picture) throw Error(where, " has a colour picture in OpenEXR, not in JPEG");
+    const auto width = static_cast<ptrdiff_t>(expected.width);
+    auto row = picture->pixels().begin();
+    for (uint32_t y = 0; y < expected.height; ++y, row += width) std::reverse(row, row + width);
+    return std::move(*picture);
+}
+
 [[noreturn]] void fail_unknown(std::string_view encoding, const std::string& where) {
     throw Error(where, " is encoded as '", encoding, "', which is not known");
 }
@@ -115,7 +126,7 @@ bool is_picture_file(std::string_view encoding) {
 }  // namespace
 
 bool is_color_encoding(std::string_view encoding) {
-    return is_picture_file(encoding) || encoding == kRgb8 || encoding == kRgbFloat;
+    return is_picture_file(encoding) || encoding == kMirroredJpegPicture || encoding == kRgb8 || encoding == kRgbFloat;
 }
 
 bool is_depth_encoding(std::string_view encoding) {
@@ -142,6 +153,7 @@ ColorImage decode_color(std::string_view encoding, std::span<const uint8_t> cont
                         const std::string& where) {
     if (encoding == kRgb8) return unpacked<SrgbPixel>(content, expected, where);
     if (encoding == kRgbFloat) return unpacked<glm::vec3>(content, expected, where);
+    if (encoding == kMirroredJpegPicture) return mirrored_jpeg(content, expected, where);
     if (is_picture_file(encoding)) return decode_color(where, content, expected);
     fail_unknown(encoding, where);
 }

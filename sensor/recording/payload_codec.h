@@ -17,10 +17,11 @@ namespace patina::sensor {
 inline constexpr std::string_view kPngPicture = "png";
 inline constexpr std::string_view kJpegPicture = "jpeg";
 inline constexpr std::string_view kExrPicture = "exr";
-inline constexpr std::string_view kRgb8 = "zstd-rgb8";            ///< sRGB codes
-inline constexpr std::string_view kRgbFloat = "zstd-rgb32f";      ///< linear radiance
-inline constexpr std::string_view kDepth16 = "zstd-depth16";      ///< units of SequenceInfo::metres_per_unit
-inline constexpr std::string_view kDepthFloat = "zstd-depth32f";  ///< metres
+inline constexpr std::string_view kMirroredJpegPicture = "jpeg-mirrored";  ///< colour whose rows run from right to left
+inline constexpr std::string_view kRgb8 = "zstd-rgb8";                     ///< sRGB codes
+inline constexpr std::string_view kRgbFloat = "zstd-rgb32f";               ///< linear radiance
+inline constexpr std::string_view kDepth16 = "zstd-depth16";               ///< units of SequenceInfo::metres_per_unit
+inline constexpr std::string_view kDepthFloat = "zstd-depth32f";           ///< metres
 
 /// Whether decode_color() or decode_depth() knows the encoding.
 bool is_color_encoding(std::string_view encoding);
@@ -34,8 +35,8 @@ std::string_view lossless_encoding(const DepthImage& depth);
 std::vector<uint8_t> encode(const ColorImage& color);
 std::vector<uint8_t> encode(const DepthImage& depth);
 
-/// A picture of size `expected` from a payload; `where` names it in messages. Throws Error where the encoding is not
-/// known, or the bytes are damaged or of another size.
+/// A picture of size `expected` from a payload, as the world is; `where` names it in messages. Throws Error where the
+/// encoding is not known, or the bytes are damaged or of another size.
 ColorImage decode_color(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,
                         const std::string& where);
 DepthImage decode_depth(std::string_view encoding, std::span<const uint8_t> content, Extent2D expected,

@@ -8,6 +8,7 @@
 #include "cameras/kinect2_decoder.h"
 #include "scenes/kinect2/infrared_frame.h"
 #include "sensor/files/picture_file.h"
+#include "sensor/open.h"
 #include "sensor/recording/container.h"
 #include "tests/cli/run_folder.h"
 #include "tests/simulated_kinect2/pages.h"
@@ -71,27 +72,46 @@ class Kinect2Commands : public RunFolderTest {
         return environment;
     }
 
-    /// A raw recording is recorded anew as it is; it does not play.
-    static void expect_a_copy_of_its_rows(const fs::path& file) {
-        const fs::path copy = file.string() + "-copy.patina";
-        const Outcome copied = patina({"record", file, "--out", copy, "--quiet"});
-        ASSERT_EQ(copied.exit_code, 0) << copied.err;
-        sensor::RecordingFile a(file), b(copy);
+    static void expect_same_rows(const fs::path& one, const fs::path& other) {
+        sensor::RecordingFile a(one), b(other);
         const auto& sequence = a.sequence(sensor::SequenceRole::kMain);
-        EXPECT_EQ(b.sequence(sensor::SequenceRole::kMain).info.frames, sequence.info.frames);
+        ASSERT_EQ(b.sequence(sensor::SequenceRole::kMain).info.frames, sequence.info.frames);
         EXPECT_EQ(b.sequence(sensor::SequenceRole::kMain).attachments.size(), sequence.attachments.size());
         for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
             const auto frame = std::get<sensor::RecordedFrame>(a.read(sensor::SequenceRole::kMain, i));
-            const auto other = std::get<sensor::RecordedFrame>(b.read(sensor::SequenceRole::kMain, i));
-            EXPECT_EQ(other.timestamp_s, frame.timestamp_s);
+            const auto same = std::get<sensor::RecordedFrame>(b.read(sensor::SequenceRole::kMain, i));
+            EXPECT_EQ(same.timestamp_s, frame.timestamp_s);
             for (size_t k = 0; k < frame.payloads.size(); ++k) {
-                EXPECT_EQ(other.payloads.at(k).number, frame.payloads[k].number);
-                EXPECT_TRUE(other.payloads.at(k).content == frame.payloads[k].content);
+                EXPECT_EQ(same.payloads.at(k).number, frame.payloads[k].number);
+                EXPECT_TRUE(same.payloads.at(k).content == frame.payloads[k].content);
             }
         }
-        EXPECT_THAT(expect_failure(patina({"record", file, "--simulate", "--out", file.string() + "-played"})),
-                    HasSubstr("cannot be played"));
-        EXPECT_FALSE(fs::exists(file.string() + "-played"));
+    }
+
+    /// A raw recording is recorded anew as it is, as fast as it is read or as it plays.
+    static void expect_copies_of_its_rows(const fs::path& file) {
+        for (const bool plays : {false, true}) {
+            const fs::path copy = file.string() + (plays ? "-played.patina" : "-copy.patina");
+            std::vector<std::string> arguments{"record", file, "--out", copy, "--quiet"};
+            if (plays) arguments.emplace_back("--simulate");
+            const Outcome copied = patina(arguments);
+            ASSERT_EQ(copied.exit_code, 0) << copied.err;
+            expect_same_rows(file, copy);
+        }
+    }
+
+    /// A raw recording plays as the Kinect did: the run's device decodes the frames that it takes.
+    void expect_to_play_live(const fs::path& file) {
+        const fs::path again = beside("again.patina");
+        const Outcome played = patina({"live", "--simulate", file, "--lighting", "none", "--texture", "off", "--no-map",
+                                       "--out", beside("live"), "--record", again, "--quiet"});
+        ASSERT_EQ(played.exit_code, 0) << played.err;
+        const nlohmann::json summary = summary_of(beside("live"));
+        EXPECT_GE(taken(summary), 1u);
+        EXPECT_EQ(summary["live"]["captured"].get<uint32_t>(),
+                  *sensor::RecordingFile(file).sequence(sensor::SequenceRole::kMain).info.frames);
+        EXPECT_GT(fs::file_size(beside("live") / "scene.glb"), 100000u);
+        expect_same_rows(file, again);
     }
 
     static void expect_infrared_in_export(const fs::path& file, const fs::path& folder) {
@@ -106,6 +126,19 @@ class Kinect2Commands : public RunFolderTest {
             std::get<Image<uint16_t>>(sensor::read_depth(folder / "infrared/000000.png", Extent2D{512, 424}));
         // 16 times the amplitude: the box reflects a half of 2000, 1.4 m away.
         EXPECT_NEAR(light.at(256, 212), kMeanGain * 16 * 0.5 * 2000 / (kBox_m * kBox_m), 250);
+    }
+
+    /// Decoded frames read as the raw ones do, but for the infrared pictures.
+    static void expect_the_same_decoded(const fs::path& raw, const fs::path& raw_exported, const fs::path& decoded) {
+        const Outcome recorded = patina({"record", raw, "--decoded", "--out", decoded, "--quiet"});
+        ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+        EXPECT_LT(fs::file_size(decoded), fs::file_size(raw) / 2);
+        const fs::path exported = decoded.string() + "-native";
+        const Outcome outcome = patina({"export", decoded, "--native", exported, "--quiet"});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        auto expected = files_in(raw_exported);
+        std::erase_if(expected, [](const auto& file) { return file.first.starts_with("infrared/"); });
+        EXPECT_TRUE(files_in(exported) == expected);
     }
 
     /// Frames that were fused, or repeat what was: this device sends the same picture again and again.
@@ -157,23 +190,35 @@ TEST_F(Kinect2Commands, ARecordingHoldsWhatTheKinectSentAndReconstructs) {
     std::smatch farthest;
     ASSERT_TRUE(std::regex_search(info.out, farthest, std::regex("95 % below ([0-9.]+) m"))) << info.out;
     EXPECT_NEAR(std::stod(farthest[1]), kWall_m, 0.01);
-    expect_a_copy_of_its_rows(file_);
+    expect_copies_of_its_rows(file_);
+    expect_to_play_live(file_);
     expect_infrared_in_export(file_, beside("native"));
+    expect_the_same_decoded(file_, beside("native"), beside("decoded.patina"));
     const nlohmann::json summary =
-        run_quietly(file_, {"--frames", "3", "--lighting", "none", "--texture", "off", "--no-map"});
+        run_quietly(beside("decoded.patina"), {"--frames", "3", "--lighting", "none", "--texture", "off", "--no-map"});
     EXPECT_EQ(taken(summary), 3u);
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
 }
 
 TEST_F(Kinect2Commands, AnUnpluggedKinectLeavesWhatWasFused) {
-    const Outcome outcome =
-        patina({"live", "kinect2", "--out", out(), "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
+    const auto unplugged = [&](std::vector<std::string> arguments, const fs::path& recording) {
+        const fs::path cable = beside("unplugged");
+        fs::remove(cable);
+        Program program(arguments, with_kinect({{"UNPLUG_FILE", cable}}));
+        await_frames(program, recording, sensor::SequenceRole::kMain);
+        std::ofstream(cable) << "now";
+        return program.wait();
+    };
+    const Outcome outcome = unplugged({"live", "kinect2", "--out", out(), "--record", beside("live.patina"), "--quiet"},
+                                      beside("live.patina"));
     EXPECT_THAT(expect_failure(outcome), AllOf(HasSubstr("unplugged"), HasSubstr("holds what could still be written")));
     EXPECT_GT(fs::file_size(out() / "scene.glb"), 100000u);
-    const Outcome recorded =
-        patina({"record", "kinect2", "--out", file_, "--quiet"}, with_kinect({{"UNPLUG_AFTER", "8"}}));
+    const Outcome recorded = unplugged({"record", "kinect2", "--decoded", "--out", file_, "--quiet"}, file_);
     EXPECT_THAT(expect_failure(recorded), AllOf(HasSubstr("unplugged"), HasSubstr("frames")));
-    EXPECT_GT(*sensor::RecordingFile(file_).sequence(sensor::SequenceRole::kMain).info.frames, 1u);
+    const auto source = sensor::open_sequence(file_);  // without a device
+    EXPECT_GT(*source->info().frames, 0u);
+    const auto frame = std::get<Frame>(*source->next());
+    EXPECT_NEAR(std::get<Image<float>>(frame.depth).at(256, 212), kBox_m, 0.01);
 }
 
 TEST_F(Kinect2Commands, WhatIsLostOnTheWayIsCounted) {

@@ -29,6 +29,17 @@ TEST(Kinect2Queue, NewestWinsAndDropsAreCounted) {
     EXPECT_EQ(queue.pop(raw, 0ms), FrameQueue::Result::kNothing);
 }
 
+TEST(Kinect2Queue, ForgottenFramesDoNotComeAndAreNotDropped) {
+    FrameQueue queue(2);
+    queue.push(frame(1));
+    queue.forget();
+    queue.push(frame(2));
+    EXPECT_EQ(queue.dropped(), 0u);
+    RawFrame raw;
+    ASSERT_EQ(queue.pop(raw, 0ms), FrameQueue::Result::kFrame);
+    EXPECT_EQ(raw.sequence, 2u);
+}
+
 TEST(Kinect2Queue, FailureComesAfterTheFramesBeforeIt) {
     FrameQueue queue(2);
     queue.push(frame(7));

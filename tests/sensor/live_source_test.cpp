@@ -62,6 +62,53 @@ TEST(NewestFrame, AFailureComesAfterWhatWaits) {
     EXPECT_EQ(error_of([&] { newest.take(); }), "the camera is gone");
 }
 
+TEST(WaitingSkips, KeepEachReasonWhileFewWait) {
+    WaitingSkips waiting;
+    for (uint32_t i = 0; i < 10000; ++i) waiting.push({i, "dropped", true});  // one entry
+    waiting.push({10000, "a packet was lost"});
+    waiting.push({10001, "dropped", true});
+    for (uint32_t i = 0; i < 10002; ++i) {
+        const auto skipped = waiting.pop();
+        ASSERT_TRUE(skipped);
+        EXPECT_EQ(skipped->index, i);
+        EXPECT_EQ(skipped->dropped, i != 10000);
+        EXPECT_EQ(skipped->reason, i == 10000 ? "a packet was lost" : "dropped");
+    }
+    EXPECT_TRUE(waiting.empty());
+}
+
+TEST(WaitingSkips, OfTooManyTheNumbersAreKeptAndNoReason) {
+    constexpr uint32_t kFirst = 5, kFrames = 3 * WaitingSkips::kMostEntries;
+    WaitingSkips waiting;
+    for (uint32_t i = 0; i < kFrames; ++i) waiting.push({kFirst + i, text("reason ", i), i % 3 == 0});
+    uint32_t dropped = 0, with_reason = 0;
+    for (uint32_t i = 0; i < kFrames; ++i) {
+        const auto skipped = waiting.pop();
+        ASSERT_TRUE(skipped);
+        EXPECT_EQ(skipped->index, kFirst + i);
+        dropped += skipped->dropped;
+        with_reason += skipped->reason == text("reason ", i);
+        if (i == WaitingSkips::kMostEntries) {
+            EXPECT_EQ(skipped->reason,
+                      "damaged, as others of the frames 69 to 196 were: too many waited to keep each one's reason");
+        }
+    }
+    EXPECT_EQ(dropped, kFrames / 3);
+    EXPECT_EQ(with_reason, WaitingSkips::kMostEntries);
+    EXPECT_FALSE(waiting.pop());
+    waiting.push({kFirst + kFrames, "a reason"});  // there is room again
+    EXPECT_EQ(waiting.pop()->reason, "a reason");
+}
+
+TEST(WaitingSkips, WhatComesWhileTooManyWaitKeepsItsPlace) {
+    WaitingSkips waiting;
+    for (uint32_t i = 0; i <= WaitingSkips::kMostEntries; ++i) waiting.push({i, "a reason"});
+    for (uint32_t i = 0; i < 10; ++i) EXPECT_EQ(waiting.pop()->index, i);
+    waiting.push({WaitingSkips::kMostEntries + 1, "a reason"});
+    for (uint32_t i = 10; i <= WaitingSkips::kMostEntries + 1; ++i) EXPECT_EQ(waiting.pop()->index, i);
+    EXPECT_TRUE(waiting.empty());
+}
+
 std::unique_ptr<Source> recording_of(uint32_t frames, double fps) {
     std::vector<Reading> readings = test_readings(frames);
     for (Reading& reading : readings) {
@@ -134,7 +181,7 @@ TEST(PlayedSource, TheTapIsNotCalledOnceItIsStopped) {
 }
 
 TEST(PlayedSource, StopEndsAWait) {
-    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after PlayedSource::kLongestGap_s
+    PlayedSource source(recording_of(2, 0.001));  // the second frame comes after Player<Frame>::kLongestGap_s
     ASSERT_TRUE(source.next());
     const auto start = now();
     std::jthread stopper([&] {
@@ -142,7 +189,7 @@ TEST(PlayedSource, StopEndsAWait) {
         source.stop();
     });
     EXPECT_FALSE(source.next());
-    EXPECT_LT(now() - start, std::chrono::duration<double>(PlayedSource::kLongestGap_s));
+    EXPECT_LT(now() - start, std::chrono::duration<double>(Player<Frame>::kLongestGap_s));
 }
 
 }  // namespace

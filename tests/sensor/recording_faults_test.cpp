@@ -195,5 +195,102 @@ TEST(RecordingFaults, FlippedBitsGiveAnErrorOrTheIntactPart) {
     EXPECT_GT(partial + refused, files / 10) << "the attack is too weak to tell";
 }
 
+constexpr size_t kSmallFrame = 3000;
+
+/// What a file with raw frames gives, compared with what was recorded. Returns how many are intact.
+uint32_t intact_raw_frames(const fs::path& file, uint32_t recorded) {
+    RecordingFile recording(file);
+    const uint32_t frames = *recording.sequence(SequenceRole::kMain).info.frames;
+    EXPECT_LE(frames, recorded);
+    uint32_t intact = 0;
+    for (uint32_t i = 0; i < std::min(frames, recorded); ++i) {
+        const auto read = recording.read(SequenceRole::kMain, i);
+        if (const auto* skipped = std::get_if<Skipped>(&read)) {
+            EXPECT_THAT(skipped->reason, ::testing::HasSubstr(file.filename().string()));
+            continue;
+        }
+        const auto& frame = std::get<RecordedFrame>(read);
+        const RecordedFrame expected = raw_frame(i, kSmallFrame);
+        EXPECT_EQ(frame.timestamp_s, expected.timestamp_s);
+        EXPECT_TRUE(frame.payloads.at(0).content == expected.payloads[0].content) << "frame " << i;
+        ++intact;
+    }
+    return intact;
+}
+
+struct Damage {
+    int untouched = 0, partial = 0, refused = 0;
+};
+
+/// Reads a file that was damaged: with what is intact, or with one sentence that names it.
+void count_damage(const fs::path& file, uint32_t recorded, Damage& damage) {
+    try {
+        (intact_raw_frames(file, recorded) == recorded ? damage.untouched : damage.partial) += 1;
+    } catch (const Error& error) {
+        ++damage.refused;
+        EXPECT_THAT(error.what(), ::testing::HasSubstr(file.filename().string()));
+        EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
+    }
+}
+
+void report(const char* what, const Damage& damage) {
+    std::cout << what << ": " << damage.untouched << " read as before, " << damage.partial << " in part, "
+              << damage.refused << " refused\n";
+}
+
+/// Twelve raw frames in three commits. The log stays beside the file until the writer is destroyed.
+void write_raw(RecordingWriter& writer) {
+    writer.begin(SequenceRole::kMain, raw_sequence());
+    for (uint32_t i = 0; i < 12; ++i) {
+        writer.add(SequenceRole::kMain, raw_frame(i, kSmallFrame));
+        if (i % 4 == 3) writer.commit();
+    }
+}
+
+TEST(RecordingFaults, FlippedBitsInRawFramesGiveAnErrorOrTheIntactPart) {
+    const int files = count_from("PATINA_FLIPS", 100);
+    const TemporaryFolder folder;
+    {
+        RecordingWriter writer(folder / "whole.patina");
+        write_raw(writer);
+        writer.finish();
+    }
+    const std::string whole = read_text(folder / "whole.patina");
+    Damage damage;
+    for (int i = 0; i < files && !HasFailure(); ++i) {
+        const ::testing::ScopedTrace trace(__FILE__, __LINE__, "seed " + std::to_string(i));
+        std::mt19937 random(static_cast<uint32_t>(i));
+        write_bytes_of(folder / "flipped.patina", flipped(whole, random));
+        count_damage(folder / "flipped.patina", 12, damage);
+    }
+    report("flipped bits in raw frames", damage);
+    EXPECT_GT(damage.partial, files / 10) << "the attack is too weak to tell";
+}
+
+TEST(RecordingFaults, ADamagedLogGivesAnErrorOrTheIntactPart) {
+    const int files = count_from("PATINA_FLIPS", 100);
+    const TemporaryFolder folder;
+    const fs::path file = folder / "cut.patina", log = folder / "cut.patina-wal", shared = folder / "cut.patina-shm";
+    RecordingWriter writer(folder / "whole.patina");
+    write_raw(writer);
+    const std::string start = read_text(folder / "whole.patina"), whole = read_text(folder / "whole.patina-wal");
+    ASSERT_GT(whole.size(), 12 * kSmallFrame);
+    Damage damage;
+    for (int i = -1; i < files && !HasFailure(); ++i) {
+        const ::testing::ScopedTrace trace(__FILE__, __LINE__, "seed " + std::to_string(i));
+        std::mt19937 random(static_cast<uint32_t>(i));
+        fs::remove(shared);
+        write_bytes_of(file, start);
+        const bool cut = i % 2 == 0;
+        write_bytes_of(log, i < 0 ? whole : cut ? whole.substr(0, random() % whole.size()) : flipped(whole, random));
+        count_damage(file, 12, damage);
+        if (i < 0) {
+            ASSERT_EQ(damage.untouched, 1);
+        }
+    }
+    report("damaged logs", damage);
+    EXPECT_GT(damage.partial + damage.refused, files / 2) << "the attack is too weak to tell";
+}
+
 }  // namespace
 }  // namespace patina::sensor::recording_faults_test

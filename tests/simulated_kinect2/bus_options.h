@@ -19,10 +19,12 @@ struct BusOptions {
     double frames_per_second = 30;        ///< RATE
     uint64_t usbfs_bytes = 16u << 20;     ///< USBFS_MB
     uint64_t unplug_after_intervals = 0;  ///< UNPLUG_AFTER, given in frames; 0: never
+    std::filesystem::path unplug_file;    ///< UNPLUG_FILE: unplugged once it exists; of the stand-in alone
     uint64_t transient_failures = 0;      ///< SUBMIT_FAILS: so many submissions fail, after the first 200
     uint32_t lose_every = 0;              ///< LOSE_EVERY: every n-th frame lacks a packet; 0: none
     std::filesystem::path infrared_file;  ///< INFRARED: frames of 2984960 bytes; the last one stays
     std::filesystem::path color_folder;   ///< COLOR: JPEG files by name; the last one stays
+    bool swings = false;                  ///< SWING=1: both run forth and back instead, without end
     bool no_bandwidth = false;            ///< BANDWIDTH=none: alternate setting 1 is refused
 
     static BusOptions from_environment();

@@ -7,6 +7,7 @@
 #include "tests/export/temporary_folder.h"
 #include "tools/program/free_place.h"
 #include "tools/viewer/draw_budget.h"
+#include "tools/viewer/frame_times.h"
 #include "tools/viewer/free_camera.h"
 #include "tools/viewer/layers.h"
 #include "tools/viewer/light_handles.h"
@@ -189,6 +190,24 @@ TEST(FreePlace, IsOneThatIsNotThere) {
     EXPECT_EQ(free_place_beside(run / "", "export"), folder / "room-export-1");
     std::filesystem::create_directory(folder / "room-export-1");
     EXPECT_EQ(free_place_beside(run, "export"), folder / "room-export-2");
+}
+
+TEST(FrameTimes, AreMeansOverTheLastFramesAndLeaveOutPauses) {
+    FrameTimes times;
+    EXPECT_EQ(times.interval_ms(), 0);
+    std::vector<graph::Timing> passes{{"track", {100}}, {"fuse", {100}}};
+    times.fused(5, passes);  // pipelines were built
+    EXPECT_EQ(times.device_ms(), 0);
+    for (int i = 1; i <= 40; ++i) {
+        passes[0].samples_ms.insert(passes[0].samples_ms.end(), {2, 1});  // twice a frame
+        passes[1].samples_ms.push_back(i <= 10 ? 50 : 4);
+        times.fused(5 + 0.1 * i, passes);
+    }
+    EXPECT_NEAR(times.interval_ms(), 100, 1e-6);
+    EXPECT_NEAR(times.device_ms(), 7, 1e-6);
+    times.paused();
+    times.fused(1000, passes);
+    EXPECT_NEAR(times.interval_ms(), 100, 1e-6);
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ void add_record(CLI::App& app, int& exit_code) {
     command->add_option("--format", options->format, sensor::format_names() + ", instead of recognising it");
     command->add_flag("--simulate", options->simulate,
                       "The source plays by its clock, as a camera would; without it as fast as it can be read");
+    command->add_flag("--decoded", options->decoded,
+                      "Decode the raw frames of a Kinect v2, and record depth and colour; other cameras send these");
     command->add_option("--seconds", options->seconds, "End each sequence so many seconds after its first frame")
         ->check(CLI::PositiveNumber);
     command->add_flag("--quiet", options->quiet, "Print nothing but errors");

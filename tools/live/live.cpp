@@ -40,6 +40,16 @@ std::shared_ptr<LiveRecording> recording_of(const SequenceInfo& info) {
     return std::make_shared<LiveRecording>(std::move(sequence));
 }
 
+/// Of raw frames, which the run's device decodes.
+RecordedInput input_of(std::shared_ptr<cameras::RawCapture> capture) {
+    auto recording = std::make_shared<LiveRecording>(capture->sequence());
+    capture->set_tap([recording](const cameras::RawReading& reading) { recording->take(reading); });
+    return {
+        {capture,
+         [capture](vulkan::Device& device) { return std::make_unique<cameras::Kinect2LiveSource>(device, capture); }},
+        recording};
+}
+
 RecordedInput open_camera(const std::string& name) {
     if (name != kKinect2) {
         const auto source = open_other_camera(name);
@@ -47,20 +57,15 @@ RecordedInput open_camera(const std::string& name) {
         source->set_tap([recording](const Reading& reading) { recording->take(reading); });
         return {live_input(source), recording};
     }
-    auto capture = open_kinect2();
-    auto recording = std::make_shared<LiveRecording>(capture->sequence());
-    capture->set_tap([recording](const sensor::RecordedFrame& frame) { recording->take(frame); });
-    return {
-        {capture,
-         [capture](vulkan::Device& device) { return std::make_unique<cameras::Kinect2LiveSource>(device, capture); }},
-        recording};
+    return input_of(open_kinect2());
 }
 
 RecordedInput open_played(const LiveOptions& options) {
     const std::vector<std::filesystem::path> inputs = sequence_inputs(options.simulate);
     sensor::expect_apart(options.run.out, inputs);
-    auto played = open_to_play(options.simulate, options.run.format);
     if (!options.record.empty()) sensor::expect_apart(options.record, inputs);
+    if (auto raw = open_raw_to_play(options.simulate)) return input_of(std::move(raw));
+    auto played = sensor::open_sequence(options.simulate, options.run.format);
     auto recording = recording_of(played->info());
     return {live_input(std::make_shared<sensor::PlayedSource>(
                 std::move(played), [recording](const Reading& reading) { recording->take(reading); })),

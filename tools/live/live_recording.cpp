@@ -45,12 +45,4 @@ std::shared_ptr<CameraPass> LiveRecording::pass() const {
     return pass_;
 }
 
-void LiveRecording::take(const sensor::RecordedFrame& frame) {
-    if (const auto open = pass()) open->take(frame);
-}
-
-void LiveRecording::take(const Reading& reading) {
-    if (const auto open = pass()) open->take(reading);
-}
-
 }  // namespace patina::tools

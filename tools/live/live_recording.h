@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "sensor/live/live_source.h"
@@ -40,8 +41,10 @@ class LiveRecording {
     const std::vector<EndedRecording>& ended() const { return ended_; }
 
     /// What the source yielded; without an open file nothing happens.
-    void take(const sensor::RecordedFrame& frame);
-    void take(const Reading& reading);
+    template <class Item>
+    void take(const std::variant<Item, Skipped>& reading) {
+        if (const auto open = pass()) open->take(reading);
+    }
 
   private:
     std::shared_ptr<CameraPass> pass() const;

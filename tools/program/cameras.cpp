@@ -1,5 +1,7 @@
 #include "tools/program/cameras.h"
 
+#include "cameras/kinect2_recorded.h"
+#include "cameras/played_capture.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "sensor/kinect2/usb_transport.h"
@@ -32,13 +34,14 @@ std::shared_ptr<cameras::Kinect2Capture> open_kinect2() {
     return capture;
 }
 
-std::unique_ptr<Source> open_to_play(const std::string& recording, const std::string& format) {
-    if (sensor::names_recording(recording)) {
-        const auto [file, role] = sensor::named_sequence(recording);
-        if (!sensor::holds_pictures(sensor::RecordingFile(file).sequence(role)))
-            throw Error("'", recording, "' holds the raw frames of a camera, which cannot be played with --simulate");
-    }
-    return sensor::open_sequence(recording, format);
+std::shared_ptr<cameras::RawCapture> open_raw_to_play(const std::string& recording) {
+    if (!sensor::names_recording(recording)) return nullptr;
+    const auto [file, role] = sensor::named_sequence(recording);
+    const sensor::RecordingFile recorded(file);
+    if (!recorded.has(role)) return nullptr;
+    const sensor::RecordedSequence& sequence = recorded.sequence(role);
+    if (sensor::holds_pictures(sequence) || !cameras::is_kinect2(sequence)) return nullptr;
+    return std::make_shared<cameras::PlayedCapture>(file, role);
 }
 
 }  // namespace patina::tools

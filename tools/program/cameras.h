@@ -26,8 +26,9 @@ std::shared_ptr<cameras::Kinect2Capture> open_kinect2();
 /// sensor::open_kinect1() and sensor::open_openni2().
 std::shared_ptr<sensor::CameraSource> open_other_camera(const std::string& name);
 
-/// Opens a recording that is to play as a camera would (sensor::PlayedSource). Throws Error as sensor::open_sequence,
-/// and where it holds a camera's raw frames: these are decoded on a device, which is not the player's.
-std::unique_ptr<Source> open_to_play(const std::string& recording, const std::string& format);
+/// Opens a recording of a Kinect v2's raw frames that is to play as the camera sent them (cameras::PlayedCapture); null
+/// where it holds something else, which sensor::PlayedSource plays. Throws Error as sensor::RecordingFile, and where it
+/// holds no frame.
+std::shared_ptr<cameras::RawCapture> open_raw_to_play(const std::string& recording);
 
 }  // namespace patina::tools

@@ -29,20 +29,15 @@ class CameraPass {
         open_ = false;
     }
 
-    void take(sensor::RecordedFrame frame) {
-        const std::lock_guard lock(mutex_);
-        if (!open_) return;
-        frame.index = frames_++;
-        recorder_->record(std::move(frame));
-    }
-
-    void take(const Reading& reading) {
+    /// A frame, decoded or not, or why there is none.
+    template <class Item>
+    void take(const std::variant<Item, Skipped>& reading) {
         const std::lock_guard lock(mutex_);
         if (!open_) return;
         if (const auto* skipped = std::get_if<Skipped>(&reading)) {
             recorder_->skip({frames_++, skipped->reason, skipped->dropped});
         } else {
-            Frame frame = std::get<Frame>(reading);
+            Item frame = std::get<Item>(reading);
             frame.index = frames_++;
             recorder_->record(std::move(frame));
         }

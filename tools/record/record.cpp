@@ -23,7 +23,7 @@
 #include "tools/program/mebibytes.h"
 #include "tools/program/progress.h"
 #include "tools/program/standard_streams.h"
-#include "tools/record/camera_pass.h"
+#include "tools/record/raw_pass.h"
 
 namespace patina::tools {
 
@@ -46,13 +46,12 @@ class Recording {
     /// exposure where that was asked for. The camera runs on between the two: its calibration holds for one run.
     void add(cameras::Kinect2Capture& capture) {
         const bool twice = !options_.lighting.empty();
-        const auto pass = std::make_shared<CameraPass>(recorder_);
-        capture.set_tap([pass](const sensor::RecordedFrame& frame) { pass->take(frame); });
-        add_pass(capture, *pass, SequenceRole::kMain, twice ? "sequence 1 of 2: " : "");
+        const auto pass = tapped(capture);
+        add_pass(capture, *pass, SequenceRole::kMain, !twice, twice ? "sequence 1 of 2" : "");
         if (twice && recorder_->problem().empty() && !interrupt_.must_end()) {
             interrupt_.forget();
             capture.fix_exposure({static_cast<float>(options_.low_exposure_ms), 1});
-            add_pass(capture, *pass, SequenceRole::kLighting, "sequence 2 of 2: ");
+            add_pass(capture, *pass, SequenceRole::kLighting, true, "sequence 2 of 2");
         }
         capture.stop();
         if (const uint64_t lost = capture.counts().lost; lost > 0)
@@ -61,7 +60,7 @@ class Recording {
 
     /// The same of a camera whose exposure cannot be set: what it shows of itself.
     void add(sensor::CameraSource& camera) {
-        if (!options_.quiet) print_error("{}\n", sensor::instruction(SequenceRole::kMain));
+        instruct(SequenceRole::kMain, "");
         sensor::ExposureCheck exposure(SequenceRole::kMain);
         begin(SequenceRole::kMain, camera.info());
         camera.set_tap(sensor::tap_to(recorder_));
@@ -71,10 +70,12 @@ class Recording {
 
     /// Records one sequence to its end.
     void add(SequenceRole role, const std::string& path, const std::string& format, const std::string& place) {
+        if (const auto raw = options_.simulate ? open_raw_to_play(path) : nullptr)
+            return add_pass(*raw, *tapped(*raw), role, true, place);
         sensor::ExposureCheck exposure(role);
         if (options_.simulate) {
-            if (!options_.quiet) print_error("{}: {}\n", place, sensor::instruction(role));
-            play(role, open_to_play(path, format), exposure);
+            instruct(role, place);
+            play(role, sensor::open_sequence(path, format), exposure);
         } else if (sensor::names_recording(path)) {
             copy_rows(role, path, exposure);
         } else {
@@ -113,12 +114,17 @@ class Recording {
         if (counts.dropped > 0)
             outcome.fall_short(fmt::format("{} of {} frames are missing: the disk did not keep pace with the camera",
                                            counts.dropped, counts.given));
+        if (undecoded_ > 0)
+            outcome.fall_short(
+                fmt::format("{} of {} frames are missing: they could not be decoded as fast as the camera sends them; "
+                            "record without --decoded, and decode the file later",
+                            undecoded_, counts.given));
         if (counts.skipped == counts.given)
             outcome.fall_short(
                 fmt::format("none of {} frames has pictures: {}", counts.given, recorder_->skipped_for()));
-        else if (counts.skipped > 0)
-            advice_.push_back(fmt::format("{} of {} frames have no pictures, the last of them: {}", counts.skipped,
-                                          counts.given, recorder_->skipped_for()));
+        else if (counts.skipped > undecoded_)
+            advice_.push_back(fmt::format("{} of {} frames have no pictures, the last of them: {}",
+                                          counts.skipped - undecoded_, counts.given, recorder_->skipped_for()));
         if (frames_of_lighting_ == 0) outcome.fall_short("no frame of the sequence of low exposure was recorded");
         outcome.print(options_.quiet);
         if (!options_.quiet) {
@@ -154,12 +160,25 @@ class Recording {
             advice_.push_back(fmt::format("{} sequence: {}", name_of(role), advice));
     }
 
-    void add_pass(cameras::Kinect2Capture& capture, CameraPass& pass, SequenceRole role, const char* place) {
-        if (!options_.quiet) print_error("{}{}\n", place, sensor::instruction(role));
+    /// What a person is to do now. `place`: of the sequence among others; empty where it is alone.
+    void instruct(SequenceRole role, const std::string& place) const {
+        if (!options_.quiet) print_error("{}{}{}\n", place, place.empty() ? "" : ": ", sensor::instruction(role));
+    }
+
+    /// Takes what a capture sends, on its thread.
+    std::shared_ptr<RawPass> tapped(cameras::RawCapture& capture) {
+        auto pass = std::make_shared<RawPass>(
+            recorder_, options_.decoded ? repacker_on(device(), capture.sequence(), capture.name()) : nullptr);
+        capture.set_tap([pass](const cameras::RawReading& reading) { pass->take(reading); });
+        return pass;
+    }
+
+    /// `last`: the capture ends with this pass.
+    void add_pass(cameras::RawCapture& capture, RawPass& pass, SequenceRole role, bool last, const std::string& place) {
+        instruct(role, place);
         begin_pass(role);
         pass.begin(role, capture.sequence());
         sensor::ExposureCheck exposure(role);
-        const bool last = options_.lighting.empty() || role == SequenceRole::kLighting;
         std::optional<CameraWatch> watch;  // who ends the first pass of two wants the camera to go on
         if (last) watch.emplace(capture, interrupt_);
         Progress progress("Recording", std::nullopt, options_.quiet);
@@ -167,11 +186,11 @@ class Recording {
             const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame);
             if (raw ? is_over(raw->timestamp_s) : is_over_by_our_clock()) break;
             if (raw) check(*raw, capture.sequence(), exposure);
-            if (interrupted() || !recorder_->problem().empty()) break;
+            if (interrupted() || !recorder_->problem().empty() || !pass.problem().empty()) break;
             progress.update(static_cast<uint32_t>(recorder_->counts().given - given_before_), detail(exposure));
         }
         if (last) capture.stop();
-        pass.end();
+        undecoded_ += pass.end();
         finish_pass(role, exposure);
     }
 
@@ -203,14 +222,20 @@ class Recording {
         sensor::RecordingFile recording(file);
         const sensor::RecordedSequence& sequence = recording.sequence(its_role);
         begin_pass(role);
-        recorder_->begin(role, sequence);
+        const bool decodes = options_.decoded && !sensor::holds_pictures(sequence) && cameras::is_kinect2(sequence);
+        const auto repacker = decodes ? repacker_on(device(), sequence, "'" + file.string() + "'") : nullptr;
+        recorder_->begin(role, decodes ? cameras::kinect2_decoded_sequence(sequence) : sequence);
         Progress progress("Recording", sequence.info.frames, options_.quiet);
         for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
             auto row = recording.read(its_role, i);
+            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&row); raw && decodes) {
+                check(*raw, sequence, exposure);
+                row = repacker->repack(*raw);
+            }
             auto* frame = std::get_if<sensor::RecordedFrame>(&row);
             if (interrupted() || !recorder_->problem().empty() || (frame && is_over(frame->timestamp_s))) break;
             if (frame) {
-                check(*frame, sequence, exposure);
+                if (!decodes) check(*frame, sequence, exposure);
                 recorder_->record(std::move(*frame));
             } else {
                 recorder_->skip(std::get<Skipped>(std::move(row)));
@@ -283,10 +308,17 @@ class Recording {
                            mebibytes(counts.queued_bytes), counts.dropped);
     }
 
+    const std::shared_ptr<Device>& device() {
+        if (!device_) device_ = std::make_shared<Device>();
+        return device_;
+    }
+
     const RecordOptions& options_;
     InterruptGuard interrupt_;
+    std::shared_ptr<Device> device_;  ///< null until something is decoded
     std::shared_ptr<sensor::Recorder> recorder_;
-    uint64_t given_before_ = 0;                                    ///< to the recorder, when the present sequence began
+    uint64_t undecoded_ = 0;     ///< frames that were dropped because too many waited to be decoded
+    uint64_t given_before_ = 0;  ///< to the recorder, when the present sequence began
     std::optional<uint64_t> frames_of_main_, frames_of_lighting_;  ///< empty: not begun
     std::optional<double> first_s_;                                ///< time of the present sequence's first frame
     std::optional<std::chrono::steady_clock::time_point> first_skipped_;  ///< of the present sequence
@@ -321,8 +353,8 @@ Outcome record_camera(const RecordOptions& options) {
 
 /// Wrong paths are found before the file is there.
 void expect_readable(const RecordOptions& options, const std::string& source, const std::string& format) {
-    if (options.simulate) {
-        open_to_play(source, format);
+    if (options.simulate && !open_raw_to_play(source)) {
+        sensor::open_sequence(source, format);
     } else if (sensor::names_recording(source)) {
         const auto [file, role] = sensor::named_sequence(source);
         sensor::RecordingFile(file).sequence(role);

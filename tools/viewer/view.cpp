@@ -101,7 +101,8 @@ class MapView {
                        {"device", device_.name()},
                        {"frames", std::to_string(counted.frames)},
                        {"segments", std::to_string(counted.segments.live)},
-                       {"lamps", std::to_string(scenery_.lighting.lights.size())}};
+                       {"lamps", std::to_string(scenery_.lighting.lights.size())},
+                       memory_line(Access::vulkan(device_).held_memory())};
         for (const PoolState& pool : counted.pools)
             facts.pools.push_back({pool.name, pool.used, pool.capacity, pool.refused});
         facts.passes = slowest_passes(map_.pipeline().runner());

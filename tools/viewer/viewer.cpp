@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
 #include <imgui.h>
 
+#include "tools/program/mebibytes.h"
 #include "tools/viewer/light_handles.h"
 #include "tools/viewer/marks.h"
 #include "tools/viewer/panels.h"
@@ -238,6 +240,10 @@ std::vector<PassMean> slowest_passes(const graph::Runner& runner) {
     }
     std::ranges::sort(means, std::greater(), &PassMean::ms);
     return means;
+}
+
+std::pair<std::string, std::string> memory_line(uint64_t held_bytes) {
+    return {"memory", fmt::format("{:.0f} MiB of the device", mebibytes(held_bytes))};
 }
 
 }  // namespace patina::tools

@@ -96,4 +96,7 @@ class Viewer {
 /// The slowest passes of the last frames, slowest first.
 std::vector<PassMean> slowest_passes(const graph::Runner& runner);
 
+/// What the user is shown of the memory that a device holds.
+std::pair<std::string, std::string> memory_line(uint64_t held_bytes);
+
 }  // namespace patina::tools

@@ -28,6 +28,10 @@ const char* word_of(TrackingState state) {
     return "";
 }
 
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 }  // namespace
 
 WindowRun::WindowRun(const ViewerOptions& options, const RunOptions& run, RunCompanion* inner, LiveControls* live)
@@ -77,6 +81,7 @@ void WindowRun::after_step(SessionCore& session) {
         sensor_ = *frame->world_from_camera;
         frame_s_ = frame->timestamp_s;
     }
+    if (session.fused()) times_.fused(seconds_now(), session.pipeline().runner().pass_timings());
     if (!problem_.empty() || !display_) return;
     if (!frame && display_->wants_all()) return;  // nothing has changed
     bool paused = false;
@@ -86,6 +91,7 @@ void WindowRun::after_step(SessionCore& session) {
         // What fails here in the middle leaves no model to go on with.
         if (std::exchange(viewer_->state().undo_asked, false)) undo(session);
         paused = viewer_->state().paused;
+        if (paused) times_.paused();
     } while (paused);
     if (session.fused()) keep_checkpoint(session);
 }
@@ -131,14 +137,12 @@ void WindowRun::record_or_stop() {
 /// Nobody goes back off screen.
 void WindowRun::keep_checkpoint(SessionCore& session) {
     const RunMoment now = moment(session);
-    const auto start = std::chrono::steady_clock::now();
-    const auto since = [](std::chrono::steady_clock::time_point t) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
-    };
-    if (display_->wants_all() || !checkpoint_problem_.empty() || !checkpoints_.due(now, since({}))) return;
+    const double start_s = seconds_now();
+    if (display_->wants_all() || !checkpoint_problem_.empty() || !checkpoints_.due(now, start_s)) return;
     try {
         session.keep_model(checkpoints_.begin());
-        checkpoints_.kept(now, since({}), since(start));
+        const double end_s = seconds_now();
+        checkpoints_.kept(now, end_s, end_s - start_s);
     } catch (const std::exception& error) {
         checkpoint_problem_ = fmt::format("no checkpoint could be kept: {}", reason_of(error));
         message_ = checkpoint_problem_;
@@ -193,6 +197,10 @@ ViewerFacts WindowRun::facts_of(SessionCore& session) const {
     for (auto& line : figures()) facts.lines.push_back(std::move(line));
     const PipelineCounters counted = pipeline.counters();
     facts.lines.emplace_back("segments", std::to_string(counted.segments.live));
+    if (times_.interval_ms() > 0)
+        facts.lines.emplace_back(
+            "frame", fmt::format("{:.0f} ms, on the device {:.0f} ms", times_.interval_ms(), times_.device_ms()));
+    facts.lines.push_back(memory_line(session.device().held_memory()));
     facts.lines.emplace_back("drawn", fmt::format("{} frames, {:.1f} s", viewer_->drawn(), viewer_->spent_s()));
     for (const PoolState& pool : counted.pools)
         facts.pools.push_back({pool.name, pool.used, pool.capacity, pool.refused});

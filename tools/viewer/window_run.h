@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/viewer/checkpoints.h"
+#include "tools/viewer/frame_times.h"
 #include "tools/viewer/viewer.h"
 #include "tools/viewer/viewer_options.h"
 
@@ -53,6 +54,7 @@ class WindowRun : public RunCompanion {
     std::optional<Viewer> viewer_;      ///< from the device on
     std::optional<RigidTransform> sensor_;
     Checkpoints checkpoints_;
+    FrameTimes times_;
     double frame_s_ = 0;  ///< timestamp of the last frame that was fused or held out
     std::string checkpoint_problem_;
     std::string progress_, message_, problem_;

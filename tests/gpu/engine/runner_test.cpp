@@ -53,6 +53,15 @@ TEST_F(RunnerTest, OnePixelOfAnImageIsReadBackAndTheFramesTimeIsKnownOnceItHasFi
     EXPECT_GE(time.ms().value_or(0), 0);
 }
 
+TEST_F(RunnerTest, TheDeviceKnowsWhatMemoryItHolds) {
+    const uint64_t before = device().held_memory();
+    auto buffer = device().create_buffer({"held", 1u << 20});
+    EXPECT_GE(device().held_memory(), before + (1u << 20));
+    EXPECT_LT(device().held_memory(), before + (2u << 20));
+    buffer.reset();
+    EXPECT_EQ(device().held_memory(), before);
+}
+
 TEST_F(RunnerTest, FramesOfOneShapeAreCompiledOnce) {
     const auto persistent = device().create_buffer({"persistent", 64 * sizeof(float)});
     for (int i = 0; i < 5; ++i) {

@@ -19,8 +19,13 @@ Bus::Bus(const BusOptions& options)
 
 void Bus::pass_interval() {
     const bool streaming = device_.streaming_infrared();
-    if (streaming && options_.unplug_after_intervals != 0 && ++intervals_ == options_.unplug_after_intervals) {
-        device_.unplug();
+    constexpr uint64_t kLook = 100;  // intervals, some 12 ms
+    if (streaming) {
+        ++intervals_;
+        const bool asked =
+            !options_.unplug_file.empty() && intervals_ % kLook == 0 && std::filesystem::exists(options_.unplug_file);
+        if (asked || (options_.unplug_after_intervals != 0 && intervals_ == options_.unplug_after_intervals))
+            device_.unplug();
     }
     device_.pass_interval([this](const SentPacket& packet) { receive(packet); },
                           [this](std::span<const uint8_t> bytes) { return receive(bytes); });
