@@ -40,13 +40,10 @@ void set_constant(GltfMaterial& material, glm::vec3 f0) {
 
 void set_ior(GltfMaterial& material, glm::vec3 f0) {
     const float strength = largest(f0);
-    if (!material.observed) {
-        material.specular = std::min(strength / kCommonF0, 1.0f);
-        return;
-    }
-    material.ior = ior_of(std::min(strength, kMostOfIor));
     material.specular = 1;
-    material.specular_color = f0 / strength;
+    material.ior = ior_of(std::min(strength, material.observed ? kMostOfIor : kCommonF0));
+    if (material.observed) material.specular_color = f0 / strength;
+    if (strength < kLeastOfIor) material.roughness = 1;  // what is left of it at grazing angles is wide
 }
 
 /// What of the light does not reach a dielectric's diffuse part at normal incidence.
@@ -69,6 +66,10 @@ GltfMaterial gltf_material(const WardGloss& gloss, glm::vec3 kd, GltfFresnel fre
         set_ior(material, f0);
     }
     return material;
+}
+
+bool needs_specular(const GltfMaterial& material) {
+    return material.observed || material.specular != 1 || material.specular_color != glm::vec3(1);
 }
 
 glm::vec3 f0_of(const GltfMaterial& material) {

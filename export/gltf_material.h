@@ -33,8 +33,13 @@ bool is_observed(const WardGloss& gloss);
 ///
 /// A segment is a metal where it was observed to be bright at normal incidence (0.25) and has next to no diffuse `kd`
 /// (luminance below 0.04). Gloss that was not observed, or reflects less than 0.002, is a colourless dielectric of
-/// index 1.5 whose specularFactor has the strength.
+/// index 1.5 at most; of index 1 without any.
 GltfMaterial gltf_material(const WardGloss& gloss, glm::vec3 kd, GltfFresnel fresnel = GltfFresnel::kIor);
+
+/// Whether a dielectric needs KHR_materials_specular. Without tint and beside an index of refraction it says nothing,
+/// and Blender 3.4 makes an image as large as the page of each material that has it (0.1 GB for 2900 x 2900 texels). Of
+/// gloss that was observed Blender takes the strength from the index only where the extension is there.
+bool needs_specular(const GltfMaterial& material);
 
 /// What a material reflects at normal incidence.
 glm::vec3 f0_of(const GltfMaterial& material);

@@ -40,9 +40,10 @@ GltfMaterial gltf_of(const tinygltf::Material& material) {
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     gltf.metal = pbr.metallicFactor > 0.5;
     gltf.roughness = static_cast<float>(pbr.roughnessFactor);
-    gltf.ior = static_cast<float>(number(extension(material.extensions, "KHR_materials_ior"), "ior", 1.5));
+    const Value& ior = extension(material.extensions, "KHR_materials_ior");
+    gltf.ior = static_cast<float>(number(ior, "ior", 1.5));
     const Value& specular = extension(material.extensions, "KHR_materials_specular");
-    gltf.specular = static_cast<float>(number(specular, "specularFactor", 0));
+    gltf.specular = static_cast<float>(number(specular, "specularFactor", ior.IsObject() ? 1 : 0));
     gltf.specular_color = vector(specular, "specularColorFactor", glm::vec3(1));
     for (glm::length_t i = 0; i < 3 && pbr.baseColorFactor.size() == 4; ++i)
         gltf.base_color[i] = static_cast<float>(pbr.baseColorFactor[static_cast<size_t>(i)]);

@@ -239,11 +239,13 @@ struct GlbWriter::State {
             pbr.baseColorFactor = {shown.base_color.r, shown.base_color.g, shown.base_color.b, 1};
             return;
         }
-        material.extensions[kSpecular] =
-            Value(Value::Object{{"specularFactor", Value(double{shown.specular})},
-                                {"specularColorFactor", array_of(glm::dvec3(shown.specular_color))}});
-        use_extension(kSpecular);
-        if (shown.ior == GltfMaterial{}.ior) return;
+        if (needs_specular(shown)) {
+            material.extensions[kSpecular] =
+                Value(Value::Object{{"specularFactor", Value(double{shown.specular})},
+                                    {"specularColorFactor", array_of(glm::dvec3(shown.specular_color))}});
+            use_extension(kSpecular);
+            if (shown.ior == GltfMaterial{}.ior) return;
+        }
         material.extensions[kIor] = Value(Value::Object{{"ior", Value(double{shown.ior})}});
         use_extension(kIor);
     }

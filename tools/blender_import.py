@@ -59,9 +59,10 @@ def f0_of(description):
     """What a dielectric of the file reflects at normal incidence, as export/gltf_material.h has it."""
     extensions = description["extensions"]
     ior = extensions.get("KHR_materials_ior", {}).get("ior", 1.5)
-    specular = extensions["KHR_materials_specular"]
+    specular = extensions.get("KHR_materials_specular", {})
     strength = ((ior - 1) / (ior + 1)) ** 2
-    return [min(strength * c, 1) * specular["specularFactor"] for c in specular["specularColorFactor"]]
+    return [min(strength * c, 1) * specular.get("specularFactor", 1)
+            for c in specular.get("specularColorFactor", (1, 1, 1))]
 
 
 def set_material(material, description):
@@ -72,7 +73,7 @@ def set_material(material, description):
         return  # a metal, which the importer sets right
     new, link = material.node_tree.nodes.new, material.node_tree.links.new
     surface = node_of(material, "ShaderNodeOutputMaterial").inputs["Surface"]
-    if "KHR_materials_specular" not in description.get("extensions", {}):  # fused colours, which hold the recording's light
+    if not {"KHR_materials_ior", "KHR_materials_specular"} & set(description.get("extensions", {})):  # fused colours, which hold the recording's light
         link(color.outputs["Color"], surface)
         return
     f0 = f0_of(description)

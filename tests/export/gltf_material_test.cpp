@@ -51,7 +51,7 @@ TEST(GltfMaterial, EveryFactorIsWithin0To1) {
             const GltfMaterial material = gltf_material(gloss, kd);
             EXPECT_TRUE(material.roughness >= 0.045f && material.roughness <= 1);
             EXPECT_TRUE(material.specular >= 0 && material.specular <= 1) << material.specular;
-            EXPECT_TRUE(material.ior >= 1.05f && material.ior < 8) << material.ior;
+            EXPECT_TRUE(material.ior >= 1 && material.ior < 8) << material.ior;
             for (int c = 0; c < 3; ++c) {
                 EXPECT_TRUE(material.specular_color[c] >= 0 && material.specular_color[c] <= 1);
                 EXPECT_TRUE(material.base_color[c] >= 0 && material.base_color[c] <= 1);
@@ -74,17 +74,19 @@ TEST(GltfMaterial, TheIndexOfRefractionHasTheStrength) {
     expect_close(base_color_of(tinted, kGrey), kGrey / 0.922f, 1e-5f);
 }
 
-TEST(GltfMaterial, WhatIsNotObservedIsGlassOfIndexOneAndAHalf) {
+TEST(GltfMaterial, WhatIsNotObservedIsColourlessAndShinesNoMoreThanGlass) {
     for (const WardGloss& gloss :
          {WardGloss{glm::vec3(0.002f), 0.2f}, WardGloss{glm::vec3(0.3f, 0.2f, 0.1f), 0.2f, 0.2f},
           WardGloss{glm::vec3(0.03f), 0.2f, 0.0f}}) {
         const GltfMaterial material = gltf_material(gloss, kGrey);
         EXPECT_FALSE(material.observed);
-        EXPECT_EQ(material.ior, 1.5f);
+        EXPECT_FALSE(needs_specular(material));
         EXPECT_EQ(material.specular_color, glm::vec3(1));
-        EXPECT_NEAR(material.specular, std::min(gloss.ks.r * 0.824f / 0.04f, 1.0f), 1e-5f);
+        EXPECT_NEAR(f0_of(material).r, std::min(gloss.ks.r * 0.824f, 0.04f), 1e-5f);
+        EXPECT_NEAR(material.roughness, gloss.ks.r < 0.0024f ? 1 : std::sqrt(gloss.alpha), 1e-6f);
     }
     EXPECT_TRUE(gltf_material({glm::vec3(0.003f), 0.2f, 0.5f}, kGrey).observed);
+    EXPECT_TRUE(needs_specular(gltf_material({glm::vec3(0.003f), 0.2f, 0.5f}, kGrey)));
 }
 
 TEST(GltfMaterial, WithConstantFresnelTheColourHasTheStrength) {
@@ -102,8 +104,9 @@ TEST(GltfMaterial, WithConstantFresnelTheColourHasTheStrength) {
 
 TEST(GltfMaterial, WithoutKsIsDiffuseAlone) {
     for (const GltfFresnel fresnel : {GltfFresnel::kIor, GltfFresnel::kConstant}) {
-        const GltfMaterial material = gltf_material({glm::vec3(0), 1}, kGrey, fresnel);
-        EXPECT_EQ(material.specular, 0);
+        const GltfMaterial material = gltf_material({glm::vec3(0), 0.2f}, kGrey, fresnel);
+        EXPECT_EQ(f0_of(material), glm::vec3(0));
+        EXPECT_EQ(material.roughness == 1, fresnel == GltfFresnel::kIor) << "there its lobe is left at grazing angles";
         EXPECT_FALSE(material.metal || material.observed);
         EXPECT_EQ(base_color_of(material, kGrey), kGrey);
     }
