@@ -149,8 +149,7 @@ class Rewriter {
         const std::set<size_t> pages = pages_of_surface();
         for (size_t i = 0; i < model_.images.size(); ++i) {
             tinygltf::Image& image = model_.images[i];
-            if (pages.contains(i))
-                for (uint32_t k = 0; k < changes_.halvings; ++k) halve(image);
+            if (pages.contains(i) && changes_.halvings > 0) shrink(image, changes_.halvings);
             image.bufferView = arrays_.add_bytes(image.name.c_str(), std::as_bytes(std::span(image.image)));
             image.image.clear();
         }
@@ -169,17 +168,22 @@ class Rewriter {
         return pages;
     }
 
-    /// Extras have the edge of a texel, which doubles.
-    static void halve(tinygltf::Image& image) {
-        const Image<SrgbPixel> fine = decoded({image.mimeType, image.image});
-        if (std::min(fine.extent().width, fine.extent().height) < 2 * kLeastPage) return;
+    /// Halves a page that often, but for small ones, and doubles `texel_m` of its extras each time.
+    static void shrink(tinygltf::Image& image, uint32_t halvings) {
+        Image<SrgbPixel> page = decoded({image.mimeType, image.image});
+        uint32_t scale = 1;
+        while (scale < 1u << halvings && std::min(page.extent().width, page.extent().height) >= 2 * kLeastPage) {
+            page = halved(page);
+            scale *= 2;
+        }
+        if (scale == 1) return;
         const bool is_png = image.mimeType == "image/png";
-        EncodedPicture coarse = is_png ? encoded_as_png(halved(fine)) : encoded(halved(fine));
+        EncodedPicture coarse = is_png ? encoded_as_png(page) : encoded(page);
         image.image = std::move(coarse.bytes);
         image.mimeType = coarse.mime_type;
         if (!image.extras.IsObject() || !image.extras.Has("texel_m")) return;
         auto extras = image.extras.Get<tinygltf::Value::Object>();
-        extras["texel_m"] = tinygltf::Value(2 * extras["texel_m"].GetNumberAsDouble());
+        extras["texel_m"] = tinygltf::Value(scale * extras["texel_m"].GetNumberAsDouble());
         image.extras = tinygltf::Value(std::move(extras));
     }
 

@@ -115,8 +115,9 @@ class Reader {
         const double scale = number(environment, "luminance_per_pixel_value", 0);
         if (name.empty() || name != name.filename() || !(scale > 0)) return;  // nothing outside the folder is read
         tinygltf::Node axes;
-        for (size_t i = 0; i < 4 && environment.Has("y_up_from_root"); ++i)
-            axes.rotation.push_back(environment.Get("y_up_from_root").Get(i).GetNumberAsDouble());
+        const Value& turn = environment.Get("y_up_from_root");
+        if (!turn.IsArray() || turn.ArrayLen() != 4) return;
+        for (size_t i = 0; i < 4; ++i) axes.rotation.push_back(turn.Get(i).GetNumberAsDouble());
         scene_.environment_file = name.string();
         scene_.luminance_per_pixel_value = scale;
         scene_.environment_from_gltf =

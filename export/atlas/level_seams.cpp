@@ -14,10 +14,12 @@
 namespace patina {
 namespace {
 
-constexpr int kRounds = 3;             // each leaves a part of the jump, as texels lie on both sides of a place
-constexpr float kFilledTrust = 0.02f;  // of a texel that no picture shows
-constexpr float kAround = 0.25f;       // weight of what a level tells of the one below, in samples
-constexpr float kOnSeam = 0.1f;        // samples that reach a texel which lies on a seam
+constexpr int kRounds = 3;               // each leaves a part of the jump, as texels lie on both sides of a place
+constexpr float kFilledTrust = 0.02f;    // of a texel that no picture shows
+constexpr float kCoarserWeight = 0.25f;  // of the mean of a coarser level, in samples
+constexpr float kLeastOnSeam = 0.1f;     // samples that reach a texel which lies on a seam
+// Change of a root from which on sides of two segments are taken for two paints, and from which on for sure.
+constexpr float kAlike = 0.05f, kApart = 0.1f;
 
 glm::vec3 root_of(glm::vec3 albedo) { return glm::sqrt(glm::max(albedo, glm::vec3(0))); }
 
@@ -60,8 +62,18 @@ struct Change {
     glm::vec3 root{0};
 };
 
-void add_changes(const Seam& seam, const std::vector<TexturePage>& pages, std::vector<Change>& changes) {
+/// The share of a change that is made where two segments meet.
+float share_between_segments(glm::vec3 change) {
+    const glm::vec3 size = glm::abs(change);
+    return 1 - glm::smoothstep(kAlike, kApart, std::max({size.r, size.g, size.b}));
+}
+
+void add_changes(const Seam& seam, const TextureLayout& layout, const std::vector<TexturePage>& pages,
+                 std::vector<Change>& changes) {
     const SeamSide& first = seam.sides.front();
+    const bool one_segment = std::ranges::all_of(seam.sides, [&](const SeamSide& side) {
+        return layout.boxes[side.box].label == layout.boxes[first.box].label;
+    });
     const auto samples = static_cast<uint32_t>(std::ceil(2 * glm::distance(first.from_px, first.to_px))) + 1;
     for (uint32_t k = 0; k < samples; ++k) {
         const float along = (static_cast<float>(k) + 0.5f) / static_cast<float>(samples);
@@ -75,7 +87,10 @@ void add_changes(const Seam& seam, const std::vector<TexturePage>& pages, std::v
             changes.push_back({side.box, place_px, seen.root});
         }
         mean.root /= mean.trust;
-        for (Change& change : std::span(changes).subspan(begin)) change.root = mean.root - change.root;
+        for (Change& change : std::span(changes).subspan(begin)) {
+            change.root = mean.root - change.root;
+            if (!one_segment) change.root *= share_between_segments(change.root);
+        }
     }
 }
 
@@ -113,7 +128,7 @@ std::vector<glm::vec3> spread(const Level& finest) {
                 for (size_t k = 0; k < 4; ++k)
                     around += corners.shares[k] * means[size_t{corners.at[k].y} * coarse.width + corners.at[k].x];
                 const size_t at = size_t{y} * level.extent.width + x;
-                finer[at] = (glm::vec3(level.sums[at]) + kAround * around) / (level.sums[at].a + kAround);
+                finer[at] = (glm::vec3(level.sums[at]) + kCoarserWeight * around) / (level.sums[at].a + kCoarserWeight);
             }
         }
         means = std::move(finer);
@@ -126,7 +141,7 @@ std::vector<float> distances_px(const Level& finest) {
     const auto width = static_cast<int>(finest.extent.width), height = static_cast<int>(finest.extent.height);
     std::vector<float> away(finest.sums.size());
     std::ranges::transform(finest.sums, away.begin(), [](const glm::vec4& sum) {
-        return sum.a >= kOnSeam ? 0 : std::numeric_limits<float>::max();
+        return sum.a >= kLeastOnSeam ? 0 : std::numeric_limits<float>::max();
     });
     const auto look = [&](int x, int y, int step) {
         float& nearest = away[static_cast<size_t>(y * width + x)];
@@ -170,7 +185,7 @@ void level_seams(const TextureLayout& layout, std::vector<TexturePage>& pages) {
     const auto reach_px = static_cast<float>(kSeamReach_m / layout.texel_m);
     for (int round = 0; round < kRounds; ++round) {
         std::vector<Change> changes;
-        for (const Seam& seam : seams) add_changes(seam, pages, changes);
+        for (const Seam& seam : seams) add_changes(seam, layout, pages, changes);
         std::ranges::stable_sort(changes, {}, &Change::box);
         for (auto first = changes.begin(); first != changes.end();) {
             const auto last = std::find_if(first, changes.end(), [&](const Change& c) { return c.box != first->box; });

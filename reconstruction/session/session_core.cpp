@@ -149,8 +149,8 @@ void SessionCore::open(std::unique_ptr<Source> given, const std::optional<glm::d
 void SessionCore::start_pipeline(std::optional<NetworkDescription> network) {
     const ReconstructionSettings settings = choose_settings(options_, info_, illumination_, std::move(network));
     if (!info_.frames) {  // a camera does not wait
-        report(options_.callbacks, "the device builds its programs; then the source begins");
-        warm_up(device_, settings, info_, illumination_);
+        report(options_.callbacks, "the device builds its pipelines; then the source begins");
+        warm_up(device_, settings, info_, illumination_, [this] { return stop_requested(options_.callbacks); });
     }
     pipeline_.emplace(device_, settings);
     if (!pipeline_->reflectance()) return;

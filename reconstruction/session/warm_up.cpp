@@ -12,7 +12,7 @@ namespace {
 /// The first places the volume, the second is tracked, the others are fused into segments that are there.
 constexpr uint32_t kWarmUpFrames = 4;
 
-/// What is built does not depend on the pictures' sizes: a quarter does, but for pictures that are small already.
+/// What is built does not depend on the pictures' sizes: they have a quarter of the camera's, and 64 pixels at least.
 constexpr uint32_t kWarmUpShare = 4, kWarmUpSide_px = 64;
 
 uint32_t warm_up_side(uint32_t pixels) { return std::max(pixels / kWarmUpShare, std::min(pixels, kWarmUpSide_px)); }
@@ -41,8 +41,9 @@ Frame corner_frame(const SequenceInfo& info, uint32_t index) {
         frame.depth = std::move(depth_m);
     } else {
         Image<uint16_t> units(depth_m.extent());
-        std::ranges::transform(depth_m.pixels(), units.pixels().begin(),
-                               [&](float z) { return static_cast<uint16_t>(std::lround(z / info.metres_per_unit)); });
+        std::ranges::transform(depth_m.pixels(), units.pixels().begin(), [&](float z) {
+            return static_cast<uint16_t>(std::min(std::round(z / info.metres_per_unit), 65535.0));
+        });
         frame.depth = std::move(units);
     }
     Image<SrgbPixel> color(info.color.extent);
@@ -56,13 +57,13 @@ Frame corner_frame(const SequenceInfo& info, uint32_t index) {
 }  // namespace
 
 void warm_up(vulkan::Device& device, const ReconstructionSettings& settings, const SequenceInfo& info,
-             const Illumination& illumination) {
+             const Illumination& illumination, const std::function<bool()>& stop) {
     SequenceInfo small = info;
     small.depth = warm_up_camera(info.depth);
     small.color = warm_up_camera(info.color);
     Pipeline pipeline(device, settings);
     pipeline.set_lights(lights_of(illumination), illumination.ambient);
-    for (uint32_t i = 0; i < kWarmUpFrames; ++i) {
+    for (uint32_t i = 0; i < kWarmUpFrames && !stop(); ++i) {
         const Frame frame = corner_frame(small, i);
         RgbdFrame rgbd = to_rgbd(small, frame);
         rgbd.world_from_depth = RigidTransform(1.0);

@@ -16,7 +16,7 @@ class WaitingSkips {
   public:
     static constexpr size_t kMostEntries = 64;
 
-    /// Indices rise.
+    /// Indices rise by one.
     void push(Skipped skipped);
 
     /// The oldest one: every frame that was pushed comes once, as dropped or as damaged. Empty: none waits.

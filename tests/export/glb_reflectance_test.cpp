@@ -165,7 +165,8 @@ TEST(GlbReflectance, GlossThatWasNotObservedIsMarked) {
                     0.1f)
         << "the guess is told";
     EXPECT_FALSE(floor.extensions.contains("KHR_materials_specular")) << "Blender makes an image for each that has it";
-    EXPECT_NEAR(material_of(floor).ior, 1.5f, 1e-6f) << "no more than glass, and said all the same: colours alone have none";
+    EXPECT_NEAR(material_of(floor).ior, 1.5f, 1e-6f)
+        << "no more than glass, and said all the same: colours alone have none";
 }
 
 TEST(GlbReflectance, WithConstantFresnelTheSpecularColourHasTheStrength) {

@@ -225,6 +225,17 @@ TEST(LevelSeams, WhatIsFilledInComesToWhatAPictureShowed) {
     }
 }
 
+TEST(LevelSeams, BetweenSegmentsPaintsStayAndWhatLightErrsByGoes) {
+    TextureLayout two_segments = corner();
+    for (uint32_t i = 0; i < 2; ++i) two_segments.boxes[i].label = i + 1;
+    for (const double step : {0.02, 0.3}) {
+        Painted painted(two_segments, [&](const FlatChart& chart, Place) { return chart.left ? 0.5 : 0.5 + step; });
+        painted.level();
+        const double left = painted.root_at(true, {0, 0.1}), right = painted.root_at(false, {0, 0.1});
+        EXPECT_NEAR(right - left, step > 0.1 ? step : 0, 0.002);
+    }
+}
+
 TEST(LevelSeams, WhereTheSurfaceEndsItStaysAsItIs) {
     Painted painted(corner(true), [](const FlatChart&, Place p) { return stripes(p); });
     ASSERT_EQ(painted.layout.boxes.size(), 1u);

@@ -105,12 +105,12 @@ std::string content_of(SceneFormat format, const SceneParts& scene) {
     return fmt::format("{} triangles of {} segments", scene.triangles(), scene.materials.size());
 }
 
-/// The scene's parts, with the ambient light and the environment that stand beside it.
-SceneParts parts_of(const fs::path& glb, const fs::path& scene) {
+/// The scene's parts, with the ambient light that stands beside it, and the environment where it is `lit`.
+SceneParts parts_of(const fs::path& glb, const fs::path& scene, bool lit) {
     SceneParts parts = read_scene_parts(glb);
     const fs::path lights = scene.parent_path() / "lights.json";
     if (path_exists(lights)) parts.ambient = read_lighting(lights).ambient;
-    read_environment(parts, scene.parent_path());
+    if (lit) read_environment(parts, scene.parent_path());
     return parts;
 }
 
@@ -149,7 +149,9 @@ Outcome export_scene(const ExportSceneOptions& options) {
         glb = changed->path() / "scene.glb";
         rewrite_glb(scene, glb, options.changes);
     }
-    const SceneParts parts = parts_of(glb, scene);
+    const bool lit = std::ranges::any_of(
+        options.outputs, [](const SceneOutput& output) { return output.format == SceneFormat::kLights; });
+    const SceneParts parts = parts_of(glb, scene, lit);
     for (const SceneOutput& output : options.outputs) {
         if (interrupt.requested()) throw Interrupted("interrupted before '", output.file.string(), "' was written");
         write_output(output, glb, parts, options);

@@ -1,6 +1,7 @@
 #include "tools/record/record.h"
 
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -173,14 +174,8 @@ class Recording {
         return pass;
     }
 
-    /// `last`: the capture ends with this pass.
-    void add_pass(cameras::RawCapture& capture, RawPass& pass, SequenceRole role, bool last, const std::string& place) {
-        instruct(role, place);
-        begin_pass(role);
-        pass.begin(role, capture.sequence());
-        sensor::ExposureCheck exposure(role);
-        std::optional<CameraWatch> watch;  // who ends the first pass of two wants the camera to go on
-        if (last) watch.emplace(capture, interrupt_);
+    /// Waits while the capture's tap records, until the user, the time or the capture ends it.
+    void watch(cameras::RawCapture& capture, const RawPass& pass, sensor::ExposureCheck& exposure) {
         Progress progress("Recording", std::nullopt, options_.quiet);
         while (const auto frame = capture.next()) {
             const auto* raw = std::get_if<sensor::RecordedFrame>(&*frame);
@@ -189,9 +184,26 @@ class Recording {
             if (interrupted() || !recorder_->problem().empty() || !pass.problem().empty()) break;
             progress.update(static_cast<uint32_t>(recorder_->counts().given - given_before_), detail(exposure));
         }
-        if (last) capture.stop();
+    }
+
+    /// `last`: the capture ends with this pass. What waits to be decoded when the camera fails is recorded, too.
+    void add_pass(cameras::RawCapture& capture, RawPass& pass, SequenceRole role, bool last, const std::string& place) {
+        instruct(role, place);
+        begin_pass(role);
+        pass.begin(role, capture.sequence());
+        sensor::ExposureCheck exposure(role);
+        std::optional<CameraWatch> camera_watch;  // who ends the first pass of two wants the camera to go on
+        if (last) camera_watch.emplace(capture, interrupt_);
+        std::exception_ptr failure;
+        try {
+            watch(capture, pass, exposure);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        if (last || failure) capture.stop();
         undecoded_ += pass.end();
         finish_pass(role, exposure);
+        if (failure) std::rethrow_exception(failure);
     }
 
     void begin(SequenceRole role, const SequenceInfo& info) {
@@ -228,14 +240,11 @@ class Recording {
         Progress progress("Recording", sequence.info.frames, options_.quiet);
         for (uint32_t i = 0; i < *sequence.info.frames; ++i) {
             auto row = recording.read(its_role, i);
-            if (const auto* raw = std::get_if<sensor::RecordedFrame>(&row); raw && decodes) {
-                check(*raw, sequence, exposure);
-                row = repacker->repack(*raw);
-            }
-            auto* frame = std::get_if<sensor::RecordedFrame>(&row);
-            if (interrupted() || !recorder_->problem().empty() || (frame && is_over(frame->timestamp_s))) break;
-            if (frame) {
-                if (!decodes) check(*frame, sequence, exposure);
+            const auto* read = std::get_if<sensor::RecordedFrame>(&row);
+            if (interrupted() || !recorder_->problem().empty() || (read && is_over(read->timestamp_s))) break;
+            if (read) check(*read, sequence, exposure);
+            if (read && decodes) row = repacker->repack(*read);
+            if (auto* frame = std::get_if<sensor::RecordedFrame>(&row)) {
                 recorder_->record(std::move(*frame));
             } else {
                 recorder_->skip(std::get<Skipped>(std::move(row)));
