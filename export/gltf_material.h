@@ -48,7 +48,8 @@ glm::vec3 f0_of(const GltfMaterial& material);
 glm::vec3 base_color_of(const GltfMaterial& material, glm::vec3 kd);
 
 /// The inverses: kd of a dielectric's base colour, and ks and alpha of a material. Exact but for the clamps on
-/// roughness (alpha below 0.002) and on specular strength (above 0.6; with kConstant above 0.98).
+/// roughness (alpha below 0.002; 1 where next to nothing is reflected) and on specular strength (above 0.6; with
+/// kConstant above 0.98).
 glm::vec3 kd_of(const GltfMaterial& material, glm::vec3 base_color);
 WardGloss ward_of(const GltfMaterial& material);
 

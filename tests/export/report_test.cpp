@@ -134,7 +134,7 @@ TEST(Report, TheVerdictComesBeforeEverythingElse) {
 
 TEST(Report, LinesDoNotBreakWithinOptions) {
     RunSummary summary = test::full_summary();
-    summary.shortfalls = {"no lamp is known: give <lights> (--lights FILE, --lighting self)"};
+    summary.materials_missing = "no lamp is known: give <lights> (--lights FILE, --lighting self)";
     EXPECT_THAT(report_html(summary, {}),
                 HasSubstr("&lt;lights&gt; (<code>--lights</code> FILE, <code>--lighting</code> self)"));
 }
