@@ -40,14 +40,7 @@ double candela_per_intensity(std::span<const Light> lights, std::span<const Patc
 }
 
 double luminance_per_pixel_value(const Image<glm::vec3>& environment) {
-    const Extent2D extent = environment.extent();
-    double sum = 0;
-    for (uint32_t y = 0; y < extent.height; ++y) {
-        double row = 0;
-        for (uint32_t x = 0; x < extent.width; ++x) row += luminance(glm::dvec3(environment.at(x, y)));
-        sum += row * solid_angle_of_row(y, extent);
-    }
-    return with_six_digits(4 * kMeanIlluminance_lux / sum);
+    return with_six_digits(kMeanIlluminance_lux / (std::numbers::pi * mean_luminance(environment)));
 }
 
 }  // namespace patina

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/luminance.h"
+
 namespace patina {
 
 namespace {
@@ -28,6 +30,17 @@ size_t pixel_of_direction(glm::dvec3 direction, Extent2D extent) {
 double solid_angle_of_row(uint32_t row, Extent2D extent) {
     const double step = kPi / extent.height;
     return 2 * kPi / extent.width * (std::cos(row * step) - std::cos((row + 1) * step));
+}
+
+double mean_luminance(const Image<glm::vec3>& picture) {
+    const Extent2D extent = picture.extent();
+    double sum = 0;
+    for (uint32_t y = 0; y < extent.height; ++y) {
+        double row = 0;
+        for (uint32_t x = 0; x < extent.width; ++x) row += luminance(glm::dvec3(picture.at(x, y)));
+        sum += row * solid_angle_of_row(y, extent);
+    }
+    return sum / (4 * kPi);
 }
 
 }  // namespace patina

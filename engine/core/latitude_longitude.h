@@ -21,4 +21,7 @@ size_t pixel_of_direction(glm::dvec3 direction, Extent2D extent);
 /// Of each pixel of a row, sr.
 double solid_angle_of_row(uint32_t row, Extent2D extent);
 
+/// Of linear colours, over all directions.
+double mean_luminance(const Image<glm::vec3>& picture);
+
 }  // namespace patina

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "engine/core/error.h"
@@ -41,17 +40,6 @@ Image<glm::vec3> made_small(const Image<glm::vec3>& picture) {
         }
     }
     return small;
-}
-
-double mean_luminance(const Image<glm::vec3>& picture) {
-    const Extent2D extent = picture.extent();
-    double sum = 0;
-    for (uint32_t y = 0; y < extent.height; ++y) {
-        double row = 0;
-        for (uint32_t x = 0; x < extent.width; ++x) row += luminance(glm::dvec3(picture.at(x, y)));
-        sum += row * solid_angle_of_row(y, extent);
-    }
-    return sum / (4 * std::numbers::pi);
 }
 
 /// A pixel's light above the limit.
