@@ -19,7 +19,7 @@ void main() {
     const uvec2 first = block * kTextureBlock;
     if (any(greaterThanEqual(first, params.extent))) return;
     const uvec2 end = min(first + kTextureBlock, params.extent);
-    vec3 origin_m = vec3(0.0), position_m = vec3(0.0), seen = vec3(0.0), by_records = vec3(0.0);
+    vec3 origin_m = vec3(0.0), position_m = vec3(0.0), seen = vec3(0.0), squares = vec3(0.0), by_records = vec3(0.0);
     float count = 0.0;
     for (uint i = 0u; i < kTextureBlock * kTextureBlock; ++i) {
         const uvec2 at = first + uvec2(i % kTextureBlock, i / kTextureBlock);
@@ -33,12 +33,14 @@ void main() {
         if (count == 0.0) origin_m = here_m;
         if (distance(here_m, origin_m) > kOneSurface_m) continue;
         position_m += here_m - origin_m;
-        seen += sum.rgb / sum.a;
+        const vec3 albedo = sum.rgb / sum.a;
+        seen += albedo;
+        squares += albedo * albedo;
         by_records += unpack_albedo(known[index]);
         count += 1.0;
     }
     const uint page_block = (params.first_row / kTextureBlock + block.y) * params.blocks_x + block.x;
     const float share = 1.0 / max(count, 1.0);
     blocks[page_block] = TextureBlock(vec4(origin_m + share * position_m, count), vec4(share * seen, 0.0),
-                                      vec4(share * by_records, 0.0));
+                                      vec4(share * squares, 0.0), vec4(share * by_records, 0.0));
 }

@@ -19,7 +19,7 @@ namespace patina::scenes::builtin_scenes_test {
 namespace {
 
 constexpr double kContact_m = 1e-3;  // what stands on something touches it up to the rounding of written positions
-constexpr std::array kNames{"balls", "bunnies", "cubes", "halls", "office"};
+constexpr std::array kNames{"balls", "bunnies", "cubes", "halls", "office", "print"};
 
 /// Each scene is loaded once.
 const SyntheticScene& loaded(const std::string& name) {
@@ -77,7 +77,7 @@ TEST(BuiltinSceneNames, AreThoseTestedHereAndStepsFromThem) {
     EXPECT_EQ(scene_names(),
               "balls, bunnies, bunnies-all, bunnies-area, bunnies-bounces, bunnies-bumps-15, bunnies-bumps-2, "
               "bunnies-bumps-8, bunnies-glossy, bunnies-noise, bunnies-rough, bunnies-sky, cubes, halls, office, "
-              "office-all, office-area, office-bounces, office-noise, office-window");
+              "office-all, office-area, office-bounces, office-noise, office-window, print");
 }
 
 TEST(HarderScenes, AreOneStepFromTheSceneThatTheyAreNamedAfter) {

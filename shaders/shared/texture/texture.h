@@ -81,6 +81,7 @@ struct BlendDiffuseParams {
 struct TextureBlock {
     vec4 position_m;  // world, their mean; w: how many there are
     vec4 seen;        // rgb: mean albedo by pictures; w unused
+    vec4 squares;     // rgb: mean of its squares; w unused
     vec4 known;       // rgb: mean albedo by records; w unused
 };
 

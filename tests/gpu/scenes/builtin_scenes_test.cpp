@@ -52,7 +52,7 @@ class BuiltinScenesOnGpu : public GpuTest, public ::testing::WithParamInterface<
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, BuiltinScenesOnGpu, ::testing::Values("balls", "bunnies", "cubes", "office"),
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScenesOnGpu, ::testing::Values("balls", "bunnies", "cubes", "office", "print"),
                          [](const auto& p) { return std::string(p.param); });
 
 double period_s(const CameraPath& path) {

@@ -232,6 +232,28 @@ TEST_F(BakeTest, PicturesOfAnotherBrightnessAreBroughtToTheRecords) {
     }
 }
 
+TEST_F(BakeTest, OfWhatRecordsSayPrintLeavesWhatChanceDoesNotExplain) {
+    const glm::dvec3 dark(0.1), bright(0.7);
+    const auto print = [&](uint32_t x, uint32_t) { return x / 3 % 2 == 0 ? dark : bright; };
+    const auto plain = [&](uint32_t, uint32_t) { return 0.5 * (dark + bright); };
+    const auto brighter_than_pictures = [&](double records, const auto& paint) {
+        const glm::vec3 known(static_cast<float>(records) * 0.5f * glm::vec3(dark + bright));
+        bake(facing_page(0.3, known, known), {picture_of_wall(0.3, glm::dvec3(0.5), paint)});
+        double sum = 0, pictures = 0;
+        for (uint32_t column = 20; column < 56; ++column) {
+            const glm::vec4 seen = sums[at(column, 26)];
+            sum += unpack_albedo(words[at(column, 26)]).g;
+            pictures += seen.g / seen.a;
+        }
+        return sum / pictures;
+    };
+    EXPECT_NEAR(brighter_than_pictures(1.1, print), 1, 0.005) << "records hit more paper than ink";
+    EXPECT_NEAR(brighter_than_pictures(1.1, plain), 1.1, 0.01);
+    const double left = brighter_than_pictures(1.7, print);
+    EXPECT_GT(left, 1.4);
+    EXPECT_LT(left, 1.69);
+}
+
 TEST_F(BakeTest, WithoutRecordsPicturesStayAsTheyAre) {
     records_know = false;
     const glm::dvec3 paint(0.3, 0.5, 0.2);

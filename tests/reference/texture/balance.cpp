@@ -10,7 +10,7 @@ constexpr int kBlock = 8, kTaps = 4;
 constexpr double kReach_m = 0.08, kOneSurface_m = 0.06, kFill_m = 0.03;
 
 struct Block {
-    glm::dvec3 position_m{0}, seen{0}, known{0};
+    glm::dvec3 position_m{0}, seen{0}, squares{0}, known{0};
     double count = 0;
     std::optional<glm::dvec3> factor;
 };
@@ -34,6 +34,7 @@ void average(const SeenPage& page, int x0, int y0, Block& block) {
             if (glm::distance(*origin, *page.position_m[i]) > kOneSurface_m) continue;
             block.position_m += *page.position_m[i];
             block.seen += *page.seen[i];
+            block.squares += *page.seen[i] * *page.seen[i];
             block.known += page.known[i];
             ++block.count;
         }
@@ -41,14 +42,15 @@ void average(const SeenPage& page, int x0, int y0, Block& block) {
     if (block.count == 0) return;
     block.position_m /= block.count;
     block.seen /= block.count;
+    block.squares /= block.count;
     block.known /= block.count;
 }
 
 void balance(Blocks& blocks, int x, int y, int stride) {
     Block& own = *blocks.at(x, y);
     if (own.count == 0) return;
-    glm::dvec3 seen(0), known(0);
-    double shares = 0;
+    glm::dvec3 seen(0), squares(0), known(0);
+    double shares = 0, shares2 = 0;
     for (int dy = -kTaps; dy <= kTaps; ++dy) {
         for (int dx = -kTaps; dx <= kTaps; ++dx) {
             const Block* there = blocks.at(x + dx * stride, y + dy * stride);
@@ -57,11 +59,22 @@ void balance(Blocks& blocks, int x, int y, int stride) {
             if (away > 1) continue;
             const double share = there->count * std::exp(-2 * away * away);
             seen += share * there->seen;
+            squares += share * there->squares;
             known += share * there->known;
             shares += share;
+            shares2 += share * share;
         }
     }
-    own.factor = glm::clamp((known / shares + 0.01) / (seen / shares + 0.01), 0.25, 4.0);
+    own.factor = glm::dvec3(1);
+    for (int c = 0; c < 3; ++c) {
+        const double mean = seen[c] / shares, ratio = (known[c] / shares + 0.01) / (mean + 0.01);
+        // The variance of a mean over as many records as taps, of which each shows one point.
+        const double variance = std::max(squares[c] / shares - mean * mean, 0.0) * shares2 / (shares * shares);
+        const double chance = 2 * std::sqrt(variance) / (mean + 0.01), off = std::abs(std::log(ratio));
+        if (off <= chance) continue;
+        const double left = std::pow(ratio, 1 - chance * chance / (off * off));
+        (*own.factor)[c] = std::clamp(left, 0.25, 4.0);
+    }
 }
 
 /// Between the four blocks around a texel.
