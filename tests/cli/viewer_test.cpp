@@ -223,12 +223,12 @@ TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
         done
         sleep 6
         xdotool key r; sleep 1
-        # Nothing is fused during a pause, in which six frames come: both exports are the same.
+        # Nothing is fused during a pause, in which four frames come: both exports are the same.
         xdotool key space; sleep 1
         for i in 1 2; do
             xdotool key e
             for k in $(seq 100); do [ -e out-export-$i/scene.glb ] && break; sleep 0.2; done
-            [ $i = 1 ] && sleep 3
+            [ $i = 1 ] && sleep 2
         done
         xdotool key space; sleep 1
         xdotool key ctrl+z; sleep 4)");
