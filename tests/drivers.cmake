@@ -34,7 +34,7 @@ endif()
 
 # Suites and TESTs that reconstruct whole scenes. They take most of the time, and what differs between drivers shows in
 # single passes and in the stored results (Golden), so that all but the first driver run them with PATINA_TEST_FULL alone.
-set(PATINA_WHOLE_SUITES "^(GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|All/BuiltinScenesOnGpu)$")
+set(PATINA_WHOLE_SUITES "^(DragLamp|GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|WarmUp|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.SceneIsValidGltf:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
 # TESTs that take 5 to 20 s, beside others of the same code: these run with PATINA_TEST_FULL alone.

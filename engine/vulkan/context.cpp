@@ -140,6 +140,13 @@ const Pipeline& Context::pipeline(const Shader& shader, const Specialization& co
     return found->second;
 }
 
+std::vector<std::string> Context::built_pipelines() const {
+    std::vector<std::string> names;
+    for (const auto& [key, pipeline] : pipelines_) names.emplace_back(key.first->name);
+    std::ranges::sort(names);
+    return names;
+}
+
 namespace {
 
 vk::DescriptorType descriptor_type(BindingKind kind) {

@@ -92,6 +92,9 @@ class Context {
     /// The pipeline for a shader with these constants, built at first use. The push range is the shader's own.
     const Pipeline& pipeline(const Shader& shader, const Specialization& constants);
 
+    /// The shaders' names, one for each pipeline that was built so far, sorted.
+    std::vector<std::string> built_pipelines() const;
+
     vk::Sampler nearest_sampler() const { return *nearest_; }
 
     /// Counts memory that was allocated (or, below 0, freed).

@@ -22,6 +22,7 @@ void WaitingSkips::push(Skipped skipped) {
     }
     beyond_.last = skipped.index;
     ++(skipped.dropped ? beyond_.dropped : beyond_.damaged);
+    if (skipped.dropped) beyond_.dropped_for = std::move(skipped.reason);
 }
 
 std::optional<Skipped> WaitingSkips::pop() {
@@ -46,7 +47,7 @@ Skipped WaitingSkips::pop_beyond() {
                             " were: too many waited to keep each one's reason")};
     }
     --beyond_.dropped;
-    return {index, "dropped: newer frames came before it was asked for", true};
+    return {index, beyond_.dropped_for, true};
 }
 
 }  // namespace patina::sensor

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "patina/source.h"
 
@@ -32,7 +33,8 @@ class WaitingSkips {
     };
     struct Beyond {
         uint32_t first = 0, last = 0, dropped = 0, damaged = 0;
-        uint32_t next = 0;  ///< index of the frame that pop() yields next
+        std::string dropped_for;  ///< the last one of them
+        uint32_t next = 0;        ///< index of the frame that pop() yields next
         uint32_t count() const { return dropped + damaged; }
     };
     Skipped pop_beyond();

@@ -97,7 +97,7 @@ void Recorder::record(RecordedFrame frame) {
 }
 
 void Recorder::skip(Skipped skipped) {
-    hand_over({without_pictures(skipped.index, std::move(skipped.reason)), 0, Clock::now()});
+    hand_over({without_pictures(skipped.index, std::move(skipped.reason)), 0, Clock::now(), skipped.dropped});
 }
 
 void Recorder::hand_over(Item item) {
@@ -111,7 +111,7 @@ void Recorder::hand_over(Item item) {
     counts_.given += is_frame;
     if (const auto* raw = std::get_if<RecordedFrame>(&item.content); raw && !raw->skipped.empty()) {
         ++counts_.skipped;
-        skipped_for_ = raw->skipped;
+        if (!item.dropped) skipped_for_ = raw->skipped;
     }
     if (ending_ || !problem_.empty()) {
         counts_.lost += is_frame;

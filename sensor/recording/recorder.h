@@ -77,7 +77,7 @@ class Recorder {
     /// Why a cut of the power could have cost more than it should, in one sentence; empty where it could not.
     std::string warning() const;
 
-    /// Why the last frame that was handed over without pictures has none.
+    /// Why the last frame that was handed over without pictures has none; those that were dropped do not count.
     std::string skipped_for() const;
 
     /// Writes what waits, and ends the recording. Throws Error with problem() where there is one; the file then keeps
@@ -101,6 +101,7 @@ class Recorder {
         std::variant<Begin, Decoded, RecordedFrame> content;
         uint64_t bytes = 0;
         Clock::time_point given{};
+        bool dropped = false;  ///< skipped, and nothing was wrong with it
     };
 
     void hand_over(Item item);

@@ -1,11 +1,15 @@
 // The viewer as a user meets it: off screen, and in a window on a display without a screen.
 
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <numbers>
 #include <set>
 
 #include "sensor/files/picture_file.h"
 #include "sensor/recording/container.h"
+#include "sensor/truth.h"
 #include "tests/cli/run_folder.h"
 
 namespace patina::testing::viewer_test {
@@ -50,22 +54,37 @@ class Viewer : public RunFolderTest {
     static bool has_display() { return installed("Xvfb") && installed("xdotool"); }
 
     /// Runs a command of the program in a window on a display of its own, whose number Xvfb chooses; then `script`, in
-    /// which $window is it; then closes it as a user would. Returns the exit code.
+    /// which $window is it, and has been drawn; then closes it as a user would. Returns the exit code.
     int in_window(const std::string& command, const std::string& script) const {
-        return shell("cd " + beside(".").string() + R"(
+        return shell("cd " + beside(".").string() + R"sh(
         exec 3> display
-        Xvfb -displayfd 3 -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
+        Xvfb -displayfd 3 -fbdir . -screen 0 1024x768x24 -nolisten tcp 2> /dev/null & server=$!
         for i in $(seq 100); do [ -s display ] && break; sleep 0.1; done
         export DISPLAY=:$(cat display)
-        $PATINA )" + command +
-                     R"( > said 2> complaint & viewer=$!
+        screen() { cksum < Xvfb_screen0; }
+        # Waits until the screen is not as it was before. What a user does within one frame is taken as one.
+        changed() { for k in $(seq 200); do [ "$(screen)" != "$before" ] && break; sleep 0.1; done; }
+        does() { before=$(screen); "$@"; changed; }
+        # Waits until the screen rests.
+        settle() {
+            rests=0
+            while [ $rests -lt 3 ]; do
+                before=$(screen); sleep 0.3
+                [ "$(screen)" = "$before" ] && rests=$((rests + 1)) || rests=0
+            done
+        }
+        before=$(screen)
+        $PATINA )sh" +
+                     command +
+                     R"sh( > said 2> complaint & viewer=$!
         window=$(timeout 120 xdotool search --sync --onlyvisible --name '^patina' | head -n 1)
         # Until the window has the focus, keys are lost.
         for i in $(seq 100); do
             xdotool windowfocus $window 2> /dev/null
             [ $(xdotool getwindowfocus) = $window ] && break
             sleep 0.2
-        done)" + script +
+        done
+        changed)sh" + script +
                      R"(
         xdotool key ctrl+q
         wait $viewer; ended=$?
@@ -139,16 +158,37 @@ TEST_F(Viewer, BadInputIsOneSentence) {
     EXPECT_THAT(expect_failure(other), HasSubstr("must be a .png, an .mp4 or an .avi"));
 }
 
+/// A wall 1 m before the camera, which is not turned, and a lamp between the two.
 TEST_F(Viewer, AWindowTakesKeysAndTheMouse) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
     if (!has_display()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
-    run_cubes({"--lighting", "none"});
-    const int exit_code = in_window("view " + out().string() + " --extent 320x240", R"(
-        xdotool mousemove --window $window 160 200
-        xdotool key 6; sleep 1
-        xdotool click 4; sleep 1)");
+    const fs::path lamp = beside("lamp.json");
+    // The window's picture has a focal length of 462 pixels; its middle is where the camera looks to.
+    sensor::write_lights(lamp, std::vector<Light>{{{-80 * 0.6 / 462, -80 * 0.6 / 462, 0.6}, glm::dvec3(1)}});
+    run_quietly(sequence(), {"--frames", "1", "--lights", lamp, "--texture", "off", "--detail", "coarse"});
+    // 760 pixels leave 180 between the panels. The surface that is clicked becomes the point that the camera turns
+    // around, 2 m before it; a turn by 75 pixels is one of 30 degrees.
+    const int exit_code = in_window("view " + out().string() + " --layer color --extent 760x400", R"(
+        at() { xdotool mousemove --window $window $1 $2; sleep 0.1; }
+        at 300 120; does xdotool mousedown 1  # the lamp is marked
+        at 300 150; settle; does xdotool mouseup 1
+        at 380 200; does xdotool click 1  # the answer is a mark, and a panel
+        does xdotool key f
+        xdotool mousedown 2; at 415 200; at 455 200; settle; xdotool mouseup 2
+        xdotool key e
+        for i in $(seq 100); do [ -e out-export-1/scene.glb ] && break; sleep 0.2; done)");
     EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
-    EXPECT_THAT(files_in(beside("."))["said"], HasSubstr("layer normals"));
+    const std::string said = files_in(beside("."))["said"];
+    EXPECT_THAT(said, HasSubstr("layer rerendering")) << "the lamp was dragged";
+    EXPECT_TRUE(fs::exists(beside("out-export-1") / "scene.glb"));
+    double x = 0, y = 0, z = 0;
+    ASSERT_EQ(
+        std::sscanf(said.c_str() + std::min(said.find(", from "), said.size()), ", from %lf, %lf, %lf", &x, &y, &z), 3)
+        << said;
+    constexpr double kWall_m = 1.013, kTurn = std::numbers::pi / 6, kTolerance_m = 0.03;
+    EXPECT_NEAR(x, -2 * std::sin(kTurn), kTolerance_m);
+    EXPECT_NEAR(y, 0, kTolerance_m);
+    EXPECT_NEAR(z, kWall_m - 2 * std::cos(kTurn), kTolerance_m);
 }
 
 TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
@@ -182,9 +222,19 @@ TEST_F(Viewer, ALiveSourceIsRecordedAndUndone) {
             [ -e out-recording-1.patina ] && break
         done
         sleep 6
-        xdotool key r; sleep 2
+        xdotool key r; sleep 1
+        # Nothing is fused during a pause, in which four frames come: both exports are the same.
+        xdotool key space; sleep 1
+        for i in 1 2; do
+            xdotool key e
+            for k in $(seq 100); do [ -e out-export-$i/scene.glb ] && break; sleep 0.2; done
+            [ $i = 1 ] && sleep 2
+        done
+        xdotool key space; sleep 1
         xdotool key ctrl+z; sleep 4)");
     EXPECT_EQ(exit_code, 0) << files_in(beside("."))["complaint"];
+    EXPECT_EQ(files_in(beside("out-export-1")), files_in(beside("out-export-2"))) << "it was paused";
+    EXPECT_NE(files_in(beside("out-export-2"))["scene.glb"], files_in(out())["scene.glb"]) << "it went on";
     const auto summary = summary_of(out());
     EXPECT_GE(summary["frames"].value("undone", 0), 1);
     EXPECT_THAT(files_in(beside("."))["said"], HasSubstr(" undone)"));

@@ -1,13 +1,16 @@
 // A Vulkan layer that lets one call of a program fail, as drivers do once in a while: PATINA_FAULT="vkAllocateMemory 3
 // -2" returns VkResult -2 from the third call of vkAllocateMemory and does nothing else. With -4 (device lost) the
 // device stays lost: every later submission and wait returns it too. A lost device runs nothing any more, so that what
-// was submitted before is waited for.
+// was submitted before is waited for. A fourth number lets every call of that name wait so many milliseconds first, as
+// on a slow device: "vkQueueSubmit2 0 0 100" fails none.
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
@@ -18,13 +21,14 @@ struct Fault {
     std::string call;
     int at = 0;
     int result = VK_SUCCESS;
+    int delay_ms = 0;
 };
 
 const Fault& fault() {
     static const Fault read = [] {
         Fault made;
         if (const char* wanted = std::getenv("PATINA_FAULT"))
-            std::istringstream(wanted) >> made.call >> made.at >> made.result;
+            std::istringstream(wanted) >> made.call >> made.at >> made.result >> made.delay_ms;
         return made;
     }();
     return read;
@@ -53,6 +57,7 @@ struct Before<Counted, VkResult(VKAPI_PTR*)(Arguments...)> {
 
     static VKAPI_ATTR VkResult VKAPI_CALL call(Arguments... arguments) {
         if (lost) return VK_ERROR_DEVICE_LOST;
+        if (Counted) std::this_thread::sleep_for(std::chrono::milliseconds(fault().delay_ms));
         if (Counted && ++calls == fault().at) {
             if (fault().result == VK_ERROR_DEVICE_LOST) lose_device();
             return static_cast<VkResult>(fault().result);

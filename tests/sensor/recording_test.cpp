@@ -266,6 +266,19 @@ TEST_F(RecordingTest, ACameraThatIsTooFastLosesFramesNotOrder) {
     EXPECT_GT(dropped, 0u);
 }
 
+/// A program that warns of frames without pictures counts those that it dropped itself apart.
+TEST_F(RecordingTest, WhatWasDroppedIsNoReasonWhyFramesLackPictures) {
+    Recorder recorder(file());
+    recorder.begin(SequenceRole::kMain, raw_sequence());
+    recorder.skip({0, "a packet was lost"});
+    recorder.skip({1, "dropped: too many frames before it waited", true});
+    EXPECT_EQ(recorder.skipped_for(), "a packet was lost");
+    recorder.finish();
+    EXPECT_EQ(recorder.counts().skipped, 2u);
+    RecordingFile recording(file());
+    EXPECT_THAT(std::get<Skipped>(recording.read(SequenceRole::kMain, 1)).reason, HasSubstr("dropped: too many"));
+}
+
 TEST_F(RecordingTest, NeverWritesOverAFile) {
     write_text(file(), "mine");
     EXPECT_THAT(error_of([&] { Recorder recorder(file()); }), HasSubstr("exists already"));

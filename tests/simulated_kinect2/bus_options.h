@@ -19,7 +19,9 @@ struct BusOptions {
     double frames_per_second = 30;        ///< RATE
     uint64_t usbfs_bytes = 16u << 20;     ///< USBFS_MB
     uint64_t unplug_after_intervals = 0;  ///< UNPLUG_AFTER, given in frames; 0: never
-    std::filesystem::path unplug_file;    ///< UNPLUG_FILE: unplugged once it exists; of the stand-in alone
+    /// UNPLUG_FILE: unplugged once it exists; of the stand-in alone, which then writes how many infrared frames it had
+    /// sent to a file beside it, "NAME.sent".
+    std::filesystem::path unplug_file;
     uint64_t transient_failures = 0;      ///< SUBMIT_FAILS: so many submissions fail, after the first 200
     uint32_t lose_every = 0;              ///< LOSE_EVERY: every n-th frame lacks a packet; 0: none
     std::filesystem::path infrared_file;  ///< INFRARED: frames of 2984960 bytes; the last one stays

@@ -169,6 +169,19 @@ TEST(DrawBudget, TakesItsShareOfTheTimeWhateverAPictureCosts) {
     }
 }
 
+/// While a run is paused, pictures are drawn one after the other. It would be ten times as long until the next one.
+TEST(DrawBudget, APauseCostsNothingAfterwards) {
+    DrawBudget budget(0.1);
+    double now_s = 0;
+    for (int i = 0; i < 100; ++i, now_s += 0.1) budget.spend(now_s, 0.1);
+    EXPECT_FALSE(budget.due(now_s + 80));
+    budget.forgive(now_s);
+    EXPECT_TRUE(budget.due(now_s));
+    budget.spend(now_s, 0.1);
+    EXPECT_FALSE(budget.due(now_s + 0.9));
+    EXPECT_TRUE(budget.due(now_s + 1.1));
+}
+
 TEST(DrawBudget, SlowPicturesGetSmallerAndFastOnesLargeAgain) {
     DrawBudget budget(1);
     const Extent2D window{1280, 801};

@@ -31,13 +31,13 @@ class CameraPass {
 
     /// A frame, decoded or not, or why there is none.
     template <class Item>
-    void take(const std::variant<Item, Skipped>& reading) {
+    void take(std::variant<Item, Skipped> reading) {
         const std::lock_guard lock(mutex_);
         if (!open_) return;
-        if (const auto* skipped = std::get_if<Skipped>(&reading)) {
-            recorder_->skip({frames_++, skipped->reason, skipped->dropped});
+        if (auto* skipped = std::get_if<Skipped>(&reading)) {
+            recorder_->skip({frames_++, std::move(skipped->reason), skipped->dropped});
         } else {
-            Item frame = std::get<Item>(reading);
+            Item frame = std::get<Item>(std::move(reading));
             frame.index = frames_++;
             recorder_->record(std::move(frame));
         }

@@ -16,7 +16,7 @@ RawPass::RawPass(std::shared_ptr<sensor::Recorder> recorder, std::unique_ptr<cam
     : pass_(std::move(recorder)), repacker_(std::move(repacker)) {
     if (repacker_)
         queue_.emplace([this](const sensor::RecordedFrame& raw) { return repacker_->repack(raw); },
-                       [this](const cameras::RawReading& reading) { pass_.take(reading); });
+                       [this](cameras::RawReading reading) { pass_.take(std::move(reading)); });
 }
 
 void RawPass::begin(sensor::SequenceRole role, const sensor::RecordedSequence& raw) {

@@ -22,6 +22,9 @@ class DrawBudget {
     /// A picture that was begun at `began_s` took `cost_s`.
     void spend(double began_s, double cost_s);
 
+    /// Nothing waited for the pictures that were drawn until now: they need not be paid for.
+    void forgive(double now_s) { next_s_ = now_s; }
+
     /// A window's picture is drawn at its size, halved so many times.
     Extent2D picture_extent(Extent2D window) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/gtc/packing.hpp>
@@ -72,6 +73,11 @@ void Viewer::settle_cost() {
 bool Viewer::due() {
     settle_cost();
     return display_.wants_all() || (!cost_ && budget_.due(now_s()));
+}
+
+void Viewer::resume() {
+    settle_cost();
+    budget_.forgive(now_s());
 }
 
 RigidTransform Viewer::pose_of(const Scenery& scenery) {
@@ -196,9 +202,8 @@ void Viewer::take_keys(const Scenery& scenery) {
 void Viewer::take_mouse(const Scenery& scenery, const RigidTransform& pose) {
     const ImGuiIO& io = ImGui::GetIO();
     const Intrinsics camera = with_extent(scenery.camera, ui_extent());
-    if (!ImGui::IsMouseDown(kLeft)) state_.held_light.reset();
-    if (state_.held_light) return hold_light(scenery, camera, pose);
-    if (io.WantCaptureMouse) return;
+    if (state_.held_light && ImGui::IsMouseDown(kLeft)) return hold_light(scenery, camera, pose);
+    if (std::exchange(state_.held_light, std::nullopt) || io.WantCaptureMouse) return;  // to let go is no click
     const glm::dvec2 moved(io.MouseDelta.x, io.MouseDelta.y), at(io.MousePos.x, io.MousePos.y);
     if (ImGui::IsMouseDown(kMiddle) && moved != glm::dvec2(0)) {
         leave_sensor(scenery);
@@ -213,7 +218,7 @@ void Viewer::take_mouse(const Scenery& scenery, const RigidTransform& pose) {
     }
     const std::vector<Light>& lights = state_.other ? state_.other->lights : scenery.lighting.lights;
     if (ImGui::IsMouseClicked(kLeft)) state_.held_light = light_at(lights, camera, pose, at, kHandle_px);
-    const bool dragged = ImGui::IsMouseDragging(kLeft, kClick_px);
+    const bool dragged = io.MouseDragMaxDistanceSqr[kLeft] > kClick_px * kClick_px;  // since it was pressed
     if (ImGui::IsMouseReleased(kLeft) && !dragged)
         clicked_ = at / glm::dvec2(camera.extent.width, camera.extent.height);
 }

@@ -31,6 +31,9 @@ class Viewer {
     /// Whether a frame is to be drawn now; else there is no time for it.
     bool due();
 
+    /// Fusion begins again after a pause: what was drawn meanwhile took none of its time.
+    void resume();
+
     /// Draws a frame and shows it, after it took what the user did. Throws Error when the device was lost.
     void draw(const Scenery& scenery, ViewerFacts facts);
 

@@ -90,7 +90,7 @@ void WindowRun::after_step(SessionCore& session) {
         if (closed() || !show(session, paused)) return;
         // What fails here in the middle leaves no model to go on with.
         if (std::exchange(viewer_->state().undo_asked, false)) undo(session);
-        paused = viewer_->state().paused;
+        if (std::exchange(paused, viewer_->state().paused) && !paused) viewer_->resume();
         if (paused) times_.paused();
     } while (paused);
     if (session.fused()) keep_checkpoint(session);

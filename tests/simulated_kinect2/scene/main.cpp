@@ -1,6 +1,8 @@
 // kinect2_scene SCENE FRAMES FOLDER [SLOWER]: what the simulated Kinect v2 sees of a synthetic scene along its path, as
 // the stand-in for libusb sends it: FOLDER/infrared.bin, FOLDER/color/NNNNNN.jpg, and FOLDER/trajectory.txt with the
-// true poses of the depth camera at 30 frames a second. SLOWER: the camera moves so many times slower along its path.
+// true poses of the depth camera at 30 frames a second. FOLDER/lights.json has the scene's lamps as the depth camera of
+// the first frame sees them, which is the world of a camera that is tracked from there. SLOWER: the camera moves so
+// many times slower along its path.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -19,6 +21,7 @@
 #include "scenes/files/scene_file.h"
 #include "scenes/kinect2/infrared_frame.h"
 #include "scenes/render/synthetic_source.h"
+#include "sensor/truth.h"
 #include "tests/simulated_kinect2/pages.h"
 
 namespace patina::testing {
@@ -80,6 +83,7 @@ class SceneFrames {
         trajectory_.push_back({frame.index / 30.0, pose});
     }
 
+    const std::vector<TimedPose>& trajectory() const { return trajectory_; }
     void finish() { std::ofstream(folder_ / "trajectory.txt") << trajectory_text(trajectory_); }
 
   private:
@@ -120,11 +124,15 @@ void write_frames(const std::string& name, uint32_t frames, const fs::path& fold
     scene.fps *= slower;
     scene.camera = out.depth_camera();
     scene.color_camera = out.color_camera();
+    std::vector<Light> lights = scene.lights;
     vulkan::Device device;
     scenes::SyntheticSource source(device, std::move(scene), {.frames = frames});
     while (const auto reading = source.next())
         out.write(std::get<Frame>(*reading), source.info().metres_per_unit, source.truth().world_from_camera);
     out.finish();
+    const RigidTransform camera_from_world = rigid_inverse(out.trajectory().front().world_from_camera);
+    for (Light& light : lights) light.position_m = glm::dvec3(camera_from_world * glm::dvec4(light.position_m, 1));
+    sensor::write_lights(folder / "lights.json", lights);
 }
 
 }  // namespace

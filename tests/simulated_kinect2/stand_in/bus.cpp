@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 namespace patina::sensor::kinect2::testing {
@@ -20,10 +21,11 @@ Bus::Bus(const BusOptions& options)
 void Bus::pass_interval() {
     const bool streaming = device_.streaming_infrared();
     constexpr uint64_t kLook = 100;  // intervals, some 12 ms
-    if (streaming) {
+    if (streaming && !device_.gone()) {
         ++intervals_;
         const bool asked =
             !options_.unplug_file.empty() && intervals_ % kLook == 0 && std::filesystem::exists(options_.unplug_file);
+        if (asked) std::ofstream(options_.unplug_file.string() + ".sent") << intervals_ * 3 / 800;
         if (asked || (options_.unplug_after_intervals != 0 && intervals_ == options_.unplug_after_intervals))
             device_.unplug();
     }
