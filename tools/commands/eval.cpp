@@ -63,7 +63,12 @@ void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, 
     kept->run.resume = true;
     kept->run.checkpoint_every = 0;
     kept->run.device = arguments.device.choice();
-    render_never_recorded(kept->run, truth, truth_from_run, out);
+    std::optional<Progress> progress;
+    render_never_recorded(kept->run, truth, truth_from_run, out, [&](uint32_t done, uint32_t total) {
+        if (!progress) progress.emplace("Rendering", total, arguments.quiet);
+        progress->update(done, "views that were never recorded");
+    });
+    progress.reset();
     const glm::dmat3 rotation(truth_from_run);
     evaluation.novel = eval::evaluate_views(truth / "novel", out.published("novel/000000.exr").parent_path(), rotation);
     evaluation.relit = eval::evaluate_views(truth / "relit", out.published("relit/000000.exr").parent_path(), rotation);

@@ -100,7 +100,10 @@ void write_output(const SceneOutput& output, const fs::path& glb, const ScenePar
 
 /// For the user.
 std::string content_of(SceneFormat format, const SceneParts& scene) {
-    if (format == SceneFormat::kLights) return fmt::format("{} lamps", scene.lights.size());
+    if (format == SceneFormat::kLights) {
+        const bool from_afar = scene.ambient != glm::dvec3(0) || !scene.environment.empty();
+        return fmt::format("{} lamps{}", scene.lights.size(), from_afar ? " and light from afar" : "");
+    }
     if (format == SceneFormat::kPoints) return fmt::format("{} points", scene.vertices());
     return fmt::format("{} triangles of {} segments", scene.triangles(), scene.materials.size());
 }

@@ -30,7 +30,7 @@ std::vector<RigidTransform> poses_of(const fs::path& sequence, const RigidTransf
 }
 
 void write_views(SessionCore& session, const std::vector<RigidTransform>& poses, const std::string& folder,
-                 OutputFolder& out) {
+                 OutputFolder& out, const std::function<void()>& on_view) {
     std::deque<ViewReadback> owed;
     uint32_t done = 0;
     const auto write_first = [&] {
@@ -38,6 +38,7 @@ void write_views(SessionCore& session, const std::vector<RigidTransform>& poses,
         write_exr(out.stage(name), channels_of(to_dump(owed.front().get())));
         out.publish(name);
         owed.pop_front();
+        on_view();
     };
     for (const RigidTransform& pose : poses) {
         session.stop_if_interrupted();
@@ -51,7 +52,7 @@ void write_views(SessionCore& session, const std::vector<RigidTransform>& poses,
 }  // namespace
 
 void render_never_recorded(const SequenceOptions& run, const fs::path& truth, const RigidTransform& truth_from_run,
-                           OutputFolder& out) {
+                           OutputFolder& out, const std::function<void(uint32_t done, uint32_t total)>& on_view) {
     Device device(run.device);
     SessionCore session(Access::vulkan(device), run);
     if (session.step())
@@ -64,12 +65,16 @@ void render_never_recorded(const SequenceOptions& run, const fs::path& truth, co
     session_from_truth[3] -= glm::dvec4(session.world_offset_m(), 0);
     pictures.show_in(session.pipeline(), session.info());
     session.pipeline().refine_all();
-    write_views(session, poses_of(truth / "novel", session_from_truth, session.info()), "novel", out);
+    const auto novel = poses_of(truth / "novel", session_from_truth, session.info()),
+               relit = poses_of(truth / "relit", session_from_truth, session.info());
+    uint32_t done = 0;
+    const auto count = [&] { on_view(++done, static_cast<uint32_t>(novel.size() + relit.size())); };
+    write_views(session, novel, "novel", out, count);
 
     std::vector<Light> lights = sensor::read_lights(truth / "relit" / "truth" / "lights.json");
     for (Light& light : lights) light.position_m = glm::dvec3(session_from_truth * glm::dvec4(light.position_m, 1));
     session.pipeline().relight({.lights = lights, .far_field = {}});
-    write_views(session, poses_of(truth / "relit", session_from_truth, session.info()), "relit", out);
+    write_views(session, relit, "relit", out, count);
 }
 
 }  // namespace patina::tools

@@ -237,8 +237,8 @@ TEST_F(BakeTest, OfWhatRecordsSayPrintLeavesWhatChanceDoesNotExplain) {
     const auto print = [&](uint32_t x, uint32_t) { return x / 3 % 2 == 0 ? dark : bright; };
     const auto plain = [&](uint32_t, uint32_t) { return 0.5 * (dark + bright); };
     const auto brighter_than_pictures = [&](double records, const auto& paint) {
-        const glm::vec3 known(static_cast<float>(records) * 0.5f * glm::vec3(dark + bright));
-        bake(facing_page(0.3, known, known), {picture_of_wall(0.3, glm::dvec3(0.5), paint)});
+        const glm::vec3 by_records(static_cast<float>(records) * 0.5f * glm::vec3(dark + bright));
+        bake(facing_page(0.3, by_records, by_records), {picture_of_wall(0.3, glm::dvec3(0.5), paint)});
         double sum = 0, pictures = 0;
         for (uint32_t column = 20; column < 56; ++column) {
             const glm::vec4 seen = sums[at(column, 26)];
