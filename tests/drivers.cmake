@@ -43,7 +43,7 @@ set(PATINA_LONG_TESTS FindVisibilityTest.WhatLiesOutsideTheBallThrowsNoShadow:Fi
 # No shader uses subgroup operations, so that the width of vectors changes nothing but how the driver compiles a pass. Without
 # PATINA_TEST_FULL the narrower lavapipe runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
 set(PATINA_LAVAPIPE128_TESTS "*Reference*")
-set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|input|kinect2|photometry|surface|texture|tracking|viewer)$")
+set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|input|photometry|surface|texture|viewer)$")
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
 # kind of its own, and leaves out those that go through many scenes.

@@ -111,6 +111,24 @@ Level halved(const Level& fine) {
     return coarse;
 }
 
+/// The two pixels of a coarser level between whose centres that of a finer one lies, along one axis.
+struct Between {
+    uint32_t low, high;
+    float share_of_high;
+};
+
+/// Of each pixel along an axis of the finer level.
+std::vector<Between> between(uint32_t fine_px, uint32_t coarse_px) {
+    std::vector<Between> all(fine_px);
+    for (uint32_t i = 0; i < fine_px; ++i) {
+        const auto last = static_cast<float>(coarse_px - 1);
+        const float at = std::clamp((static_cast<float>(i) + 0.5f) * 0.5f - 0.5f, 0.0f, last);
+        const auto low = static_cast<uint32_t>(at);
+        all[i] = {low, std::min(low + 1, coarse_px - 1), at - static_cast<float>(low)};
+    }
+    return all;
+}
+
 /// The mean change around each pixel of the finest level: of as near samples as there are (pull-push, Gortler et al.
 /// 1996, "The lumigraph").
 std::vector<glm::vec3> spread(const Level& finest) {
@@ -120,15 +138,30 @@ std::vector<glm::vec3> spread(const Level& finest) {
     for (size_t i = levels.size() - 1; i-- > 0;) {
         const Level& level = levels[i];
         const Extent2D coarse = levels[i + 1].extent;
+        const std::vector<Between> columns = between(level.extent.width, coarse.width),
+                                   rows = between(level.extent.height, coarse.height);
         std::vector<glm::vec3> finer(level.sums.size());
-        for (uint32_t y = 0; y < level.extent.height; ++y) {
-            for (uint32_t x = 0; x < level.extent.width; ++x) {
-                const Corners corners = corners_of((glm::vec2(x, y) + 0.5f) * 0.5f, coarse);
-                glm::vec3 around(0);
-                for (size_t k = 0; k < 4; ++k)
-                    around += corners.shares[k] * means[size_t{corners.at[k].y} * coarse.width + corners.at[k].x];
-                const size_t at = size_t{y} * level.extent.width + x;
-                finer[at] = (glm::vec3(level.sums[at]) + kCoarserWeight * around) / (level.sums[at].a + kCoarserWeight);
+        auto sum = level.sums.begin();
+        auto mean = finer.begin();
+        for (const Between& row : rows) {
+            const glm::vec3* const above = &means[size_t{row.low} * coarse.width];
+            const glm::vec3* const below = &means[size_t{row.high} * coarse.width];
+            const float t = row.share_of_high, s = 1 - t;
+            for (const Between& column : columns) {
+                const glm::vec3 &p = above[column.low], &q = above[column.high];
+                const glm::vec3 &v = below[column.low], &w = below[column.high];
+                const float u = column.share_of_high, r = 1 - u;
+                // Number by number: vectors of a moment cost most of the time under sanitizers.
+                const auto mean_of = [&, weight = sum->a + kCoarserWeight](float own, float a, float b, float c,
+                                                                           float d) {
+                    const float around = r * s * a + u * s * b + r * t * c + u * t * d;
+                    return (own + kCoarserWeight * around) / weight;
+                };
+                mean->r = mean_of(sum->r, p.r, q.r, v.r, w.r);
+                mean->g = mean_of(sum->g, p.g, q.g, v.g, w.g);
+                mean->b = mean_of(sum->b, p.b, q.b, v.b, w.b);
+                ++mean;
+                ++sum;
             }
         }
         means = std::move(finer);
@@ -136,27 +169,35 @@ std::vector<glm::vec3> spread(const Level& finest) {
     return means;
 }
 
+/// Lowers distances of a row by those of the row that was passed before it; none in the first.
+void pass_row(std::span<float> row, std::span<const float> before) {
+    constexpr float kDiagonal = std::numbers::sqrt2_v<float>;
+    for (size_t x = 0; x < before.size(); ++x) {
+        float nearest = std::min(row[x], before[x] + 1);
+        if (x > 0) nearest = std::min(nearest, before[x - 1] + kDiagonal);
+        if (x + 1 < before.size()) nearest = std::min(nearest, before[x + 1] + kDiagonal);
+        row[x] = nearest;
+    }
+}
+
 /// From each pixel to the nearest one on a seam, in pixels; steps are straight or diagonal.
 std::vector<float> distances_px(const Level& finest) {
-    const auto width = static_cast<int>(finest.extent.width), height = static_cast<int>(finest.extent.height);
+    const size_t width = finest.extent.width, height = finest.extent.height;
     std::vector<float> away(finest.sums.size());
     std::ranges::transform(finest.sums, away.begin(), [](const glm::vec4& sum) {
         return sum.a >= kLeastOnSeam ? 0 : std::numeric_limits<float>::max();
     });
-    const auto look = [&](int x, int y, int step) {
-        float& nearest = away[static_cast<size_t>(y * width + x)];
-        const std::array<glm::ivec2, 4> before{glm::ivec2(-step, 0), {-step, -step}, {0, -step}, {step, -step}};
-        for (const glm::ivec2 by : before) {
-            const int u = x + by.x, v = y + by.y;
-            if (u < 0 || v < 0 || u >= width || v >= height) continue;
-            const float length = by.x != 0 && by.y != 0 ? std::numbers::sqrt2_v<float> : 1.0f;
-            nearest = std::min(nearest, away[static_cast<size_t>(v * width + u)] + length);
-        }
-    };
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) look(x, y, 1);
-    for (int y = height; y-- > 0;)
-        for (int x = width; x-- > 0;) look(x, y, -1);
+    const std::span<float> all(away);
+    for (size_t y = 0; y < height; ++y) {
+        const std::span<float> row = all.subspan(y * width, width);
+        if (y > 0) pass_row(row, all.subspan((y - 1) * width, width));
+        for (size_t x = 1; x < width; ++x) row[x] = std::min(row[x], row[x - 1] + 1);
+    }
+    for (size_t y = height; y-- > 0;) {
+        const std::span<float> row = all.subspan(y * width, width);
+        if (y + 1 < height) pass_row(row, all.subspan((y + 1) * width, width));
+        for (size_t x = width - 1; x-- > 0;) row[x] = std::min(row[x], row[x + 1] + 1);
+    }
     return away;
 }
 

@@ -195,7 +195,7 @@ TEST_F(BadInput, InfoOfNothing) {
 }
 
 TEST_F(BadInput, FullVoxelPoolEndsWell) {
-    const Outcome outcome = patina({"run", "synthetic:cubes", "--frames", "3", "--lighting", "none", "--out", out(),
+    const Outcome outcome = patina({"run", small_cubes(), "--frames", "3", "--lighting", "none", "--out", out(),
                                     "--texture", "off", "--no-map", "--set", "map.capacity_blocks=200"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
@@ -214,8 +214,8 @@ TEST_F(BadInput, FullVoxelPoolEndsWell) {
 TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome =
-        patina({"run", "synthetic:cubes", "--frames", "2", "--lights", beside("l.json"), "--out", out(), "--texture",
-                "off", "--no-map", "--set", "reflectance.capacity_records=1000"});
+        patina({"run", small_cubes(), "--frames", "2", "--lights", beside("l.json"), "--out", out(), "--detail",
+                "coarse", "--texture", "off", "--no-map", "--set", "reflectance.capacity_records=1000"});
     EXPECT_EQ(outcome.exit_code, 3);
     const nlohmann::json summary = summary_of(out());
     EXPECT_GT(summary["observation_pool"]["records_used"], 900);
@@ -230,7 +230,7 @@ TEST_F(BadInput, FullPoolOfObservationsEndsWellAndIsTold) {
 
 TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
     const Outcome outcome =
-        patina({"run", "synthetic:cubes", "--frames", "1", "--lighting", "none", "--out", out(), "--texture", "off",
+        patina({"run", small_cubes(), "--frames", "1", "--lighting", "none", "--out", out(), "--texture", "off",
                 "--no-map", "--set", "map.voxel_m=0.0025", "--set", "fusion.truncation_m=0.01"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("with voxels of 0.0025 m the view reaches 3."));
@@ -240,7 +240,7 @@ TEST_F(BadInput, SmallVoxelsThatCutTheViewAreTold) {
 TEST_F(BadInput, FinerObservationsGetTheRecordsThatTheyTake) {
     write_text(beside("l.json"), R"({"lights": [{"position": [0, -2, 0], "intensity": [1, 1, 1]}]})");
     const Outcome outcome =
-        patina({"run", "synthetic:cubes", "--frames", "1", "--lights", beside("l.json"), "--observation-mm", "10",
+        patina({"run", small_cubes(), "--frames", "1", "--lights", beside("l.json"), "--observation-mm", "10",
                 "--texture", "off", "--no-map", "--out", out(), "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0);
     const nlohmann::json summary = summary_of(out());

@@ -64,7 +64,7 @@ TEST_F(Export, WhatNeedsTheMapSaysSo) {
     EXPECT_THAT(expect_failure(patina({"export", out(), file("a.fbx")})),
                 HasSubstr("ends in '.fbx', which is no format"));
     EXPECT_THAT(expect_failure(patina({"export", beside("none"), file("a.glb")})), HasSubstr("is no finished scene"));
-    run_into(beside("dark"), {"--lighting", "none"});
+    run_into(beside("dark"), {"--lighting", "none", "--texture", "off", "--no-map"});
     EXPECT_THAT(expect_failure(patina({"export", beside("dark"), file("a.exr")})), HasSubstr("has no lights"));
     EXPECT_THAT(expect_failure(patina({"export", out()}), 2), HasSubstr("a file to write"));
     EXPECT_THAT(expect_failure(patina({"export", out(), file("a.ply"), "--lods"}), 2), HasSubstr("a .glb to write"));

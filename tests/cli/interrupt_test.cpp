@@ -42,8 +42,8 @@ class Interrupt : public RunFolderTest {
 
     /// With a texture where that is asked for: baking takes longer than all the rest.
     std::vector<std::string> endless(std::vector<std::string> more, bool texture = false) {
-        std::vector<std::string> arguments{"run", "synthetic:cubes", "--frames", "100000", "--out",
-                                           out(), "--detail",        "coarse"};
+        std::vector<std::string> arguments{"run",   small_cubes(), "--frames", "100000",
+                                           "--out", out(),         "--detail", "coarse"};
         if (!texture) more.insert(more.end(), {"--texture", "off", "--no-map"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
@@ -81,7 +81,7 @@ TEST_F(Interrupt, AnEarlierRunThatFinishedStays) {
     run_quietly(small_cubes(), {"--frames", "2", "--lighting", "none", "--detail", "coarse", "--texture", "off"});
     const auto earlier = files_in(out());
     EXPECT_TRUE(earlier.contains("map.sqlite"));
-    Program program({"run", "synthetic:cubes", "--frames", "100000", "--out", out(), "--detail", "coarse", "--texture",
+    Program program({"run", small_cubes(), "--frames", "100000", "--out", out(), "--detail", "coarse", "--texture",
                      "off", "--lighting", "none", "--dump-every", "1"});
     await_frames(program);
     program.send(SIGINT);

@@ -122,8 +122,8 @@ TEST_F(Output, OneRunAtATimeAndAKilledOneLeavesOneFolderThatTheNextRemoves) {
     run_into(out());
     const auto earlier = files_in(out());
     const fs::path partial = beside(".out.patina-partial");
-    Program first({"run", "synthetic:cubes", "--frames", "100000", "--lighting", "none", "--dump-every", "1", "--out",
-                   out(), "--quiet"});
+    Program first({"run", "synthetic:cubes", "--detail", "coarse", "--frames", "100000", "--lighting", "none",
+                   "--dump-every", "1", "--out", out(), "--quiet"});
     await(first, partial / "frames/000000.exr");
     EXPECT_THAT(expect_failure(patina({"run", sequence(), "--out", out(), "--quiet"})),
                 HasSubstr("another process is writing"));

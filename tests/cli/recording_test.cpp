@@ -180,25 +180,25 @@ void keep_frames(const fs::path& from, const std::set<int64_t>& times_ms, const 
 }
 
 TEST_F(RecordingCommands, LiveIsTheRunOfTheFramesThatItUsed) {
-    synthesise("90");
+    synthesise("40");
     const fs::path slow = beside("slow.patina");
-    slow_down(folder_, 4, slow);  // 12 s
+    slow_down(folder_, 4, slow);  // 5 s
     expect_done(patina({"live", "--simulate", slow, "--lights", folder_ / "truth/lights.json", "--texture", "off",
                         "--no-map", "--out", out(), "--record", beside("beside.patina"), "--quiet"}));
     const nlohmann::json summary = summary_of(out());
     const auto &live = summary["live"], &frames = summary["frames"];
     const auto count = [](const nlohmann::json& value) { return value.get<uint32_t>(); };
     EXPECT_EQ(summary["finished"], true);
-    EXPECT_EQ(count(live["captured"]), 90u);
-    EXPECT_EQ(count(frames["read"]), 90u);
-    EXPECT_EQ(count(frames["used"]) + frames.value("dropped", 0u), 90u);
+    EXPECT_EQ(count(live["captured"]), 40u);
+    EXPECT_EQ(count(frames["read"]), 40u);
+    EXPECT_EQ(count(frames["used"]) + frames.value("dropped", 0u), 40u);
     EXPECT_EQ(live["dropped"], frames.value("dropped", 0u));
     EXPECT_EQ(live["exposure_to_pose"]["frames"], frames["used"]);
     EXPECT_GT(live["exposure_to_pose"]["median_ms"], 0);
     EXPECT_GT(live["exposure_to_picture"]["median_ms"], 0);
     EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("From exposure to"));
-    EXPECT_EQ(live["recordings"].at(0)["frames"], 90u);  // dropped ones, too
-    EXPECT_EQ(sensor::open_sequence(beside("beside.patina"))->info().frames, 90u);
+    EXPECT_EQ(live["recordings"].at(0)["frames"], 40u);  // dropped ones, too
+    EXPECT_EQ(sensor::open_sequence(beside("beside.patina"))->info().frames, 40u);
 
     std::set<int64_t> used_ms;
     for (const auto& pose : sensor::read_trajectory(out() / "trajectory.txt"))
@@ -236,7 +236,8 @@ bool has_picture(const fs::path& folder) {
 TEST_F(RecordingCommands, AnInterruptEndsALiveRunThatIsWhole) {
     synthesise("90");
     slow_down(folder_, 30, file_);  // 90 s
-    Program program({"live", "--simulate", file_, "--lighting", "none", "--dump-every", "1", "--out", out()});
+    Program program({"live", "--simulate", file_, "--lighting", "none", "--dump-every", "1", "--texture", "off",
+                     "--no-map", "--out", out()});
     while (program.running() && !has_picture(beside("."))) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     program.send(SIGINT);
     const Outcome outcome = program.wait();

@@ -18,8 +18,8 @@ class Streams : public RunFolderTest {
     /// Runs the recorded frames with these redirections; returns the exit code.
     int run_with(const std::string& redirections) {
         fs::remove_all(out());
-        return shell(
-            fmt::format("exec \"$PATINA\" run '{}' --out '{}' {}", sequence().string(), out().string(), redirections));
+        return shell(fmt::format("exec \"$PATINA\" run '{}' --out '{}' --texture off --no-map {}", sequence().string(),
+                                 out().string(), redirections));
     }
 
     void expect_scene() {

@@ -130,8 +130,8 @@ TEST_F(Viewer, EveryLayerOfAMapIsAPictureOfItsOwnAndTheSameEachTime) {
 
 TEST_F(Viewer, ARunDrawsItsSceneWhileItGrowsAndItsResultIsTheSame) {
     if (absent()) GTEST_SKIP() << "built without libglfw3-dev or libimgui-dev";
-    const std::vector<std::string> run{"run",  small_cubes(), "--frames", "3",       "--lighting",
-                                       "none", "--texture",   "off",      "--quiet", "--out"};
+    const std::vector<std::string> run{"run", small_cubes(), "--frames", "3",      "--lighting", "none", "--texture",
+                                       "off", "--no-map",    "--detail", "coarse", "--quiet",    "--out"};
     std::vector<std::string> plain = run, drawn = run;
     plain.push_back(beside("plain"));
     drawn.insert(drawn.end(), {beside("drawn"), "--offscreen", beside("frame-#.png"), "--window-extent", "96x64",

@@ -18,7 +18,8 @@ class VulkanFault : public RunFolderTest {
     VulkanFault() { sensor::write_lights(lights_, std::vector<Light>{{{0, -1.5, 0}, glm::dvec3(8)}}); }
 
     Outcome run_with(const std::string& call, int at, int result) const {
-        return patina({"run", sequence(), "--out", out(), "--quiet", "--lights", lights_, "--dump-every", "1"},
+        return patina({"run", sequence(), "--out", out(), "--quiet", "--lights", lights_, "--dump-every", "1",
+                       "--texture", "off"},
                       {{"VK_LAYER_PATH", PATINA_FAULT_LAYER_FOLDER},
                        {"VK_INSTANCE_LAYERS", "VK_LAYER_PATINA_fault"},
                        {"PATINA_FAULT", call + ' ' + std::to_string(at) + ' ' + std::to_string(result)}});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,15 @@ TEST(BuiltinSceneNames, AreThoseTestedHereAndStepsFromThem) {
               "office-all, office-area, office-bounces, office-noise, office-window, print");
 }
 
-TEST(HarderScenes, AreOneStepFromTheSceneThatTheyAreNamedAfter) {
+TEST(BuiltinSceneFiles, AllLoad) {
+    std::istringstream names(scene_names());
+    for (std::string name; std::getline(names >> std::ws, name, ',');) {
+        EXPECT_EQ(loaded(name).name, name);
+        EXPECT_TRUE(loaded(name).recording.render.shadows) << name;
+    }
+}
+
+TEST(BuiltinSceneFiles, HarderScenesAreOneStepFromTheSceneThatTheyAreNamedAfter) {
     const SyntheticScene &bunnies = loaded("bunnies"), &office = loaded("office");
     EXPECT_TRUE(loaded("bunnies-area").recording.render.area_lights);
     EXPECT_TRUE(loaded("office-area").recording.render.area_lights);

@@ -171,15 +171,6 @@ TEST(SceneFile, BuiltInScenesAreThoseOfTheAssetsFolder) {
     EXPECT_THAT(scene_names(), HasSubstr("cubes"));
 }
 
-TEST(SceneFile, EveryBuiltInSceneLoads) {
-    std::istringstream names(scene_names());
-    for (std::string name; std::getline(names >> std::ws, name, ',');) {
-        const SyntheticScene scene = load_scene(name);
-        EXPECT_EQ(scene.name, name);
-        EXPECT_TRUE(scene.recording.render.shadows) << name;
-    }
-}
-
 TEST(SceneFile, TheDocumentsExampleLoads) {
     const std::string document = sensor::testing::read_text(PATINA_SOURCE_DIR "/docs/guide/scenes.md");
     const size_t begin = document.find("```json\n") + 8;

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <vector>
 
 #include "reconstruction/lights/search_lights.h"
+#include "tests/reference/lighting/received.h"
 
 namespace patina {
 
@@ -18,10 +18,7 @@ struct Lamp {
 
 /// What a lamp of intensity 1 gives a surface that nothing shades.
 inline float received(const gpu::LightSample& sample, glm::vec3 place_m) {
-    const glm::vec3 offset_m = place_m - glm::vec3(sample.point_m);
-    const float distance_m = glm::length(offset_m);
-    const float cosine = glm::dot(offset_m, glm::vec3(sample.normal)) / distance_m;
-    return std::max(cosine, 0.0f) / (std::numbers::pi_v<float> * distance_m * distance_m);
+    return reference::received({glm::vec3(sample.point_m), glm::vec3(sample.normal)}, place_m);
 }
 
 /// Balls on a floor (y points down), of one albedo each but for tiles of the floor, under lamps and ambient light: a
@@ -38,15 +35,15 @@ class Balls {
             sample.diffuse *= 1 + noise * normal(random_);
             drawn_[place] = sample;
         }
+        for (uint32_t place = 0; place < gpu::kLightSamples; ++place)
+            receivers_.push_back({glm::vec3(drawn_[place].point_m), glm::vec3(drawn_[place].normal)});
         for (uint32_t place = 0; place < 300; ++place) drawn_[gpu::kLightSamples + place] = highlight(place % 3);
     }
 
     const std::vector<gpu::LightSample>& drawn() const { return drawn_; }
 
     ReceivedLight received_from(const LitSurface& surface, glm::vec3 place_m) const {
-        std::vector<float> row;
-        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) row.push_back(received(drawn_[i], place_m));
-        return surface.received(row);
+        return surface.received(reference::received(receivers_, place_m));
     }
 
     /// From all lamps together, mean of the channels; by place.
@@ -111,6 +108,7 @@ class Balls {
     float dark_tiles_;
     std::mt19937 random_{5};
     std::vector<gpu::LightSample> drawn_ = std::vector<gpu::LightSample>(2 * gpu::kLightSamples);
+    std::vector<reference::Receiver> receivers_;  ///< by place, of the first half of drawn_
 };
 
 inline const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f, -1.6f, 0.6f}, {5, 5, 5.5f}}};

@@ -107,7 +107,7 @@ TEST_F(RegisterColorTest, WhatTheColourCameraDoesNotSeeHasNoColour) {
     for (uint32_t x = 240; x < 300; ++x) EXPECT_NE(registered.at(x, 200), 0u) << x;
 }
 
-TEST_F(RegisterColorTest, AgreesWithAMapOfTheColourPicture) {
+TEST_F(RegisterColorTest, AgreesWithTheReferenceThatMapsTheColourPicture) {
     Image<float> depth_m(kinect2::kInfraredExtent);
     for (uint32_t y = 0; y < 424; ++y) {
         for (uint32_t x = 0; x < 512; ++x) {

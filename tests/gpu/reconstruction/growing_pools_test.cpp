@@ -71,8 +71,8 @@ class GrowingPoolsTest : public GpuTest {
 
     Result reconstruct(const ReconstructionSettings& settings, vulkan::Device& on = device()) const {
         Pipeline pipeline(on, settings);
-        pipeline.set_lights(cubes_.lights);
-        for (const Frame& frame : cubes_.frames) pipeline.add(patina::to_rgbd(cubes_.info, frame));
+        pipeline.set_lights(cubes().lights);
+        for (const Frame& frame : cubes().frames) pipeline.add(patina::to_rgbd(cubes().info, frame));
         Result result;
         result.mesh = pipeline.extract_surface();
         result.reflectance = pipeline.sample_reflectance(result.mesh);
@@ -81,7 +81,11 @@ class GrowingPoolsTest : public GpuTest {
         return result;
     }
 
-    const SmallCubes cubes_{device(), 12};
+    /// Rendered once for all tests.
+    static const SmallCubes& cubes() {
+        static const SmallCubes rendered(device(), 12);
+        return rendered;
+    }
 };
 
 TEST_F(GrowingPoolsTest, SmallPoolsGrowIntoTheModelOfLargeOnes) {
@@ -113,21 +117,21 @@ TEST_F(GrowingPoolsTest, GainsAreThoseOfTheFramesAlthoughTheFirstIsFusedAnew) {
     small.reflectance.reset();
     small.gains.emplace();
     Pipeline pipeline(device(), small);
-    for (const Frame& frame : cubes_.frames) pipeline.add(patina::to_rgbd(cubes_.info, frame));
+    for (const Frame& frame : cubes().frames) pipeline.add(patina::to_rgbd(cubes().info, frame));
     pipeline.wait();
-    EXPECT_EQ(pipeline.gains().size(), cubes_.frames.size());
+    EXPECT_EQ(pipeline.gains().size(), cubes().frames.size());
 }
 
 TEST_F(GrowingPoolsTest, GivenLabelsBeyondTheCapacityAreTaken) {
     ReconstructionSettings given = settings(16384, 32768, 65536, 4);
     given.segmentation->given = true;
     Pipeline pipeline(device(), given);
-    pipeline.set_lights(cubes_.lights);
+    pipeline.set_lights(cubes().lights);
     pipeline.set_material(300, glm::vec3(0.1f), 0.2f);
-    const Extent2D extent = cubes_.info.depth.extent;
+    const Extent2D extent = cubes().info.depth.extent;
     const std::vector<uint16_t> labels(size_t{extent.width} * extent.height, 300);
-    for (const Frame& frame : cubes_.frames) {
-        RgbdFrame rgbd = patina::to_rgbd(cubes_.info, frame);
+    for (const Frame& frame : cubes().frames) {
+        RgbdFrame rgbd = patina::to_rgbd(cubes().info, frame);
         rgbd.labels = labels;
         pipeline.add(rgbd);
     }
@@ -158,9 +162,9 @@ TEST_F(GrowingPoolsTest, MaterialsThatWereEstimatedStayWhenLabelsGrow) {
     uint32_t labels = 4096;
     for (const size_t grown : {0u, 1u}) {
         Pipeline pipeline(device(), with_labels(labels));
-        pipeline.set_lights(cubes_.lights);
-        for (const Frame& frame : cubes_.frames) {
-            pipeline.add(patina::to_rgbd(cubes_.info, frame));
+        pipeline.set_lights(cubes().lights);
+        for (const Frame& frame : cubes().frames) {
+            pipeline.add(patina::to_rgbd(cubes().info, frame));
             if (frame.index > 0) continue;
             ASSERT_EQ(labels_of(pipeline).growths, 0u) << "it is to grow later";
             labels = labels_of(pipeline).used + 2;  // room for the first frame, not for two more

@@ -17,12 +17,17 @@ glm::dvec3 one_red_wall(glm::dvec3 p) { return p.x < -0.98 * kHalf_m ? glm::dvec
 
 class GatherIrradianceTest : public RadiantRoomTest {
   protected:
+    /// Records near a place have their turns, and no others, whose rays would take most of the time.
+    static void update_around(glm::dvec3 place_m, Model& model, ReflectanceSettings settings = {}) {
+        settings.gathered_rays = kRays / kRaysAtTheEnd;
+        model.reflectance.part.cube_m = glm::vec4(glm::vec3(place_m), 0.16f);
+        model.reflectance.update_all(settings);
+    }
+
     /// What records in the middle of the wall z = kHalf_m gathered: the mean of all rays that met something, and the
     /// share of those that met nothing.
     static std::pair<double, double> gathered_by_far_wall(Model& model) {
-        ReflectanceSettings settings;
-        settings.gathered_rays = kRays / kRaysAtTheEnd;
-        model.reflectance.update_all(settings);
+        update_around({0, 0, kHalf_m}, model);
         double sum = 0, met = 0, missed = 0;
         for (const RefinedRecord& record : model.reflectance.records()) {
             if (record.observations == 0 || glm::distance(record.point_m, {0, 0, kHalf_m}) > 0.08) continue;
@@ -154,9 +159,7 @@ TEST_F(GatherIrradianceTest, RecordsOfOneSurfaceShareTheirRays) {
 
 TEST_F(GatherIrradianceTest, OppositeTheRedWallAFifthOfTheLightIsItsOwn) {
     const auto model = fused(one_red_wall, kAll);
-    ReflectanceSettings settings;
-    settings.gathered_rays = kRays / kRaysAtTheEnd;
-    model->reflectance.update_all(settings);
+    update_around({kHalf_m, 0, 0}, *model);
     // From the middle of a wall the opposite one of a cube has a form factor of 0.239.
     EXPECT_NEAR(red_opposite(model->reflectance.records()), 0.1 + 0.239 * 0.5, 0.01);
 }
@@ -182,12 +185,11 @@ TEST_F(GatherIrradianceTest, WhereNothingWasSeenTheAmbientLightArrives) {
 TEST_F(GatherIrradianceTest, ALampSendsNothingASecondTime) {
     const auto model = fused([](glm::dvec3 p) { return glm::dvec3(p.x < -0.98 * kHalf_m ? 1.0 : 0.2); }, kAll);
     ReflectanceSettings settings;
-    settings.gathered_rays = kRays / kRaysAtTheEnd;
     settings.shadows = false;
     // As large as the bright wall, and too weak to matter.
     model->reflectance.lights.set(
         std::vector<Light>{{{-kHalf_m, 0, 0}, {1e-6f, 1e-6f, 1e-6f}, static_cast<float>(kHalf_m)}});
-    model->reflectance.update_all(settings);
+    update_around({kHalf_m, 0, 0}, *model, settings);
     EXPECT_NEAR(red_opposite(model->reflectance.records()), 0.2 * (1 - 0.239), 0.02);
 }
 
