@@ -11,7 +11,7 @@ layout(push_constant) uniform Push { BalanceBlocksParams params; };
 
 const int kTaps = int(kBalanceTaps);
 const float kDarkest = 0.01;  // added to both means: what is black says nothing of a factor
-const float kNoise2 = 4.0;    // two standard deviations, squared
+const float kNoise2 = 1.0;    // one standard deviation, squared
 
 // What is left of a factor, by channel, beside what print makes of it by chance. A record shows one point of the
 // surface, here a stroke and there paper. A mean over `records` of them is off by that, as pictures tell: `squares` is

@@ -70,7 +70,7 @@ void balance(Blocks& blocks, int x, int y, int stride) {
         const double mean = seen[c] / shares, ratio = (known[c] / shares + 0.01) / (mean + 0.01);
         // The variance of a mean over as many records as taps, of which each shows one point.
         const double variance = std::max(squares[c] / shares - mean * mean, 0.0) * shares2 / (shares * shares);
-        const double chance = 2 * std::sqrt(variance) / (mean + 0.01), off = std::abs(std::log(ratio));
+        const double chance = std::sqrt(variance) / (mean + 0.01), off = std::abs(std::log(ratio));
         if (off <= chance) continue;
         const double left = std::pow(ratio, 1 - chance * chance / (off * off));
         (*own.factor)[c] = std::clamp(left, 0.25, 4.0);
