@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -8,12 +9,17 @@
 
 namespace patina::testing {
 
-/// Writes the built-in cubes for a camera of 256 x 212, a quarter of the pixels. Returns `synthetic:FILE`. Who includes
-/// this defines PATINA_SOURCE_DIR.
-inline std::string small_cubes(const std::filesystem::path& file) {
+/// Writes the built-in cubes for a camera of 256 x 212, a quarter of the pixels, or of `scale` times that. Returns
+/// `synthetic:FILE`. Who includes this defines PATINA_SOURCE_DIR.
+inline std::string small_cubes(const std::filesystem::path& file, double scale = 1) {
     std::ifstream built_in(PATINA_SOURCE_DIR "/assets/scenes/cubes.json");
     nlohmann::json scene = nlohmann::json::parse(built_in);
-    scene["camera"] = {{"width", 256}, {"height", 212}, {"fx", 182.5}, {"fy", 182.5}, {"cx", 127.5}, {"cy", 105.5}};
+    scene["camera"] = {{"width", std::lround(256 * scale)},
+                       {"height", std::lround(212 * scale)},
+                       {"fx", 182.5 * scale},
+                       {"fy", 182.5 * scale},
+                       {"cx", 128 * scale - 0.5},
+                       {"cy", 106 * scale - 0.5}};
     std::ofstream(file) << scene.dump();
     return "synthetic:" + file.string();
 }

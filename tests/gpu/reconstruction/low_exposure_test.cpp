@@ -16,25 +16,39 @@ using ::testing::IsEmpty;
 
 constexpr uint32_t kFrames = 6;
 
-class LowExposureTest : public GpuTest {
-  protected:
-    LowExposureTest() {
+/// Frames from all around the built-in scene, small.
+struct Tour {
+    explicit Tour(vulkan::Device& device) {
         scenes::SyntheticScene scene = scenes::load_scene("cubes");
         scene.camera = scaled_to(scene.camera, {256, 212});
-        scenes::SyntheticSource source(device(), std::move(scene), {.frames = 40});
-        info_ = source.info();
-        lights_ = source.scene().lights;
+        scenes::SyntheticSource source(device, std::move(scene), {.frames = 40});
+        info = source.info();
+        lights = source.scene().lights;
         while (auto reading = source.next()) {
             const uint32_t index = std::get<Frame>(*reading).index;
             if (index % 8 != 0 && index != 39) continue;
-            frames_.push_back(std::get<Frame>(std::move(*reading)));
-            labels_.push_back(source.truth().labels);
+            frames.push_back(std::get<Frame>(std::move(*reading)));
+            labels.push_back(source.truth().labels);
         }
     }
 
+    SequenceInfo info;
+    std::vector<Light> lights;
+    std::vector<Frame> frames;
+    std::vector<Image<uint16_t>> labels;
+};
+
+class LowExposureTest : public GpuTest {
+  protected:
+    /// Rendered once for all tests.
+    static const Tour& the_tour() {
+        static const Tour tour(device());
+        return tour;
+    }
+
     RgbdFrame frame(size_t i) const {
-        RgbdFrame rgbd = to_rgbd(info_, frames_[i]);
-        rgbd.labels = labels_[i].pixels();
+        RgbdFrame rgbd = to_rgbd(tour_.info, tour_.frames[i]);
+        rgbd.labels = tour_.labels[i].pixels();
         return rgbd;
     }
 
@@ -42,7 +56,7 @@ class LowExposureTest : public GpuTest {
     void add_low(Pipeline& pipeline, size_t i) const {
         RgbdFrame rgbd = frame(i);
         std::vector<glm::vec3> dark;
-        for (const SrgbPixel pixel : std::get<Image<SrgbPixel>>(frames_[i].color).pixels())
+        for (const SrgbPixel pixel : std::get<Image<SrgbPixel>>(tour_.frames[i].color).pixels())
             dark.push_back(linear_color(pixel) / 8.0f);
         rgbd.color.pixels = std::span<const glm::vec3>(dark);
         // Half as much again as is right: what was observed so would show.
@@ -65,7 +79,7 @@ class LowExposureTest : public GpuTest {
     }
 
     ModelView view(Pipeline& pipeline, size_t i) const {
-        const ViewReadback pending = pipeline.view(info_.color, *frames_[i].world_from_camera);
+        const ViewReadback pending = pipeline.view(tour_.info.color, *tour_.frames[i].world_from_camera);
         pipeline.wait();
         return pending.get();
     }
@@ -75,15 +89,12 @@ class LowExposureTest : public GpuTest {
             std::ranges::count_if(view.position_m.pixels(), [](glm::vec4 position_m) { return position_m.w > 0; }));
     }
 
-    SequenceInfo info_;
-    std::vector<Light> lights_;
-    std::vector<Frame> frames_;
-    std::vector<Image<uint16_t>> labels_;
+    const Tour& tour_ = the_tour();
 };
 
 TEST_F(LowExposureTest, BeforeTheFirstFrameItTellsGeometryAloneAndCountsNoFrames) {
     Pipeline with(device(), settings()), without(device(), settings());
-    for (Pipeline* pipeline : {&with, &without}) pipeline->set_lights(lights_);
+    for (Pipeline* pipeline : {&with, &without}) pipeline->set_lights(tour_.lights);
     for (size_t i = 1; i < kFrames; ++i) {
         add_low(with, i);
         const graph::CompiledFrame& compiled = with.runner().last_frame();
@@ -118,7 +129,7 @@ TEST_F(LowExposureTest, BeforeTheFirstFrameItTellsGeometryAloneAndCountsNoFrames
 
 TEST_F(LowExposureTest, AfterTheFirstFrameItTellsNoGeometry) {
     Pipeline pipeline(device(), settings());
-    pipeline.set_lights(lights_);
+    pipeline.set_lights(tour_.lights);
     pipeline.add(frame(0));
     const size_t before = with_depth(view(pipeline, kFrames - 1));
     for (size_t i = 1; i < kFrames; ++i) add_low(pipeline, i);

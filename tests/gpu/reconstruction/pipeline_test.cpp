@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "reconstruction/session/rgbd_frame.h"
 #include "scenes/files/scene_file.h"
@@ -48,7 +49,12 @@ class PipelineTest : public GpuTest {
         EXPECT_THAT(graph::find_unneeded_barriers(compiled.description, compiled.plan), IsEmpty()) << which;
     }
 
-    const Cubes cubes_{device(), 4};
+    /// Rendered once for all tests.
+    static const Cubes& four_cubes() {
+        static const Cubes cubes(device(), 4);
+        return cubes;
+    }
+    const Cubes& cubes_ = four_cubes();
 };
 
 TEST_F(PipelineTest, EveryFrameShapeIsOrderedByBarriersThatAreAllNeeded) {
@@ -104,6 +110,12 @@ struct LabelledCubes {
     std::vector<sensor::Material> materials;
 };
 
+/// Each number of frames is rendered once for all tests.
+const LabelledCubes& labelled_cubes(vulkan::Device& device, uint32_t count) {
+    static std::map<uint32_t, LabelledCubes> rendered;
+    return rendered.try_emplace(count, device, count).first->second;
+}
+
 /// Coarse geometry with blocks of 8 cm, so that observations have voxels of 4 cm.
 ReconstructionSettings small_settings_with_reflectance() {
     ReconstructionSettings settings = small_settings();
@@ -122,7 +134,7 @@ ReconstructionSettings small_settings_with_reflectance() {
 
 TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
     constexpr uint32_t kFrames = 8;
-    const LabelledCubes cubes(device(), kFrames);
+    const LabelledCubes& cubes = labelled_cubes(device(), kFrames);
     Pipeline pipeline(device(), small_settings_with_reflectance());
     cubes.prepare(pipeline);
     for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
@@ -156,7 +168,7 @@ TEST_F(PipelineTest, AlbedoSegmentsAndReRenderingAreTrueUnderKnownLights) {
 
 TEST_F(PipelineTest, GlossInPicturesMirrorsTheRoom) {
     constexpr uint32_t kFrames = 4;
-    const LabelledCubes cubes(device(), kFrames);
+    const LabelledCubes& cubes = labelled_cubes(device(), kFrames);
     std::array<ModelView, 2> views;
     for (size_t mirrors = 0; mirrors < 2; ++mirrors) {
         ReconstructionSettings settings = small_settings_with_reflectance();
@@ -186,7 +198,7 @@ TEST_F(PipelineTest, GlossInPicturesMirrorsTheRoom) {
 // A simplified surface: two triangles of a floor, with a wrong albedo at their corners.
 TEST_F(PipelineTest, TexturesHoldWhatRecordsKnowBetweenVertices) {
     constexpr uint32_t kFrames = 4;
-    const LabelledCubes cubes(device(), kFrames);
+    const LabelledCubes& cubes = labelled_cubes(device(), kFrames);
     Pipeline pipeline(device(), small_settings_with_reflectance());
     cubes.prepare(pipeline);
     for (uint32_t i = 0; i < kFrames; ++i) pipeline.add(cubes.frame(i));
@@ -217,7 +229,7 @@ TEST_F(PipelineTest, TexturesHoldWhatRecordsKnowBetweenVertices) {
 
 // What records hear of each other's albedo depends on when views are cast; tracking may not.
 TEST_F(PipelineTest, CastingViewsChangesNoPose) {
-    const LabelledCubes cubes(device(), 6);
+    const LabelledCubes& cubes = labelled_cubes(device(), 6);
     std::array<std::vector<RigidTransform>, 2> poses;
     for (const bool views : {false, true}) {
         ReconstructionSettings settings = small_settings_with_reflectance();
@@ -238,7 +250,7 @@ TEST_F(PipelineTest, CastingViewsChangesNoPose) {
 
 TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {
     constexpr uint32_t kFrames = 16, kFloor = 1;
-    const LabelledCubes cubes(device(), kFrames);
+    const LabelledCubes& cubes = labelled_cubes(device(), kFrames);
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular.emplace();
     Pipeline pipeline(device(), settings);
@@ -260,7 +272,7 @@ TEST_F(PipelineTest, SpecularMaterialsAreFittedUnderKnownLights) {
 // Nobody has seen from two sides yet what it is like.
 TEST_F(PipelineTest, TheFirstFrameGivesSegmentsAMaterial) {
     constexpr uint32_t kFloor = 1;
-    const LabelledCubes cubes(device(), 1);
+    const LabelledCubes& cubes = labelled_cubes(device(), 1);
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular.emplace();
     Pipeline pipeline(device(), settings);
@@ -274,7 +286,7 @@ TEST_F(PipelineTest, TheFirstFrameGivesSegmentsAMaterial) {
 }
 
 TEST_F(PipelineTest, SpecularMaterialsFollowTheNetwork) {
-    const LabelledCubes cubes(device(), 8);
+    const LabelledCubes& cubes = labelled_cubes(device(), 8);
     for (const bool fit : {false, true}) {
         ReconstructionSettings settings = small_settings_with_reflectance();
         settings.specular = SpecularSettings{.fit = fit};
@@ -294,7 +306,7 @@ TEST_F(PipelineTest, SpecularMaterialsFollowTheNetwork) {
 }
 
 TEST_F(PipelineTest, TheNetworkIsNotAskedOfWhatTheFitIsSureOf) {
-    const LabelledCubes cubes(device(), 24);
+    const LabelledCubes& cubes = labelled_cubes(device(), 24);
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.specular.emplace();
     settings.network = random_hemi_network(1);
@@ -398,7 +410,7 @@ TEST_F(PipelineTest, AnAllocationThatFailsIsOneErrorThatNamesItsResource) {
 }
 
 TEST_F(PipelineTest, ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo) {
-    const LabelledCubes cubes(device(), 2);
+    const LabelledCubes& cubes = labelled_cubes(device(), 2);
     ReconstructionSettings settings = small_settings_with_reflectance();
     settings.segmentation->sample_every = 1;
     settings.reflectance->reclaim_every = 1;

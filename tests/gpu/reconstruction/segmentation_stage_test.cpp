@@ -57,7 +57,12 @@ class SegmentationStageTest : public GpuTest {
         return pending.get().label;
     }
 
-    const SmallCubes cubes_{device(), 2};
+    /// Rendered once for all tests.
+    static const SmallCubes& two_cubes() {
+        static const SmallCubes cubes(device(), 2);
+        return cubes;
+    }
+    const SmallCubes& cubes_ = two_cubes();
 };
 
 TEST_F(SegmentationStageTest, GivenIdsAreTheLabelsOfTheMap) {

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -28,12 +29,14 @@ constexpr uint32_t kFrames = 8;
 
 class SessionMapTest : public ::testing::Test {
   protected:
-    void TearDown() override { EXPECT_THAT(device_.validation_messages(), IsEmpty()); }
+    static void SetUpTestSuite() { device_ = std::make_unique<Device>(DeviceChoice{.validation = true}); }
+    static void TearDownTestSuite() { device_.reset(); }
+    void TearDown() override { EXPECT_THAT(device_->validation_messages(), IsEmpty()); }
 
     /// A built-in scene at a resolution that makes many of its records change in every frame.
     SessionOptions options() const {
         SessionOptions options;
-        options.sequence = testing::small_cubes(folder_ / "cubes.json");
+        options.sequence = testing::small_cubes(folder_ / "cubes.json", 0.5);
         options.frames = kFrames;
         options.lighting = Lighting{.lights = scenes::load_scene("cubes").lights};
         for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"},
@@ -62,7 +65,7 @@ class SessionMapTest : public ::testing::Test {
 
     std::string straight(SessionOptions options) {
         options.map.clear();
-        Session session(device_, options);
+        Session session(*device_, options);
         while (session.step()) continue;
         return bytes_of(session);
     }
@@ -71,20 +74,20 @@ class SessionMapTest : public ::testing::Test {
     std::string broken(SessionOptions options, uint32_t frames) {
         std::filesystem::remove(options.map);
         {
-            Session session(device_, options);
+            Session session(*device_, options);
             for (uint32_t i = 0; i < frames; ++i) EXPECT_TRUE(session.step());
             session.checkpoint();
             EXPECT_TRUE(session.step());  // what was not kept is done again
         }
         options.resume = true;
-        Session session(device_, options);
+        Session session(*device_, options);
         uint32_t steps = 0;
         while (session.step()) ++steps;
         EXPECT_EQ(steps, kFrames - frames);
         return bytes_of(session);
     }
 
-    Device device_{DeviceChoice{.validation = true}};
+    static inline std::unique_ptr<Device> device_;
     const test::TemporaryFolder folder_;
 };
 
@@ -113,7 +116,7 @@ TEST_F(SessionMapTest, CheckpointsAreWrittenWhenTheyAreDue) {
     SessionOptions every = options();
     every.checkpoint_every = 3;
     const auto progress = [&] { return MapFile(every.map).expect_text("progress"); };
-    Session session(device_, every);
+    Session session(*device_, every);
     for (uint32_t i = 0; i < 2; ++i) session.step();
     EXPECT_FALSE(std::filesystem::exists(every.map));
     session.step();
@@ -124,20 +127,20 @@ TEST_F(SessionMapTest, CheckpointsAreWrittenWhenTheyAreDue) {
 
 TEST_F(SessionMapTest, WhatHasNotEndedIsNotReplaced) {
     {
-        Session session(device_, options());
+        Session session(*device_, options());
         session.step();
         session.checkpoint();
     }
-    EXPECT_THAT([&] { Session(device_, options()); },
+    EXPECT_THAT([&] { Session(*device_, options()); },
                 ThrowsMessage<Error>(HasSubstr("has not come to its end, after 1 frames; go on with it, or remove")));
     SessionOptions onwards = options();
     onwards.resume = true;
     onwards.checkpoint_every = kFrames;
     {
-        Session session(device_, onwards);
+        Session session(*device_, onwards);
         while (session.step()) continue;
     }
-    Session again(device_, options());
+    Session again(*device_, options());
     again.step();
     again.checkpoint();
     EXPECT_THAT(MapFile(options().map).expect_text("progress"), HasSubstr("\"read\": 1"));
@@ -145,7 +148,7 @@ TEST_F(SessionMapTest, WhatHasNotEndedIsNotReplaced) {
 
 TEST_F(SessionMapTest, OtherOptionsAreRefused) {
     {
-        Session session(device_, options());
+        Session session(*device_, options());
         session.step();
         session.checkpoint();
     }
@@ -153,7 +156,7 @@ TEST_F(SessionMapTest, OtherOptionsAreRefused) {
         SessionOptions other = options();
         other.resume = true;
         change(other);
-        Session session(device_, other);
+        Session session(*device_, other);
     };
     EXPECT_THAT([&] { resumed([](SessionOptions& o) { o.settings.set("fusion.max_depth_m", "3"); }); },
                 ThrowsMessage<Error>(AllOf(HasSubstr("map.sqlite' was written with settings.fusion.max_depth_m = "),
@@ -169,7 +172,7 @@ TEST_F(SessionMapTest, ACheckpointThatFailsIsAShortfall) {
     std::ofstream(folder_ / "file") << "no folder";
     nowhere.map = folder_ / "file/map.sqlite";
     nowhere.checkpoint_every = 2;
-    Session session(device_, nowhere);
+    Session session(*device_, nowhere);
     while (session.step()) continue;
     EXPECT_THAT(session.shortfalls(), ::testing::Contains(HasSubstr("the state after 8 frames could not be kept: ")));
     EXPECT_GT(session.finish().mesh.triangles.size(), 0u);
