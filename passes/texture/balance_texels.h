@@ -19,9 +19,9 @@ graph::BufferId add_average_texels(graph::FrameGraph& frame, const TextureBand& 
 
 /// How much brighter the records take the surface around each block of a page to be than the pictures do. Means are
 /// over about kBalanceReach_m: that is wide beside a record, so that patterns stay as pictures show them, and narrow
-/// beside what light, highlights and gains are off by. Records see print here and there by chance:
-/// what that explains is left out. `blocks`: of all bands of the page. Without `known`
-/// no records know the surface: pictures stay as they are.
+/// beside what light, highlights and gains are off by. Records hit strokes of print or the paper between by chance:
+/// what that explains is left out. `blocks`: of all bands of the page. Without `known` no records know the surface:
+/// pictures stay as they are.
 inline constexpr double kBalanceReach_m = 0.08;
 TextureBalance add_balance_blocks(graph::FrameGraph& frame, graph::BufferId blocks, Extent2D page, double texel_m,
                                   bool known);
