@@ -38,32 +38,32 @@ ReceivedLight received_in(const LitSurface& surface, std::span<const glm::vec3> 
 
 /// Light beside what is known.
 struct Unmeasured {
-    std::vector<double> intensities;  // of lamps, then of unknown directions
+    std::vector<double> intensities;  // of lamps
     double misfit = 0;
     bool has_scale = false;  // else they are right up to one factor
 };
 
 Unmeasured fit_beside(const ReceivedLight& known, const LitSurface& surface, std::span<const ReceivedLight> lamps,
-                      const ReceivedLight& unknown, LightChannel channel) {
+                      LightChannel channel) {
     std::vector<ReceivedLight> lights(lamps.begin(), lamps.end());
     lights.push_back(known);
-    const FittedIntensities fitted = surface.fit(lights, kIntensitySteps, surface.size(), channel, unknown);
+    const ReceivedLight none = surface.received(std::vector<float>(gpu::kLightSamples));
+    const FittedIntensities fitted = surface.fit(lights, kIntensitySteps, surface.size(), channel, none);
     // The mean sample receives 1 of all lights together.
     const double factor = fitted.intensities[lamps.size()];
     const bool has_scale = factor * known->mean > kLeastKnownShare;
     Unmeasured result{.intensities = fitted.intensities, .misfit = fitted.misfit, .has_scale = has_scale};
-    result.intensities.erase(result.intensities.begin() + static_cast<ptrdiff_t>(lamps.size()));
+    result.intensities.resize(lamps.size());
     if (has_scale)
         for (double& intensity : result.intensities) intensity /= factor;
     return result;
 }
 
 /// Mean of the channels by sample.
-std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const ReceivedLight> lamps,
-                            const ReceivedLight& unknown, size_t samples) {
+std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const ReceivedLight> lamps, size_t samples) {
     std::vector<float> light(samples);
     for (size_t i = 0; i < samples; ++i) {
-        double sum = unmeasured.intensities.back() * unknown->by_sample[i];
+        double sum = 0;
         for (size_t l = 0; l < lamps.size(); ++l) sum += unmeasured.intensities[l] * lamps[l]->by_sample[i];
         light[i] = static_cast<float>(sum);
     }
@@ -97,9 +97,13 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
                                      const TryLamps& try_lamps, uint32_t most_added) {
     UnmeasuredLamps result;
     if (surface.size() == 0) return result;
-    const ReceivedLight known = received_in(surface, measured.known, LightChannel::kMean);
     const ReceivedLight unknown = surface.received(measured.unknown);
-    GivenLight given{{known}, unknown};
+    const auto known_in = [&](LightChannel channel) {
+        return KnownLight{.lamps = {}, .all = received_in(surface, measured.known, channel), .unknown = unknown};
+    };
+    const KnownLight known = known_in(LightChannel::kMean);
+    const double usual = mean_of(measured.usual);
+    GivenLight given{{known.all}, unknown};
     given.lights.insert(given.lights.end(), clipped.begin(), clipped.end());
     // Most highlights are of lamps that pictures show.
     const std::vector<TrialLamp> found =
@@ -109,13 +113,15 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
     for (const TrialLamp& lamp : believed) lamps.push_back(lamp.received);
     if (lamps.empty()) return result;
-    const Unmeasured fitted = fit_beside(known, surface, lamps, unknown, LightChannel::kMean);
+    const double unseen = likely_unseen_light(surface, known, usual, lamps).radiance;
+    const ReceivedLight beside = with_unseen(known, unseen);
+    const Unmeasured fitted = fit_beside(beside, surface, lamps, LightChannel::kMean);
     if (fitted.misfit > kMostUnexplained) return result;
 
     const double sure = fitted.has_scale ? sureness(unknown) : 0;
-    const std::vector<float> light = light_of(fitted, lamps, unknown, surface.size());
+    const std::vector<float> light = light_of(fitted, lamps, surface.size());
     const auto scale_of = [&](float albedo, double share) {
-        const auto scale = least_strength(surface.samples(), known->by_sample, light, albedo, share);
+        const auto scale = least_strength(surface.samples(), beside->by_sample, light, albedo, share);
         return std::max<double>(scale.value_or(1), kLeastScale);
     };
     const float white = measured.white_albedo;
@@ -127,7 +133,8 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     for (int c = 0; c < 3; ++c) {
         const auto channel = static_cast<LightChannel>(c);
         const Unmeasured own =
-            fit_beside(received_in(surface, measured.known, channel), surface, lamps, unknown, channel);
+            fit_beside(with_unseen(known_in(channel), usual > 0 ? unseen / usual * double{measured.usual[c]} : 0),
+                       surface, lamps, channel);
         for (size_t l = 0; l < lamps.size(); ++l)
             intensities[l][c] = scale * std::lerp(measured.tint[c] * fitted.intensities[l], own.intensities[l],
                                                   own.has_scale ? sure : 0);
@@ -154,6 +161,7 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
         measured.unknown.push_back(drawn[i].around.w);
         brightness.push_back(mean_of(measured.known[i]));
     }
+    measured.usual = usual_light(drawn);
     ToldLamps all{.lamps = std::vector(lamps.begin(), lamps.end()), .places_m = {}};
     if (clipped.empty() && least_unseen_light(drawn, brightness) <= 0) return all;
     glm::vec3 together(0);

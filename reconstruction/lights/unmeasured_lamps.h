@@ -14,6 +14,7 @@ namespace patina {
 struct MeasuredLight {
     std::vector<glm::vec3> known;  ///< irradiance over pi, from measured lamps and from what rays met
     std::vector<float> unknown;    ///< the same of light of 1 from the directions of which nothing is known
+    glm::vec3 usual{0};            ///< radiance of known directions, on average
     glm::vec3 tint{1};             ///< of the lamps; its mean is 1
     float white_albedo = 0.8f;     ///< of the brightest tenth of the surface, so far as light does not tell it
 };

@@ -1,6 +1,11 @@
 #include "reconstruction/lights/unseen_light.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "reconstruction/lights/light_fitting.h"
@@ -10,7 +15,13 @@
 namespace patina {
 namespace {
 
-constexpr double kMostMisfit = 0.1;  // scenes of lamps and sky have 0.01 to 0.08; a room with patches of sun 0.27
+constexpr double kWellExplained = 0.06;  // scenes of lamps and sky have 0.03 to 0.05
+constexpr double kMostMisfit = 0.15;     // rooms have 0.08 to 0.15, one with patches of sun 0.22
+constexpr double kMostOfFit = 0.1;       // of what is fitted
+constexpr std::array kShares = {0.0, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+constexpr uint32_t kHalvings = 3;                  // of the step between shares, around the best
+constexpr double kDarker = 0.05, kBrighter = 0.5;  // how unlikely it is that unknown directions are
+constexpr double kNoMisfit = 0.005;                // surface that is explained well has more
 constexpr float kLeastUnseen = 1e-4f;
 constexpr float kBrightestAlbedo = 0.9f;  // of white paint; few things have more
 constexpr float kLeastReach = 0.02f;      // share of directions, below which unseen light is no explanation
@@ -22,17 +33,69 @@ std::optional<float> left_over(const LitSurface& surface, const ReceivedLight& k
     const FittedIntensities fitted =
         surface.fit(std::span(&known, 1), kIntensitySteps, surface.size(), LightChannel::kMean, ambient);
     const double explained = fitted.intensities[0], rest = fitted.intensities[1];
-    if (!(explained > 0) || fitted.misfit > kMostMisfit) return std::nullopt;
+    if (!(explained > 0) || fitted.misfit > kMostOfFit) return std::nullopt;
     return static_cast<float>(rest / explained);
 }
 
+/// What a share adds to the misfit, relative.
+double unlikelihood(double share) {
+    if (share <= 1) return kDarker * (1 - share) * (1 - share);
+    return kBrighter * std::log(share) * std::log(share);
+}
+
 }  // namespace
+
+ReceivedLight with_unseen(const KnownLight& known, double unseen) {
+    ReceivedLightValues sum = *known.all;
+    for (size_t i = 0; i < sum.by_sample.size(); ++i)
+        sum.by_sample[i] += static_cast<float>(unseen) * known.unknown->by_sample[i];
+    sum.mean += unseen * known.unknown->mean;
+    return std::make_shared<const ReceivedLightValues>(std::move(sum));
+}
+
+UnseenLight likely_unseen_light(const LitSurface& surface, const KnownLight& known, double usual,
+                                std::span<const ReceivedLight> lamps) {
+    const ReceivedLight none = surface.received(std::vector<float>(gpu::kLightSamples));
+    std::vector<ReceivedLight> lights(lamps.begin(), lamps.end());
+    lights.emplace_back();
+    double best = 1, misfit = 1, least = 1e9;
+    const auto consider = [&](double share) {
+        lights.back() = with_unseen(known, share * usual);
+        if (!(lights.back()->mean > 0)) return;
+        const double left = surface.fit(lights, kIntensitySteps, surface.size(), LightChannel::kMean, none).misfit;
+        const double cost = (kNoMisfit + left) * (1 + unlikelihood(share));
+        if (cost < least) best = share, misfit = left, least = cost;
+    };
+    for (const double share : kShares) consider(share);
+    const auto at = std::ranges::find(kShares, best);
+    double below = at == kShares.begin() ? 0 : *at - *std::prev(at);
+    double above = at == kShares.end() || std::next(at) == kShares.end() ? 0 : *std::next(at) - *at;
+    for (uint32_t i = 0; i < kHalvings; ++i) {
+        below /= 2;
+        above /= 2;
+        const double middle = best;
+        consider(middle - below);
+        consider(middle + above);
+    }
+    return {best * usual, misfit};
+}
 
 std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known) {
     const std::optional<float> everywhere = left_over(surface, known.lamps, nullptr);
     const std::optional<float> unknown = left_over(surface, known.all, known.unknown);
     if (!everywhere || !unknown) return everywhere ? everywhere : unknown;
     return std::min(*everywhere, *unknown);
+}
+
+glm::vec3 usual_light(std::span<const gpu::LightSample> samples) {
+    glm::dvec3 sum(0);
+    double known = 0;
+    for (const gpu::LightSample& sample : samples) {
+        if (!(sample.point_m.w > 0) || sample.around.w < 0) continue;
+        sum += glm::dvec3(sample.around);
+        known += 1 - double{sample.around.w};
+    }
+    return known > 0 ? glm::vec3(sum / known) : glm::vec3(0);
 }
 
 std::optional<float> least_strength(std::span<const gpu::LightSample> samples, std::span<const float> received,
@@ -53,12 +116,13 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
     return std::max(least_strength(samples, received, reached, kBrightestAlbedo, kBrighterShare).value_or(0), 0.0f);
 }
 
-std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                       std::span<const Light> lights) {
+std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                           std::span<const Light> lights) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
-    if (surface.size() == 0) return std::nullopt;
+    const glm::vec3 usual = usual_light(drawn);
+    if (surface.size() == 0 || usual == glm::vec3(0)) return std::nullopt;
     const std::vector<glm::vec3> received = received_from(pipeline, drawn, lights);
     std::vector<float> sent, all, unknown;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
@@ -66,12 +130,14 @@ std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::Ligh
         all.push_back(sent.back() + mean_of(drawn[i].around));
         unknown.push_back(drawn[i].around.w);
     }
-    const auto found =
-        fit_unseen_light(surface, {surface.received(sent), surface.received(all), surface.received(unknown)});
-    if (!found) return std::nullopt;
+    const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
+    const UnseenLight likely = likely_unseen_light(surface, known, double{mean_of(usual)});
+    if (likely.misfit > kMostMisfit) return std::nullopt;
+    const float least = std::max(least_unseen_light(drawn, all), kLeastUnseen);
+    const auto fitted = likely.misfit < kWellExplained ? fit_unseen_light(surface, known) : std::nullopt;
+    if (!fitted) return std::max(static_cast<float>(likely.radiance), least) / mean_of(usual) * usual;
     // What is not modelled of a sun (soft borders, gloss) would be taken for such light.
-    const float fitted = std::ranges::any_of(lights, is_sun) ? 0 : *found;
-    return std::max({fitted, least_unseen_light(drawn, all), kLeastUnseen});
+    return glm::vec3(std::max(std::ranges::any_of(lights, is_sun) ? 0 : *fitted, least));
 }
 
 }  // namespace patina

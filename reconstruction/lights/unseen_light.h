@@ -15,6 +15,21 @@ struct KnownLight {
     ReceivedLight unknown;  ///< what light of 1 would give from the directions of which nothing is known
 };
 
+/// `all`, and a radiance of `unseen` from unknown directions.
+ReceivedLight with_unseen(const KnownLight& known, double unseen);
+
+struct UnseenLight {
+    double radiance = 0;  ///< from unknown directions; linear pixel value, mean of the channels
+    double misfit = 1;    ///< mean robust residual of the surface's samples, 0 to 1
+};
+
+/// What unknown directions likely send: 0 to 8 times as much as `usual` (usual_light(), mean of the channels), by the
+/// misfit that it leaves. They mostly hide more of the same room. So what explains the surface hardly better and is
+/// farther from `usual` is not taken, less so where it is more than that. Lamps in a void, whose shadows are black, are
+/// explained by 0. `lamps`: those beside known ones, of any strength.
+UnseenLight likely_unseen_light(const LitSurface& surface, const KnownLight& known, double usual,
+                                std::span<const ReceivedLight> lamps = {});
+
 /// What arrives beside lamps whose intensities are known and what is around: the light of a sky that no frame shows.
 /// Radiance (linear pixel value, mean of the channels), as if it were the same in all directions of which nothing is
 /// known. Shadows tell it, and surface that turns away from the lamps: where one albedo receives little of what is
@@ -22,7 +37,11 @@ struct KnownLight {
 /// as what lamps and surroundings leave, from unknown directions. All that the model lacks (a sun, gloss, soft shadows)
 /// lights shadows, too, and makes both too large: of those that explain the surface the smaller one is returned. Empty
 /// where none does: where it has many albedos of one chromaticity, or much of its light comes in patches, as a sun's.
+/// Where light is gathered with errors both are too small, as in rooms with few lamps.
 std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLight& known);
+
+/// Radiance that known directions send on average over all samples that have some; linear pixel value.
+glm::vec3 usual_light(std::span<const gpu::LightSample> samples);
 
 /// How strong light has to be that gives the samples `reached` at a strength of 1, for no more than `share` of these to
 /// have an albedo above `albedo`, beside the light that they receive. Both are irradiance over pi by sample, mean of
@@ -40,12 +59,13 @@ inline constexpr double kBrighterShare = 0.2;
 /// that is known. 0 where nothing is missing.
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received);
 
-/// That of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it. It is taken for
-/// white, as its colour is too uncertain. As fitted, where no sun is among the lights, and at least that without which
-/// surfaces were too bright; empty where no fit explains the surface: its brightness tells nothing then, either. Above
-/// 0: no light at all would count as not known. At least one lamp, at most gpu::kMaxPointLights lights. Waits for the
-/// device.
-std::optional<float> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                       std::span<const Light> lights);
+/// Radiance of the unknown directions of what the pipeline has observed, under these lights; `drawn` as draw_samples
+/// returns it. Where known light explains the surface well, it is what fit_unseen_light() says, white as its colour is
+/// too uncertain, or none beside a sun; else what is likely, of the tint of known directions. Not less than that
+/// without which surfaces were too bright. Empty where no such light explains the surface: then as much as each record
+/// receives from elsewhere is better. Above 0: no light at all would count as not known. At least one lamp, at most
+/// gpu::kMaxPointLights lights. Waits for the device.
+std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
+                                           std::span<const Light> lights);
 
 }  // namespace patina

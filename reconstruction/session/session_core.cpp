@@ -317,10 +317,9 @@ void SessionCore::look_for_unseen_light() {
     if (const auto sun =
             room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
         lights.push_back(*sun);
-    if (const auto unseen = find_unseen_light(*pipeline_, drawn, lights_of(illumination_))) {
-        illumination_.ambient = glm::dvec3(*unseen);
-        if (lights.size() > lamps.size()) measure_sun(*pipeline_, drawn, lights.back(), lamps, glm::vec3(*unseen));
-    }
+    const auto unseen = find_unseen_light(*pipeline_, drawn, lights_of(illumination_));
+    illumination_.ambient = glm::dvec3(unseen.value_or(glm::vec3(0)));
+    if (unseen && lights.size() > lamps.size()) measure_sun(*pipeline_, drawn, lights.back(), lamps, *unseen);
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }
 

@@ -15,6 +15,30 @@ KnownLight lamps_alone(const Balls& balls, const LitSurface& surface) {
     return {lamps, lamps, surface.received(std::vector<float>(gpu::kLightSamples, 1.0f))};
 }
 
+/// Lamps, and walls that send 0.3 from all but a tenth to nine tenths of all directions, in turn.
+struct LitRoom {
+    static constexpr float kWalls = 0.3f;
+
+    /// `unseen`: what arrives from the other directions.
+    LitRoom(const Balls& balls, float unseen) : drawn(balls.drawn()), lamps(balls.received_of_all()) {
+        all = lamps;
+        unknown.resize(gpu::kLightSamples);
+        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
+            unknown[i] = 0.1f * static_cast<float>(1 + i / 4 % 9);
+            all[i] += kWalls * (1 - unknown[i]);
+            if (lamps[i] == 0) drawn[i].point_m.w = 0;  // its colour was black
+            if (lamps[i] > 0) drawn[i].diffuse *= (all[i] + unseen * unknown[i]) / lamps[i];
+        }
+    }
+
+    KnownLight known_on(const LitSurface& surface) const {
+        return {surface.received(lamps), surface.received(all), surface.received(unknown)};
+    }
+
+    std::vector<gpu::LightSample> drawn;
+    std::vector<float> lamps, all, unknown;
+};
+
 TEST(FitUnseenLight, IsWhatKnownLampsLeave) {
     for (const float truth : {0.2f, 0.0f}) {
         const Balls balls(kTwoLamps, glm::vec3(truth), 0.02f);
@@ -26,22 +50,10 @@ TEST(FitUnseenLight, IsWhatKnownLampsLeave) {
 }
 
 TEST(FitUnseenLight, DoesNotCountWhatIsKnownToComeFromAround) {
-    // Walls send 0.3, in turn from a tenth to nine tenths of all directions; from the others the truth arrives.
-    constexpr float kWalls = 0.3f;
     for (const float truth : {0.2f, 0.0f}) {
-        const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
-        std::vector<gpu::LightSample> drawn = balls.drawn();
-        const std::vector<float> lamps = balls.received_of_all();
-        std::vector<float> all = lamps, unknown(gpu::kLightSamples);
-        for (uint32_t i = 0; i < gpu::kLightSamples; ++i) {
-            unknown[i] = 0.1f * static_cast<float>(1 + i / 4 % 9);
-            all[i] += kWalls * (1 - unknown[i]);
-            if (lamps[i] == 0) drawn[i].point_m.w = 0;  // its colour was black
-            if (lamps[i] > 0) drawn[i].diffuse *= (all[i] + truth * unknown[i]) / lamps[i];
-        }
-        const LitSurface surface(drawn, 1);
-        const KnownLight known{surface.received(lamps), surface.received(all), surface.received(unknown)};
-        const auto found = fit_unseen_light(surface, known);
+        const LitRoom room(Balls(kTwoLamps, glm::vec3(0), 0.02f), truth);
+        const LitSurface surface(room.drawn, 1);
+        const auto found = fit_unseen_light(surface, room.known_on(surface));
         ASSERT_TRUE(found);
         EXPECT_NEAR(*found, truth, 0.03f * truth + 0.005f);
     }
@@ -63,6 +75,66 @@ TEST(FitUnseenLight, NothingIsSaidOfSurfaceThatLampsDoNotExplain) {
     EXPECT_FALSE(fit_unseen_light(surface, lamps_alone(balls, surface)));
     const LitSurface nothing(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
     EXPECT_FALSE(fit_unseen_light(nothing, lamps_alone(balls, nothing)));
+}
+
+TEST(LikelyUnseenLight, IsWhatKnownLightLeaves) {
+    for (const float share : {0.0f, 0.3f, 0.7f, 1.0f, 2.6f}) {
+        const LitRoom room(Balls(kTwoLamps, glm::vec3(0), 0.02f), share * LitRoom::kWalls);
+        const LitSurface surface(room.drawn, 1);
+        const UnseenLight found = likely_unseen_light(surface, room.known_on(surface), double{LitRoom::kWalls});
+        EXPECT_NEAR(found.radiance, share * LitRoom::kWalls, 0.03);
+        EXPECT_LT(found.misfit, 0.05);
+    }
+}
+
+TEST(LikelyUnseenLight, IsNoneWhereLampsStandInAVoid) {
+    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    EXPECT_EQ(likely_unseen_light(surface, lamps_alone(balls, surface), 0.2).radiance, 0);
+}
+
+TEST(LikelyUnseenLight, IsAsMuchAsElsewhereWhereNothingTellsIt) {
+    std::vector<gpu::LightSample> drawn = Balls(kTwoLamps, glm::vec3(0)).drawn();
+    for (gpu::LightSample& sample : drawn) sample.diffuse = glm::vec4(0.2f);
+    const LitSurface surface(drawn, 1);
+    const ReceivedLight same = surface.received(std::vector<float>(gpu::kLightSamples, 0.5f));
+    EXPECT_EQ(likely_unseen_light(surface, {same, same, same}, 0.3).radiance, 0.3);
+}
+
+TEST(LikelyUnseenLight, LampsOfAnyStrengthStandBesideIt) {
+    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), 0.02f), 0.5f * LitRoom::kWalls);
+    const LitSurface surface(room.drawn, 1);
+    std::vector<float> rest = room.all;
+    const std::vector<float> second = Balls({kTwoLamps[1]}, glm::vec3(0)).received_of_all();
+    for (uint32_t i = 0; i < gpu::kLightSamples; ++i) rest[i] -= second[i];
+    const ReceivedLight lamp = surface.received(second);
+    KnownLight known = room.known_on(surface);
+    known.all = surface.received(rest);
+    const UnseenLight found = likely_unseen_light(surface, known, double{LitRoom::kWalls}, std::span(&lamp, 1));
+    EXPECT_NEAR(found.radiance, 0.5 * double{LitRoom::kWalls}, 0.03);
+}
+
+TEST(LikelyUnseenLight, SurfaceThatNothingExplainsHasALargeMisfit) {
+    const LitRoom room(Balls(kTwoLamps, glm::vec3(0.2f), 0.5f), 0.1f);
+    const LitSurface surface(room.drawn, 1);
+    EXPECT_GT(likely_unseen_light(surface, room.known_on(surface), double{LitRoom::kWalls}).misfit, 0.15);
+}
+
+TEST(UsualLight, IsWhatKnownDirectionsSend) {
+    const auto around = [](float observations, glm::vec4 light) {
+        gpu::LightSample sample{};
+        sample.point_m.w = observations;
+        sample.around = light;
+        return sample;
+    };
+    const std::vector<gpu::LightSample> samples = {around(5, {0.2f, 0.1f, 0, 0.5f}), around(5, {0.1f, 0.2f, 0.3f, 0}),
+                                                   around(5, {0, 0, 0, 1}), around(0, {9, 9, 9, 0}),
+                                                   around(5, {0, 0, 0, -1})};
+    const glm::vec3 light = usual_light(samples);
+    EXPECT_NEAR(light.r, 0.2f, 1e-6f);
+    EXPECT_NEAR(light.g, 0.2f, 1e-6f);
+    EXPECT_NEAR(light.b, 0.2f, 1e-6f);
+    EXPECT_EQ(usual_light({}), glm::vec3(0));
 }
 
 gpu::LightSample sample_of(float value, float unknown) {

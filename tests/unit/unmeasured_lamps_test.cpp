@@ -38,8 +38,10 @@ TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
     const Balls balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
+    MeasuredLight measured = first_lamp(balls, 0.2f);
+    measured.usual = glm::vec3(0.5f);
     const UnmeasuredLamps told =
-        fit_unmeasured_lamps(surface, first_lamp(balls, 0.2f), std::span(&clipped, 1), {}, balls.try_lamps(surface));
+        fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
     EXPECT_TRUE(told.added.empty());
     ASSERT_EQ(told.clipped.size(), 1u);
     expect_second_lamp(told.clipped[0], 0.05);
