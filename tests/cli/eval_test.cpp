@@ -187,8 +187,9 @@ TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunTha
     EXPECT_TRUE(nlohmann::json::parse(read_text(out() / "eval/eval.json"))["novel"].is_null());
 
     run_quietly(recording, options);
-    const Outcome outcome = patina({"eval", recording, out()});
+    const Outcome outcome = patina({"eval", recording, out(), "--finished"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("\nThe finished model, 2 views:\n"));
     EXPECT_THAT(outcome.out, HasSubstr("\nNever recorded: the same under other lamps, 2 views:\n"));
     const auto json = nlohmann::json::parse(read_text(out() / "eval/eval.json"));
     for (const char* views : {"novel", "relit"}) {
@@ -196,6 +197,10 @@ TEST_F(FromSceneToScores, ViewsThatWereNeverRecordedAreScoredFromTheMapOfARunTha
         EXPECT_LT(json[views]["object_means"]["rgb"]["mean"]["filled"]["mad"], 0.1) << views;
         EXPECT_TRUE(fs::exists(out() / "eval" / views / "000001.exr")) << views;
     }
+    EXPECT_EQ(json["finished"]["frames"], (nlohmann::json{0, 3}));
+    // The first frame knew nothing but itself; what it shows is known better at the end.
+    EXPECT_LT(json["finished"]["object_means"]["kd"]["mean"]["all"]["mad"],
+              json["object_means"]["kd"]["mean"]["all"]["mad"]);
     EXPECT_NE(json["relit"]["object_means"]["rgb"], json["novel"]["object_means"]["rgb"]);
     EXPECT_EQ(patina({"eval", recording, out(), "--quiet"}).exit_code, 0) << "in place of the one before";
 

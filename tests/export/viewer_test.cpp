@@ -1,11 +1,10 @@
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 
 #include <gmock/gmock.h>
 
 #include "export/viewer/quantise.h"
 #include "export/viewer/write_viewer.h"
+#include "tests/export/browser.h"
 #include "tests/export/small_scene.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
@@ -131,7 +130,7 @@ TEST(Viewer, StaysWithinItsSize) {
 
 /// A browser's picture of a page is more than its ground: the view compiles its shaders and draws.
 TEST(Viewer, ABrowserShowsIt) {
-    if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "Chromium is not installed";
+    if (!test::has_browser()) GTEST_SKIP() << "Chromium is not installed";
     const TemporaryFolder folder;
     std::string html = viewer_html(small_scene());
     // The page says what it drew and heard, where a test can read it.
@@ -149,14 +148,7 @@ TEST(Viewer, ABrowserShowsIt) {
         document.title = (drawn > 1000 ? 'DRAWN' : 'EMPTY') + (heard ? ' HEARD' : ' DEAF');
     })();</script>)js";
     html.insert(html.find("</body>"), probe);
-    std::ofstream(folder / "a.html") << html;
-    const std::string line =
-        "timeout 300 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
-        "--user-data-dir=" +
-        (folder / "profile").string() + " --virtual-time-budget=10000 --dump-dom file://" +
-        (folder / "a.html").string() + " > " + (folder / "dom").string() + " 2> /dev/null";
-    ASSERT_EQ(std::system(line.c_str()), 0);
-    EXPECT_THAT(test::bytes_of(folder / "dom"), HasSubstr("<title>DRAWN HEARD</title>"));
+    EXPECT_THAT(test::browser_dom(folder, html), HasSubstr("<title>DRAWN HEARD</title>"));
 }
 
 }  // namespace

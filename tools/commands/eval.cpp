@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "engine/core/expect_path.h"
 #include "engine/core/input_file.h"
 #include "engine/core/printable.h"
@@ -14,7 +16,7 @@
 #include "tools/eval/eval_text.h"
 #include "tools/eval/evaluate.h"
 #include "tools/program/progress.h"
-#include "tools/render/never_recorded.h"
+#include "tools/render/finished_views.h"
 #include "tools/report/output_folder.h"
 
 namespace patina::tools {
@@ -25,6 +27,7 @@ struct EvalArguments {
     std::filesystem::path sequence, run, out;
     eval::Settings settings;
     DeviceArguments device;
+    bool finished = false;
     bool quiet = false;
 };
 
@@ -47,13 +50,18 @@ std::vector<std::filesystem::path> inputs_of(const EvalArguments& arguments, con
     return {arguments.sequence, run / "frames", run / "previews", run / "held_out"};
 }
 
-/// Where a run looks the same from where it never was, and under other lamps.
-void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, eval::Evaluation& evaluation) {
+/// What a run came to: the finished model where truth has recorded views, where the run never was, and under other
+/// lamps.
+void evaluate_finished(const EvalArguments& arguments, OutputFolder& out, eval::Evaluation& evaluation) {
     const std::filesystem::path sequence = std::filesystem::absolute(arguments.sequence),
                                 run = std::filesystem::absolute(arguments.run), truth = sequence / "truth";
-    if (!path_exists(truth / "novel")) return;
+    FinishedViews views{.sequence = sequence, .recorded = {}, .never_recorded = path_exists(truth / "novel")};
+    if (arguments.finished) views.recorded = evaluation.frames;
+    if (views.recorded.empty() && !views.never_recorded) return;
     if (!path_exists(map_in(run))) {
-        evaluation.no_views = "Views that were never recorded were not compared: the run kept no map (--no-map).";
+        evaluation.no_views =
+            fmt::format("{} not compared: the run kept no map (--no-map).",
+                        arguments.finished ? "The finished model was" : "Views that were never recorded were");
         return;
     }
     const RigidTransform truth_from_run = eval::world_of_run(sequence, run);
@@ -64,14 +72,19 @@ void evaluate_never_recorded(const EvalArguments& arguments, OutputFolder& out, 
     kept->run.checkpoint_every = 0;
     kept->run.device = arguments.device.choice();
     std::optional<Progress> progress;
-    render_never_recorded(kept->run, truth, truth_from_run, out, [&](uint32_t done, uint32_t total) {
+    render_finished_views(kept->run, views, truth_from_run, out, [&](uint32_t done, uint32_t total) {
         if (!progress) progress.emplace("Rendering", total, arguments.quiet);
-        progress->update(done, "views that were never recorded");
+        progress->update(done, "views of the finished model");
     });
     progress.reset();
     const glm::dmat3 rotation(truth_from_run);
-    evaluation.novel = eval::evaluate_views(truth / "novel", out.published("novel/000000.exr").parent_path(), rotation);
-    evaluation.relit = eval::evaluate_views(truth / "relit", out.published("relit/000000.exr").parent_path(), rotation);
+    const auto measure = [&](const std::filesystem::path& of, const char* pictures) {
+        return eval::evaluate_views(of, out.published(fmt::format("{}/000000.exr", pictures)).parent_path(), rotation);
+    };
+    if (!views.recorded.empty()) evaluation.finished = measure(sequence, "finished");
+    if (!views.never_recorded) return;
+    evaluation.novel = measure(truth / "novel", "novel");
+    evaluation.relit = measure(truth / "relit", "relit");
 }
 
 void write_files(const eval::Evaluation& evaluation, OutputFolder& out) {
@@ -86,7 +99,7 @@ void run_eval(const EvalArguments& arguments) {
     // Absolute, as what a run was given is looked for in the folder that it was started in.
     OutputFolder out(std::filesystem::absolute(folder), inputs_of(arguments, folder), ResultKind::kEvaluation);
     eval::Evaluation evaluation = evaluate_with_progress(arguments);
-    evaluate_never_recorded(arguments, out, evaluation);
+    evaluate_finished(arguments, out, evaluation);
     write_files(evaluation, out);
     if (arguments.quiet) return;
     std::fputs(eval::eval_text(evaluation).c_str(), stdout);
@@ -112,6 +125,8 @@ void add_eval(CLI::App& app) {
                      "frames of the sequence")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command->add_flag("--finished", arguments->finished,
+                      "Also score the finished model in the recorded views, as scene.glb has it; from the run's map");
     command->add_flag("--quiet", arguments->quiet, "Print nothing but errors");
     arguments->device.add_to(*command);
     command->callback([arguments] { run_eval(*arguments); });

@@ -235,9 +235,10 @@ struct Evaluation {
     std::string no_trajectory;          ///< why there is none, in a sentence; empty where there is one
     std::optional<FrameStates> states;  ///< of the run's tracking; empty where its poses were given
     std::optional<LightErrors> lights;
-    std::optional<Views> novel;  ///< re-renderings of views that were never recorded: truth/novel
-    std::optional<Views> relit;  ///< the same under lamps that never shone: truth/relit
-    std::string no_views;        ///< why there are none, in a sentence; empty where the sequence has none
+    std::optional<Views> finished;  ///< the finished model in the views of `frames`
+    std::optional<Views> novel;     ///< re-renderings of views that were never recorded: truth/novel
+    std::optional<Views> relit;     ///< the same under lamps that never shone: truth/relit
+    std::string no_views;           ///< why there are none, in a sentence; empty where the sequence has none
 };
 
 /// An object is left out of frames that show fewer pixels of it; and of the scores of those that were seen, where those

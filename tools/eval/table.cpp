@@ -246,6 +246,7 @@ std::vector<ViewsSection> views_sections(const Evaluation& evaluation) {
     const auto add = [&](const std::optional<Views>& views, const char* title) {
         if (views) sections.push_back({fmt::format("{}, {} views", title, views->frames.size()), *views});
     };
+    add(evaluation.finished, "The finished model");
     add(evaluation.novel, "Never recorded: from off the path");
     add(evaluation.relit, "Never recorded: the same under other lamps");
     return sections;

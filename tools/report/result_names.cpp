@@ -28,7 +28,8 @@ constexpr std::array<std::string_view, 2> kEvaluationFiles{"eval.json", "report.
 struct FrameFolder {
     std::string_view name, extension;
 };
-constexpr std::array kViewFolders{FrameFolder{"novel", ".exr"}, FrameFolder{"relit", ".exr"}};  // of evaluations
+constexpr std::array kViewFolders{FrameFolder{"finished", ".exr"}, FrameFolder{"novel", ".exr"},
+                                  FrameFolder{"relit", ".exr"}};  // of evaluations
 constexpr std::array kFrameFolders{FrameFolder{"frames", ".exr"},   FrameFolder{"previews", ".png"},
                                    FrameFolder{"held_out", ".png"}, FrameFolder{"tiles/0", ".glb"},
                                    FrameFolder{"tiles/1", ".glb"},  FrameFolder{"tiles/2", ".glb"}};
