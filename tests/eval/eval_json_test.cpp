@@ -100,7 +100,7 @@ TEST(EvalJson, KeysKeepTheirOrder) {
     EXPECT_THAT(keys_of(got), ElementsAre("format", "version", "sequence", "run", "width", "height", "frames",
                                           "truth_frames", "run_frames", "seen_frames", "seen_share", "objects",
                                           "object_means", "depth_mm", "normal_deg", "segmentation", "intervals",
-                                          "trajectory", "states", "lights", "finished", "novel", "relit"));
+                                          "trajectory", "states", "lights", "finished_model", "novel", "relit"));
     EXPECT_THAT(keys_of(got["objects"][0]["quantities"]),
                 ElementsAre("kd_before", "kd", "ks", "alpha", "rgb_before", "rgb", "kd_shown", "rgb_shown"));
 }

@@ -244,7 +244,7 @@ std::string eval_json(const Evaluation& evaluation) {
                        {"trajectory", Convert::or_null(evaluation.trajectory)},
                        {"states", Convert::or_null(evaluation.states)},
                        {"lights", Convert::or_null(evaluation.lights)},
-                       {"finished", Convert::or_null(evaluation.finished)},
+                       {"finished_model", Convert::or_null(evaluation.finished)},
                        {"novel", Convert::or_null(evaluation.novel)},
                        {"relit", Convert::or_null(evaluation.relit)}};
     std::string text;
