@@ -69,7 +69,7 @@ UnseenLight likely_unseen_light(const LitSurface& surface, const KnownLight& kno
     for (const double share : kShares) consider(share);
     const auto at = std::ranges::find(kShares, best);
     double below = at == kShares.begin() ? 0 : *at - *std::prev(at);
-    double above = at == kShares.end() || std::next(at) == kShares.end() ? 0 : *std::next(at) - *at;
+    double above = std::next(at) == kShares.end() ? 0 : *std::next(at) - *at;
     for (uint32_t i = 0; i < kHalvings; ++i) {
         below /= 2;
         above /= 2;
@@ -116,6 +116,16 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
     return std::max(least_strength(samples, received, reached, kBrightestAlbedo, kBrighterShare).value_or(0), 0.0f);
 }
 
+std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual,
+                                             bool beside_sun) {
+    const UnseenLight likely = likely_unseen_light(surface, known, double{mean_of(usual)});
+    if (likely.misfit > kMostMisfit) return std::nullopt;
+    const auto fitted = likely.misfit < kWellExplained ? fit_unseen_light(surface, known) : std::nullopt;
+    if (!fitted) return static_cast<float>(likely.radiance) / mean_of(usual) * usual;
+    // What is not modelled of a sun (soft borders, gloss) would be taken for such light.
+    return glm::vec3(beside_sun ? 0 : *fitted);
+}
+
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                            std::span<const Light> lights) {
     for (gpu::LightSample& sample : drawn)
@@ -131,13 +141,11 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
         unknown.push_back(drawn[i].around.w);
     }
     const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
-    const UnseenLight likely = likely_unseen_light(surface, known, double{mean_of(usual)});
-    if (likely.misfit > kMostMisfit) return std::nullopt;
-    const float least = std::max(least_unseen_light(drawn, all), kLeastUnseen);
-    const auto fitted = likely.misfit < kWellExplained ? fit_unseen_light(surface, known) : std::nullopt;
-    if (!fitted) return std::max(static_cast<float>(likely.radiance), least) / mean_of(usual) * usual;
-    // What is not modelled of a sun (soft borders, gloss) would be taken for such light.
-    return glm::vec3(std::max(std::ranges::any_of(lights, is_sun) ? 0 : *fitted, least));
+    const auto chosen = choose_unseen_light(surface, known, usual, std::ranges::any_of(lights, is_sun));
+    if (!chosen) return std::nullopt;
+    const float least = std::max(least_unseen_light(drawn, all), kLeastUnseen), radiance = mean_of(*chosen);
+    if (radiance >= least) return chosen;
+    return radiance > 0 ? least / radiance * *chosen : glm::vec3(least);
 }
 
 }  // namespace patina

@@ -10,7 +10,7 @@ namespace patina {
 
 /// Irradiance over pi of the surface's samples, mean of the channels.
 struct KnownLight {
-    ReceivedLight lamps;    ///< from all lamps together
+    ReceivedLight lamps;    ///< from all lamps together; may be null but for fit_unseen_light()
     ReceivedLight all;      ///< from these, and from what gathered rays met
     ReceivedLight unknown;  ///< what light of 1 would give from the directions of which nothing is known
 };
@@ -59,12 +59,16 @@ inline constexpr double kBrighterShare = 0.2;
 /// that is known. 0 where nothing is missing.
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received);
 
-/// Radiance of the unknown directions of what the pipeline has observed, under these lights; `drawn` as draw_samples
-/// returns it. Where known light explains the surface well, it is what fit_unseen_light() says, white as its colour is
-/// too uncertain, or none beside a sun; else what is likely, of the tint of known directions. Not less than that
-/// without which surfaces were too bright. Empty where no such light explains the surface: then as much as each record
-/// receives from elsewhere is better. Above 0: no light at all would count as not known. At least one lamp, at most
-/// gpu::kMaxPointLights lights. Waits for the device.
+/// Which of the two counts. Where known light explains the surface well, it is what fit_unseen_light() says, white as
+/// its colour is too uncertain, or none beside a sun; else what is likely, of the tint of `usual` (usual_light(), not
+/// black). Empty where no such light explains the surface.
+std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual,
+                                             bool beside_sun);
+
+/// choose_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it. Not
+/// less than that without which surfaces were too bright. Empty where nothing explains the surface: then as much as
+/// each record receives from elsewhere is better. Above 0: no light at all would count as not known. At least one lamp,
+/// at most gpu::kMaxPointLights lights. Waits for the device.
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                            std::span<const Light> lights);
 

@@ -120,6 +120,33 @@ TEST(LikelyUnseenLight, SurfaceThatNothingExplainsHasALargeMisfit) {
     EXPECT_GT(likely_unseen_light(surface, room.known_on(surface), double{LitRoom::kWalls}).misfit, 0.15);
 }
 
+std::optional<glm::vec3> chosen(float noise, bool beside_sun) {
+    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), noise), 0.5f * LitRoom::kWalls);
+    const LitSurface surface(room.drawn, 1);
+    const glm::vec3 usual = LitRoom::kWalls * glm::vec3(1.5f, 1, 0.5f);
+    return choose_unseen_light(surface, room.known_on(surface), usual, beside_sun);
+}
+
+TEST(ChooseUnseenLight, IsWhiteAsFittedWhereSurfaceIsExplainedWell) {
+    const auto light = chosen(0.02f, false);
+    ASSERT_TRUE(light);
+    EXPECT_NEAR(light->g, 0.5f * LitRoom::kWalls, 0.01f);
+    EXPECT_EQ(*light, glm::vec3(light->g));
+    EXPECT_EQ(chosen(0.02f, true), glm::vec3(0)) << "a sun's soft borders would be taken for it";
+}
+
+TEST(ChooseUnseenLight, IsLikelyAndTintedWhereSurfaceIsExplainedLessWell) {
+    for (const bool beside_sun : {false, true}) {
+        const auto light = chosen(0.09f, beside_sun);
+        ASSERT_TRUE(light);
+        EXPECT_NEAR(light->g, 0.5f * LitRoom::kWalls, 0.08f);
+        EXPECT_NEAR(light->r / light->g, 1.5f, 1e-4f);
+        EXPECT_NEAR(light->b / light->g, 0.5f, 1e-4f);
+    }
+}
+
+TEST(ChooseUnseenLight, IsNotToldWhereNothingExplainsSurface) { EXPECT_FALSE(chosen(0.5f, false)); }
+
 TEST(UsualLight, IsWhatKnownDirectionsSend) {
     const auto around = [](float observations, glm::vec4 light) {
         gpu::LightSample sample{};
