@@ -34,6 +34,10 @@ void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& sta
     pass.read("Params", frame.upload<gpu::SurroundingsParams>("surroundings_params", std::span(&params, 1)));
     state.surroundings = pass.modify("Surroundings", state.surroundings);
     pass.dispatch_covering({params.visited.x, params.visited.y});
+    const gpu::OpeningParams turn{inputs.frame_index % gpu::kOpeningTurns};
+    auto find = frame.compute("reflectance.find_nearest_openings", spirv::find_nearest_openings);
+    state.surroundings = find.modify("Surroundings", state.surroundings);
+    find.push(turn).dispatch(gpu::kOpeningTexels / gpu::kOpeningTurns / gpu::kOpeningGroup);
 }
 
 }  // namespace patina

@@ -17,17 +17,19 @@ namespace patina {
 
 /// Versions of the state's buffers within one frame.
 struct ReflectanceStateIds {
-    graph::BufferId status;    ///< gpu::RecordStatus per record
-    graph::BufferId gathered;  ///< gpu::RecordSurroundings per record
-    graph::BufferId windows;   ///< gpu::RefreshWindow[gpu::kWindows]
-    graph::BufferId
-        surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels], gpu::SurroundingsCounts, u32 of
-                       ///< blocks and of the map's regions, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
+    graph::BufferId status;        ///< gpu::RecordStatus per record
+    graph::BufferId gathered;      ///< gpu::RecordSurroundings per record
+    graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
+    graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels],
+                                   ///< gpu::OpeningTexel[gpu::kOpeningTexels], gpu::SurroundingsCounts, u32 of blocks
+                                   ///< and of the map's regions, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };
 
-constexpr uint64_t kSurroundingsCellsAt =
-    gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel) + sizeof(gpu::SurroundingsCounts) +
-    (gpu::kSurroundingsBlockWords + gpu::kMapRegionWords) * sizeof(uint32_t);  ///< where the cells begin, bytes
+// Where parts of ReflectanceStateIds::surroundings begin, bytes.
+constexpr uint64_t kOpeningsAt = gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel);
+constexpr uint64_t kSurroundingsCountsAt = kOpeningsAt + gpu::kOpeningTexels * sizeof(gpu::OpeningTexel);
+constexpr uint64_t kSurroundingsCellsAt = kSurroundingsCountsAt + sizeof(gpu::SurroundingsCounts) +
+                                          (gpu::kSurroundingsBlockWords + gpu::kMapRegionWords) * sizeof(uint32_t);
 constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn

@@ -56,22 +56,32 @@ bool is_placed(uint place, uint key, ivec3 cell, bool grows) {
     return true;
 }
 
-void add_sample(ivec3 cell, vec3 rgb) {
+#define ADD_TO(sums, steps)      \
+    atomicAdd(sums.samples, 1u); \
+    atomicAdd(sums.r, steps.r);  \
+    atomicAdd(sums.g, steps.g);  \
+    atomicAdd(sums.b, steps.b);
+
+void add_to_opening(vec3 direction, uvec3 steps) {
+    const uint texel = opening_index(opening_texel(direction));
+    if (params.radiance_scale > 0.0) {
+        ADD_TO(openings[texel].light.low, steps)
+    } else {
+        ADD_TO(openings[texel].light.usual, steps)
+    }
+}
+
+void add_to_cell(ivec3 cell, bool opening, uvec3 steps) {
     const uint key = surroundings_key(cell);
     const bool grows = surroundings_counts.total < kMostSurroundings;
     for (uint probe = 0u; probe < kSurroundingsProbes; ++probe) {
         const uint place = surroundings_place(key, probe);
         if (!is_placed(place, key, cell, grows)) continue;
-        const uvec3 steps = uvec3(clamp(rgb, 0.0, kSurroundingsRange) * kSurroundingsSteps + 0.5);
-#define ADD_TO(sums)                                 \
-    atomicAdd(surroundings[place].sums.samples, 1u); \
-    atomicAdd(surroundings[place].sums.r, steps.r);  \
-    atomicAdd(surroundings[place].sums.g, steps.g);  \
-    atomicAdd(surroundings[place].sums.b, steps.b);
+        if (opening) atomicAdd(surroundings[place].openings, 1u);
         if (params.radiance_scale > 0.0) {
-            ADD_TO(low)
+            ADD_TO(surroundings[place].light.low, steps)
         } else {
-            ADD_TO(usual)
+            ADD_TO(surroundings[place].light.usual, steps)
         }
         return;
     }
@@ -86,7 +96,8 @@ void main() {
     const float depth = reading > 0.0 ? reading : depth_of_opening(pixel, extent);
     if (depth == 0.0) return;
     const vec3 in_depth_m = unproject(params.depth_camera, vec2(pixel)) * depth;
-    const vec3 point_m = camera_center_m(params.depth_camera) + to_world_direction(params.depth_camera, in_depth_m);
+    const vec3 direction = to_world_direction(params.depth_camera, in_depth_m);
+    const vec3 point_m = camera_center_m(params.depth_camera) + direction;
     const vec3 in_color_m = to_camera(params.color_camera, point_m);
     if (in_color_m.z < kNearestDepth) return;
     const ivec2 seen_by = ivec2(floor(project(params.color_camera, in_color_m) + 0.5));
@@ -94,5 +105,9 @@ void main() {
     const vec4 color = imageLoad(color_linear, seen_by);
     const bool low = params.radiance_scale > 0.0;
     const bool lamp = low && luminance(color.rgb) >= params.lamp_luminance;
-    if (color.a > 0.0 && !lamp) add_sample(surroundings_cell(point_m), (low ? params.radiance_scale : 1.0) * color.rgb);
+    if (color.a == 0.0 || lamp) return;
+    const vec3 rgb = (low ? params.radiance_scale : 1.0) * color.rgb;
+    const uvec3 steps = uvec3(clamp(rgb, 0.0, kSurroundingsRange) * kSurroundingsSteps + 0.5);
+    add_to_cell(surroundings_cell(point_m), reading == 0.0, steps);
+    if (reading == 0.0) add_to_opening(direction, steps);
 }

@@ -59,17 +59,17 @@ Incident incident_light(vec3 point_vox, vec3 normal, vec3 direction, vec4 ball_m
     const float hit = find_hit(start, direction, skipped, to_ball_end(start, direction, ball_m));
     vec3 at_m = (start + hit * direction) * grid.voxel_m;
     vec4 color = hit < 0.0 ? vec4(0.0) : surface_color(start + hit * direction, direction);
-    bool met_surface = hit >= 0.0;
+    bool met_surface = hit >= 0.0, opening = false;
     if (!met_surface) {
         const MetSurroundings met = march_surroundings(point_vox * grid.voxel_m, normal, direction, 0.0);
         met_surface = met.color.a > 0.0;
+        opening = met.opening;
         at_m = met.at_m;
         color = met_surface ? met.color : far_radiance(far_field[far_field_texel(direction)]);
     }
     if (met_surface && max(max(color.r, color.g), color.b) > kLeastEmittedRadiance) {
         if (is_lamp(at_m)) return Incident(vec3(0.0), true, true);
-        const vec4 cell = look_up_surroundings(surroundings_cell(at_m));
-        color.rgb = max(color.rgb, cell.rgb);
+        if (!opening) color.rgb = max(color.rgb, look_up_surroundings(surroundings_cell(at_m)).mean.rgb);
     }
     return Incident(color.rgb, color.a > 0.0, false);
 }

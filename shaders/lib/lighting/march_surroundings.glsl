@@ -25,17 +25,35 @@ uint find_surroundings(ivec3 cell) {
     return kNoPlace;
 }
 
-// The mean colour of a cell; a is 0 where there is no surface in it.
-vec4 look_up_surroundings(ivec3 cell) {
+struct SurroundingsColor {
+    vec4 mean;     // a is 0 where there is no surface
+    bool opening;  // it shows what is behind it
+};
+
+SurroundingsColor look_up_surroundings(ivec3 cell) {
     const uint place = find_surroundings(cell);
-    if (place == kNoPlace) return vec4(0.0);
-    const uint samples = surroundings[place].usual.samples + surroundings[place].low.samples;
-    return samples >= kLeastSurroundingsSamples ? vec4(cell_radiance(surroundings[place]), 1.0) : vec4(0.0);
+    if (place == kNoPlace) return SurroundingsColor(vec4(0.0), false);
+    const uint samples = samples_of(surroundings[place].light);
+    if (samples < kLeastSurroundingsSamples) return SurroundingsColor(vec4(0.0), false);
+    const vec4 mean = vec4(mean_radiance(surroundings[place].light), 1.0);
+    return SurroundingsColor(mean, 2u * surroundings[place].openings > samples);
+}
+
+const float kLeastSky = 0.5;  // radiance; where pictures are exposed for a room, its sky is clipped, or nearly
+
+// What arrives from a cell in a direction. A window shows what is far behind it, so that it is not the same from
+// everywhere: what windows showed in this direction, or beside it, tells more than what this cell showed. Dark openings
+// are black or shiny things that the depth camera does not see.
+vec3 radiance_towards(SurroundingsColor met, vec3 direction) {
+    if (!met.opening || max(max(met.mean.r, met.mean.g), met.mean.b) < kLeastSky) return met.mean.rgb;
+    const uint nearest = openings[opening_index(opening_texel(direction))].nearest;
+    return nearest == 0u ? met.mean.rgb : mean_radiance(openings[nearest - 1u].light);
 }
 
 struct MetSurroundings {
     vec4 color;  // a is 0 where nothing was met
     vec3 at_m;   // the middle of the cell
+    bool opening;
 };
 
 bool is_empty_block(ivec3 block) {
@@ -53,8 +71,8 @@ MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction, fl
     ivec3 cell = ivec3(floor(start));
     const float reach = surroundings_counts.total + surroundings_counts.fresh > 0u ? kReachCells : 0.0;
     float along = 0.0;  // the ray, cells
-    vec4 met = vec4(0.0);
-    for (uint i = 0u; i < kMostSteps && along < reach && met.a == 0.0; ++i) {
+    SurroundingsColor met = SurroundingsColor(vec4(0.0), false);
+    for (uint i = 0u; i < kMostSteps && along < reach && met.mean.a == 0.0; ++i) {
         const ivec3 block = surroundings_block(cell);
         const bool empty = is_empty_block(block);
         const float edge = empty ? float(kSurroundingsBlock) : 1.0;
@@ -68,12 +86,11 @@ MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction, fl
         const ivec3 beyond = corner + ivec3(edge * ahead) + min(stride, 0);
         cell = inside * (1 - axis) + beyond * axis;
         if (dot(vec3(cell) + 0.5 - start, normal) > kOwnSurfaceCells) met = look_up_surroundings(cell);
-        if (max(max(met.r, met.g), met.b) < least) met = vec4(0.0);
+        if (max(max(met.mean.r, met.mean.g), met.mean.b) < least) met.mean = vec4(0.0);
     }
-    return MetSurroundings(met, (vec3(cell) + 0.5) * kSurroundingsCellM);
+    const vec3 at_m = (vec3(cell) + 0.5) * kSurroundingsCellM;
+    return MetSurroundings(vec4(radiance_towards(met, direction), met.mean.a), at_m, met.opening);
 }
-
-const float kLeastSky = 0.5;  // radiance; where pictures are exposed for a room, its sky is clipped, or nearly
 
 // Whether a sun can shine in along a ray that no surface blocks: through an opening in which the sky was seen. What
 // was never seen, such as a ceiling, is none. Where nothing at all is known of the surroundings it can.
@@ -85,8 +102,8 @@ bool passes_sky(vec3 point_m, vec3 normal, vec3 direction) {
 // What low exposure showed of a cell that the usual one clips, or nearly; 0 where it did not look, or all is seen.
 vec3 low_exposure_radiance(ivec3 cell) {
     const uint place = find_surroundings(cell);
-    if (place == kNoPlace || surroundings[place].low.samples < kLeastSurroundingsSamples) return vec3(0.0);
-    const vec3 radiance = mean_of_sums(surroundings[place].low);
+    if (place == kNoPlace || surroundings[place].light.low.samples < kLeastSurroundingsSamples) return vec3(0.0);
+    const vec3 radiance = mean_of_sums(surroundings[place].light.low);
     return max(max(radiance.r, radiance.g), radiance.b) > kNearlyClipped ? radiance : vec3(0.0);
 }
 

@@ -2,6 +2,7 @@
 #ifndef PATINA_LIB_SURROUNDINGS_GLSL
 #define PATINA_LIB_SURROUNDINGS_GLSL
 #include "lib/map/voxel_map.glsl"
+#include "lib/math/octahedral.glsl"
 #include "shared/reflectance/surroundings.h"
 
 // 10 bits of each coordinate, so that cells 51 m apart are one; never 0.
@@ -26,13 +27,21 @@ vec3 mean_of_sums(SurroundingsSums sums) {
     return vec3(sums.r, sums.g, sums.b) / (float(max(sums.samples, 1u)) * kSurroundingsSteps);
 }
 
-const float kNearlyClipped = 0.8;  // a mean of pixels some of which may be clipped
-
 // What was seen at low exposure counts where the usual exposure shows nothing, or too bright a colour.
-vec3 cell_radiance(SurroundingsCell cell) {
-    const vec3 usual = mean_of_sums(cell.usual);
+vec3 mean_radiance(SurroundingsLight light) {
+    const vec3 usual = mean_of_sums(light.usual);
     const bool bright = max(max(usual.r, usual.g), usual.b) > kNearlyClipped;
-    return cell.low.samples > 0u && (bright || cell.usual.samples == 0u) ? mean_of_sums(cell.low) : usual;
+    return light.low.samples > 0u && (bright || light.usual.samples == 0u) ? mean_of_sums(light.low) : usual;
 }
+
+uint samples_of(SurroundingsLight light) { return light.usual.samples + light.low.samples; }
+
+// Where a direction lies in what openings show.
+ivec2 opening_texel(vec3 direction) {
+    const vec2 at = (to_octahedral(direction) * 0.5 + 0.5) * float(kOpeningEdge);
+    return ivec2(min(uvec2(max(at, 0.0)), uvec2(kOpeningEdge - 1u)));
+}
+
+uint opening_index(ivec2 texel) { return uint(texel.y) * kOpeningEdge + uint(texel.x); }
 
 #endif

@@ -1,5 +1,6 @@
 // What is around, coarsely: the mean colour of each cell that a picture showed a surface in. Openings such as windows
-// count as surfaces in the plane of their rims. See passes/reflectance/collect_surroundings.h.
+// count as surfaces in the plane of their rims; what shows in them is kept by direction, too, since it is far away. See
+// passes/reflectance/collect_surroundings.h.
 #ifndef PATINA_SHARED_SURROUNDINGS_H
 #define PATINA_SHARED_SURROUNDINGS_H
 #include "shared/input/camera.h"
@@ -21,7 +22,12 @@ INTEROP_CONST uint kSurroundingsProbes = 32u;       // places looked at, from th
 INTEROP_CONST float kSurroundingsSteps = 256.0f;    // of a linear pixel value, in whole numbers
 INTEROP_CONST float kSurroundingsRange = 16.0f;     // the largest of them
 INTEROP_CONST uint kLeastSurroundingsSamples = 3u;  // pixels that make a cell a surface
+INTEROP_CONST float kNearlyClipped = 0.8f;          // a mean of pixels some of which may be clipped
 INTEROP_CONST uint kSurroundingsGroup = 8u;
+INTEROP_CONST uint kOpeningEdge = 64u;      // texels of what openings show along each side: 3 degrees each
+INTEROP_CONST uint kOpeningTexels = 4096u;  // of the whole octahedral map
+INTEROP_CONST uint kOpeningGroup = 64u;
+INTEROP_CONST uint kOpeningTurns = 8u;  // frames after which each direction has looked for the nearest known one
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
 struct SurroundingsSums {
@@ -31,10 +37,24 @@ struct SurroundingsSums {
     uint b;
 };
 
-struct SurroundingsCell {
-    uint key;                // lib/lighting/surroundings.glsl; 0: nothing is here
+struct SurroundingsLight {
     SurroundingsSums usual;  // as the recording shows it, clipped where it is bright
     SurroundingsSums low;    // at low exposure, in the recording's pixel values
+};
+
+struct SurroundingsCell {
+    uint key;       // lib/lighting/surroundings.glsl; 0: nothing is here
+    uint openings;  // of its samples, those of pixels without depth
+    SurroundingsLight light;
+};
+
+// What openings show in a direction.
+struct OpeningTexel {
+    SurroundingsLight light;
+    uint nearest;  // texel that was seen, itself or one around, and 1; 0: there is none
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 // How many cells are in use. A frame sees the count before it, so that all its pixels find the same.
@@ -57,13 +77,18 @@ struct SurroundingsParams {
     uint pad1;
 };
 
+struct OpeningParams {
+    uint turn;  // which of kOpeningTurns
+};
+
 INTEROP_END
 
-// The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h), with what says where
-// the map is empty.
+// The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h) and in openings, with
+// what says where the map is empty.
 #ifndef __cplusplus
 #define SURROUNDINGS_MEMBERS                           \
     FarFieldTexel far_field[kFarFieldTexels];          \
+    OpeningTexel openings[kOpeningTexels];             \
     SurroundingsCounts surroundings_counts;            \
     uint surroundings_blocks[kSurroundingsBlockWords]; \
     uint map_regions[kMapRegionWords];                 \

@@ -3,7 +3,6 @@
 #include "passes/reflectance/collect_far_field.h"
 
 #include <array>
-#include <cmath>
 #include <map>
 
 #include <glm/gtc/packing.hpp>
@@ -11,6 +10,7 @@
 #include "engine/core/shader_camera.h"
 #include "shared/fusion/voxel_map.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/reference/reflectance/octahedral_texel.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
 namespace patina::collect_far_field_test {
@@ -18,18 +18,6 @@ namespace {
 
 const Intrinsics kCamera{{96, 80}, 60, 60, 47.5, 39.5, {}};
 constexpr int kEdge = gpu::kFarFieldEdge;
-
-/// The texel of a direction: the octahedron's faces unfolded, by the faces' own geometry.
-int texel_of(glm::dvec3 direction) {
-    const double norm = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    glm::dvec2 at(direction.x / norm, direction.y / norm);
-    if (direction.z < 0) {
-        const glm::dvec2 outside = glm::dvec2(1 - std::abs(at.y), 1 - std::abs(at.x));
-        at = {at.x >= 0 ? outside.x : -outside.x, at.y >= 0 ? outside.y : -outside.y};
-    }
-    const auto row = [](double v) { return std::min(static_cast<int>(std::floor((v / 2 + 0.5) * kEdge)), kEdge - 1); };
-    return row(at.y) * kEdge + row(at.x);
-}
 
 /// A frame of a camera; what it shows left of pixel 40 is a surface.
 struct Sky {
@@ -92,7 +80,7 @@ class CollectFarFieldTest : public GpuTest {
                 if (!open(x, y)) continue;
                 const glm::vec4 seen = glm::min(sky.color.at(x, y), glm::vec4(gpu::kColorRange));
                 if (seen.a == 0) continue;
-                glm::uvec4& sums = texels[texel_of(sky.direction(x, y))];
+                glm::uvec4& sums = texels[reference::octahedral_texel(sky.direction(x, y), kEdge)];
                 sums += glm::uvec4(glm::uvec3(glm::vec3(seen) * gpu::kFarFieldSteps + 0.5f), 1);
             }
         }

@@ -8,9 +8,11 @@
 #include <map>
 #include <tuple>
 
+#include "engine/core/octahedral.h"
 #include "shared/fusion/voxel_map.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/reflectance/surroundings_inputs.h"
+#include "tests/reference/reflectance/octahedral_texel.h"
 #include "tests/reference/scenes/analytic_scene.h"
 
 namespace patina::collect_surroundings_test {
@@ -63,30 +65,41 @@ using Cells = std::map<Cell, Sums>;
 
 class CollectSurroundingsTest : public GpuTest {
   protected:
-    static constexpr uint64_t kCountsAt = gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel);
-    gpu::SurroundingsCounts counts{};  ///< after the last collect()
+    gpu::SurroundingsCounts counts{};         ///< after the last collect()
+    std::vector<gpu::OpeningTexel> openings;  ///< likewise
+    std::map<Cell, uint64_t> of_openings;     ///< likewise: samples without depth
 
-    /// All 16 phases of a frame, so that every pixel looks once. `before`: how full the table is said to be.
-    Cells collect(const Room& room, float radiance_scale = 0, const gpu::SurroundingsCounts& before = {}) {
+    /// All 16 phases of a frame, so that every pixel looks once. `before`: how full the table is said to be. `settles`:
+    /// then frames without colours, in which every direction has its turn.
+    Cells collect(const Room& room, float radiance_scale = 0, const gpu::SurroundingsCounts& before = {},
+                  bool settles = false) {
         graph::FrameGraph frame = runner().begin();
         ReflectanceStateIds state;
         state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
         state.surroundings =
-            frame.upload_bytes(state.surroundings, kCountsAt, std::as_bytes(std::span(&before, 1)), false);
+            frame.upload_bytes(state.surroundings, kSurroundingsCountsAt, std::as_bytes(std::span(&before, 1)), false);
         SurroundingsInputs inputs =
             upload_surroundings(frame, kCamera, room.world_from_camera, room.depth_m, room.color);
         inputs.radiance_scale = radiance_scale;
         inputs.lamp_luminance = 0.5f;
         for (inputs.frame_index = 0; inputs.frame_index < 16; ++inputs.frame_index)
             add_collect_surroundings(frame, state, inputs);
+        inputs.color_linear =
+            upload_surroundings(frame, kCamera, room.world_from_camera, room.depth_m, Image<glm::vec4>(kCamera.extent))
+                .color_linear;
+        for (; settles && inputs.frame_index < 16 + gpu::kOpeningTurns; ++inputs.frame_index)
+            add_collect_surroundings(frame, state, inputs);
         const graph::Readback read = frame.read_back(state.surroundings);
         run(std::move(frame));
         Cells cells;
         std::vector<gpu::SurroundingsCell> all(gpu::kSurroundingsCells);
         const std::vector<std::byte> bytes = read.as<std::byte>();
-        std::memcpy(&counts, bytes.data() + kCountsAt, sizeof(counts));
+        openings.resize(gpu::kOpeningTexels);
+        std::memcpy(openings.data(), bytes.data() + kOpeningsAt, openings.size() * sizeof(openings[0]));
+        std::memcpy(&counts, bytes.data() + kSurroundingsCountsAt, sizeof(counts));
         std::vector<uint32_t> blocks(gpu::kSurroundingsBlockWords);
-        std::memcpy(blocks.data(), bytes.data() + kCountsAt + sizeof(counts), blocks.size() * sizeof(uint32_t));
+        std::memcpy(blocks.data(), bytes.data() + kSurroundingsCountsAt + sizeof(counts),
+                    blocks.size() * sizeof(uint32_t));
         std::memcpy(all.data(), bytes.data() + kSurroundingsCellsAt, all.size() * sizeof(all[0]));
         for (const gpu::SurroundingsCell& cell : all) {
             if (cell.key == 0) continue;
@@ -99,8 +112,9 @@ class CollectSurroundingsTest : public GpuTest {
             EXPECT_TRUE(blocks[bit / 32] >> bit % 32 & 1) << "rays would cross its block";
             Sums& sums = cells[{coordinate(0), coordinate(10), coordinate(20)}];
             EXPECT_EQ(sums.samples, 0u) << "a cell has one place";
-            const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.low : cell.usual;
-            EXPECT_EQ((radiance_scale > 0 ? cell.usual : cell.low).samples, 0u);
+            const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.light.low : cell.light.usual;
+            EXPECT_EQ((radiance_scale > 0 ? cell.light.usual : cell.light.low).samples, 0u);
+            of_openings[{coordinate(0), coordinate(10), coordinate(20)}] = cell.openings;
             sums = {taken.samples, glm::dvec3(taken.r, taken.g, taken.b) / double{gpu::kSurroundingsSteps}};
         }
         return cells;
@@ -153,6 +167,88 @@ TEST_F(CollectSurroundingsTest, AWindowLiesInThePlaneOfItsRim) {
     room.open(30, 70, 20, 60);
     // Rims are looked for every third pixel, and a plane's inverse depth is linear: no error beside rounding.
     expect_same(collect(room), expected(room, [](uint32_t, uint32_t) { return true; }), kOnBorders);
+}
+
+// Its cells know that they are of a window, and what it shows is kept by direction.
+TEST_F(CollectSurroundingsTest, WhatAWindowShowsIsKeptByDirection) {
+    for (const float radiance_scale : {0.0f, 2.0f}) {
+        Room room;
+        room.open(30, 70, 20, 60);
+        for (glm::vec4& pixel : room.color.pixels()) pixel = glm::min(pixel, glm::vec4(0.4f));
+        collect(room, radiance_scale);
+        std::map<int, Sums> wanted;
+        std::map<Cell, uint64_t> cells;
+        for (uint32_t y = 20; y < 60; ++y) {
+            for (uint32_t x = 30; x < 70; ++x) {
+                const glm::dvec3 direction = glm::dmat3(room.world_from_camera) * room.ray(x, y);
+                Sums& sums = wanted[reference::octahedral_texel(direction, gpu::kOpeningEdge)];
+                ++sums.samples;
+                sums.color += glm::dvec3(room.color.at(x, y)) * (radiance_scale > 0 ? double{radiance_scale} : 1.0);
+                ++cells[room.cell(x, y)];
+            }
+        }
+        ASSERT_GT(wanted.size(), 50u);
+        uint64_t apart = 0, all = 0;
+        for (size_t i = 0; i < openings.size(); ++i) {
+            const gpu::SurroundingsLight& light = openings[i].light;
+            const gpu::SurroundingsSums& taken = radiance_scale > 0 ? light.low : light.usual;
+            EXPECT_EQ((radiance_scale > 0 ? light.usual : light.low).samples, 0u);
+            const auto at = wanted.find(static_cast<int>(i));
+            const Sums sums = at == wanted.end() ? Sums{} : at->second;
+            apart += taken.samples > sums.samples ? taken.samples - sums.samples : sums.samples - taken.samples;
+            all += taken.samples;
+            if (taken.samples != sums.samples) continue;
+            const glm::dvec3 color = glm::dvec3(taken.r, taken.g, taken.b) / double{gpu::kSurroundingsSteps};
+            EXPECT_LT(glm::length(color - sums.color), 0.006 * static_cast<double>(sums.samples) + 1e-6) << i;
+        }
+        EXPECT_EQ(all, 40u * 40u);
+        EXPECT_LT(apart, 12u) << "on borders of texels float and double differ";
+        uint64_t off = 0;
+        for (const auto& [cell, samples] : of_openings) {
+            const uint64_t expected = cells.contains(cell) ? cells[cell] : 0;
+            off += expected > samples ? expected - samples : samples - expected;
+        }
+        EXPECT_LT(off, kOnBorders);
+    }
+}
+
+// Rays into directions that no window showed take the nearest, up to 25 degrees off.
+TEST_F(CollectSurroundingsTest, EachDirectionKnowsTheNearestThatAWindowShowed) {
+    // The map's rim, where it is folded, lies around -z.
+    for (const glm::dvec3 forward : {glm::dvec3(0.4, 0.1, 1), glm::dvec3(0.1, 0.05, -1), glm::dvec3(1, 0.1, -0.3)}) {
+        Room room;
+        room.world_from_camera = reference::look_at({0.3, 0.2, 0}, forward);
+        room.open(30, 70, 20, 60);
+        collect(room, 0, {}, true);
+        const auto seen = [&](size_t i) { return openings[i].light.usual.samples >= gpu::kLeastSurroundingsSamples; };
+        std::vector<glm::dvec3> directions;
+        for (size_t i = 0; i < openings.size(); ++i) {
+            const glm::dvec2 at(i % gpu::kOpeningEdge + 0.5, i / gpu::kOpeningEdge + 0.5);
+            directions.push_back(direction_of_octahedral(at * (2.0 / gpu::kOpeningEdge) - 1.0));
+        }
+        uint32_t filled = 0, known = 0;
+        for (size_t i = 0; i < openings.size(); ++i) {
+            double best = -2;
+            for (size_t k = 0; k < openings.size(); ++k)
+                if (seen(k)) best = std::max(best, glm::dot(directions[i], directions[k]));
+            const uint32_t nearest = openings[i].nearest;
+            if (seen(i)) {
+                EXPECT_EQ(nearest, i + 1);
+                ++known;
+            } else if (best > std::cos(glm::radians(24.9))) {
+                ASSERT_GT(nearest, 0u) << i;
+                EXPECT_TRUE(seen(nearest - 1));
+                // A square of the map is no circle of directions where its faces meet.
+                const double found = glm::dot(directions[i], directions[nearest - 1]);
+                EXPECT_LT(std::acos(found), std::acos(best) + glm::radians(3.0)) << i;
+                ++filled;
+            } else if (best < std::cos(glm::radians(25.1))) {
+                EXPECT_EQ(nearest, 0u) << i;
+            }
+        }
+        EXPECT_GT(known, 80u);
+        EXPECT_GT(filled, 100u);
+    }
 }
 
 TEST_F(CollectSurroundingsTest, ANarrowGapIsNoWindow) {

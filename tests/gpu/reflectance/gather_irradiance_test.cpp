@@ -3,6 +3,7 @@
 #include "tests/reference/reflectance/gather_irradiance.h"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "tests/gpu/reflectance/radiant_room.h"
@@ -85,6 +86,38 @@ TEST_F(GatherIrradianceTest, WhatTheMapDoesNotShowComesFromTheSurroundings) {
     // Cells whose middle is less than 7.5 cm above the wall's own plane count as part of it, so that what lies up to
     // 12.5 cm above may be missed: sin^2(17 degrees) = 0.09 of the rays at 40 cm.
     EXPECT_LT(missed, 0.12);
+}
+
+// Behind a window in the wall z = -kHalf_m the world is far away: bright to the sides, less so straight ahead. From the
+// far wall the whole window shows what the camera saw in its middle.
+TEST_F(GatherIrradianceTest, AWindowShowsWhatIsFarBehindIt) {
+    constexpr double kWindow_m = 0.25, kAhead = 0.7, kAside = 0.3, kLedge = 0.2;
+    const auto far_away = [](glm::dvec3 d) { return std::abs(d.x) > kAside * std::abs(d.z) ? 3.0 : kAhead; };
+    const auto is_window = [](glm::dvec3 p) {
+        return p.z < -0.98 * kHalf_m && std::abs(p.x) < kWindow_m && std::abs(p.y) < kWindow_m;
+    };
+    const auto shows = [&](glm::dvec3 p) { return glm::dvec3(is_window(p) ? far_away(p) : kLedge); };
+    const std::array<glm::dvec3, 1> one_wall{glm::dvec3(0, 0, 1)};
+    const auto model = fused([](glm::dvec3) { return glm::dvec3(kLedge); }, one_wall);
+    collect_surroundings(*model, shows, 0, is_window);
+    const double found = gathered_by_far_wall(*model).first;
+
+    // Midpoints of strata of the disc below the hemisphere: each has the same share of the irradiance.
+    constexpr int kStrata = 400;
+    double expected = 0, by_place = 0;
+    for (int i = 0; i < kStrata; ++i) {
+        for (int k = 0; k < kStrata; ++k) {
+            const double radius = std::sqrt((i + 0.5) / kStrata), angle = 2 * std::numbers::pi * (k + 0.5) / kStrata;
+            const glm::dvec3 d(radius * std::cos(angle), radius * std::sin(angle), -std::sqrt(1 - radius * radius));
+            const glm::dvec3 in_plane = glm::dvec3(0, 0, kHalf_m) - 2 * kHalf_m / d.z * d;
+            const bool through = is_window(in_plane);
+            expected += (through ? far_away(d) : kLedge) / (kStrata * kStrata);
+            by_place += (through ? far_away(in_plane) : kLedge) / (kStrata * kStrata);
+        }
+    }
+    EXPECT_GT(by_place, expected + 0.1);
+    // Directions count in steps of 3 degrees, and rays close to the wall are missed (see above).
+    EXPECT_NEAR(found, expected, 0.05);
 }
 
 TEST_F(GatherIrradianceTest, WhatIsClippedIsAsBrightAsLowExposureShowsIt) {

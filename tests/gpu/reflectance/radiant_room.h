@@ -51,6 +51,11 @@ class RadiantRoomTest : public GpuTest {
         return model;
     }
 
+    static glm::dvec3 seen_m(const RigFrame& frame, uint32_t x, uint32_t y) {
+        const glm::dvec3 in_camera((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
+        return glm::dvec3(frame.world_from_camera * glm::dvec4(in_camera * double{frame.depth_m.at(x, y)}, 1));
+    }
+
     static RigFrame view(const Radiance& radiance, glm::dvec3 direction) {
         RigFrame frame;
         frame.camera = kCamera;
@@ -60,19 +65,22 @@ class RadiantRoomTest : public GpuTest {
         frame.color = {kCamera, frame.world_from_camera, Image<glm::vec4>(kCamera.extent, glm::vec4(0))};
         for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
             for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
-                const double depth_m = double{frame.depth_m.at(x, y)};
-                const glm::dvec3 in_camera((x - kCamera.cx) / kCamera.fx, (y - kCamera.cy) / kCamera.fy, 1);
-                const glm::dvec3 point_m(frame.world_from_camera * glm::dvec4(in_camera * depth_m, 1));
-                frame.color.linear.at(x, y) = glm::vec4(glm::vec3(radiance(point_m)), 1);
+                frame.color.linear.at(x, y) = glm::vec4(glm::vec3(radiance(seen_m(frame, x, y))), 1);
             }
         }
         return frame;
     }
 
-    /// What a camera in the middle sees of the room all around, at the usual exposure or at a low one.
-    static void collect_surroundings(Model& model, const Radiance& radiance, float radiance_scale = 0) {
+    /// What a camera in the middle sees of the room all around, at the usual exposure or at a low one. Where `is_open`
+    /// the depth camera sees nothing.
+    static void collect_surroundings(
+        Model& model, const Radiance& radiance, float radiance_scale = 0,
+        const std::function<bool(glm::dvec3)>& is_open = [](glm::dvec3) { return false; }) {
         for (const glm::dvec3 direction : kAll) {
-            const RigFrame seen = view(radiance, direction);
+            RigFrame seen = view(radiance, direction);
+            for (uint32_t y = 0; y < kCamera.extent.height; ++y)
+                for (uint32_t x = 0; x < kCamera.extent.width; ++x)
+                    if (is_open(seen_m(seen, x, y))) seen.depth_m.at(x, y) = 0;
             model.reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
                 SurroundingsInputs inputs =
                     upload_surroundings(frame, kCamera, seen.world_from_camera, seen.depth_m, seen.color.linear);
