@@ -6,6 +6,8 @@
 #include <numeric>
 #include <span>
 
+#include "reconstruction/far_field.h"
+
 namespace patina {
 namespace {
 
@@ -99,17 +101,13 @@ std::vector<SegmentReflectance> read_segments(graph::Runner& runner, Reflectance
 Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& model) {
     if (!model.gathers()) return {};
     graph::FrameGraph frame = runner.begin();
-    const graph::Readback read =
-        frame.read_back(model.import_surroundings(frame), 0, gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel));
+    const graph::BufferId surroundings = model.import_surroundings(frame);
+    const graph::Readback sky = frame.read_back(surroundings, 0, gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel));
+    const graph::Readback openings =
+        frame.read_back(surroundings, kOpeningsAt, gpu::kOpeningTexels * sizeof(gpu::OpeningTexel));
     runner.submit(std::move(frame));
     runner.wait();
-    const auto texels = read.as<gpu::FarFieldTexel>();
-    Image<glm::vec4> far_field({gpu::kFarFieldEdge, gpu::kFarFieldEdge}, glm::vec4(0));
-    for (size_t i = 0; i < texels.size(); ++i) {
-        const glm::vec4 sums(texels[i].sums);
-        if (sums.w > 0) far_field.pixels()[i] = glm::vec4(glm::vec3(sums) / (sums.w * gpu::kFarFieldSteps), 1);
-    }
-    return far_field;
+    return far_field_of(sky.as<gpu::FarFieldTexel>(), openings.as<gpu::OpeningTexel>());
 }
 
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,

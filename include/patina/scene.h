@@ -78,9 +78,9 @@ struct Scene {
     std::vector<TimedPose> trajectory;  ///< of the depth camera, in the frames that were fused
     glm::dvec3 world_offset_m{0};
     std::optional<glm::dvec3> gravity{};  ///< direction in which things fall; empty where it is not recorded
-    /// What pictures showed where there is no surface, such as a sky: a square octahedral map of directions in the
-    /// world, +z in the middle, -z in the corners. rgb: radiance, linear pixel value; a: 1 where a picture looked, else
-    /// 0, and ambient light arrives. Empty where no light was gathered.
+    /// What pictures showed where there is no surface, such as a sky, and in windows: a square octahedral map of
+    /// directions in the world, +z in the middle, -z in the corners. rgb: radiance, linear pixel value; a: 1 where a
+    /// picture looked, else 0, and ambient light arrives. Empty where no light was gathered.
     Image<glm::vec4> far_field{};
 
     /// Writes a binary glTF 2.0 with materials and lights, upright and on the floor, whole or not at all. Throws Error
