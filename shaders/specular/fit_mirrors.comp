@@ -14,16 +14,20 @@ layout(push_constant) uniform Push { MirrorParams params; };
 
 const float kMost = 4.0;  // of a difference, so that 32 bits hold the sums
 const float kSteps = 65536.0;
-const uint kLeastPairs = 24u;    // of a look, of kSegmentSamples: fewer agree by chance
-const uint kMostMissed = 4u;     // of so many pairs of views, at least one shows what surroundings are known of
-const float kErrors = 2.0;       // from the estimate down to what is sure
-const float kGlassKs = 0.1;      // no dielectric reflects more, but for flat views,
-const float kMetalKs = 0.25;     // and no metal less
-const float kMirrorStep = 0.04;  // a change that is worth another look at the albedo
+const uint kLeastPairs = 24u;  // of a look, of kSegmentSamples: fewer agree by chance
+const uint kMostMissed = 4u;   // of so many pairs of views, at least one shows what surroundings are known of
+const float kErrors = 2.0;     // from the estimate down to what is sure
+const float kGlassKs = 0.1;    // no dielectric reflects more, but for flat views,
+const float kMetalKs = 0.25;   // and no metal less
+const float kWhiteKs = 1.2;    // what a perfect mirror may be found to have, as its rays err,
+const float kMostKs = 1.4;     // and none has
+const float kByChance = 0.3, kByMirroring = 0.45;  // correlations
+const float kMirrorStep = 0.04;                    // a change that is worth another look at the albedo
 
 shared int sum_product[4];  // channels, brightness
 shared int sum_square[4];
 shared int sum_product2;
+shared int sum_color2;
 shared uint sum_pairs;
 shared uint sum_views;  // pairs, whether or not their rays meet anything
 shared uint sum_few;    // voxels that were seen too seldom
@@ -47,16 +51,22 @@ void add_pair(MirrorPair pair, uint at) {
         atomicAdd(sum_square[i], int(round(square[i] * kSteps)));
     }
     atomicAdd(sum_product2, int(round(min(product.w * product.w, kMost) * kSteps)));
+    atomicAdd(sum_color2, int(round(min(brighter.w * brighter.w, kMost) * kSteps)));
     atomicAdd(sum_pairs, 1u);
 }
 
 vec4 sum_of(int sums[4]) { return vec4(sums[0], sums[1], sums[2], sums[3]) / kSteps; }
 
 // 0: what the segment shows is its own colour; 1: it is sure to be a metal or a mirror, which have no diffuse part.
-// The same voxels come again in each look: `looks` times as many pairs make the error no smaller.
+// The same voxels come again in each look: `looks` times as many pairs make the error no smaller. Pairs of the same two
+// frames err alike, so that chance is larger than it looks; but a mirror's colours change by what it mirrors, not by
+// more, and by little else.
 float mirror_of(MirrorFit fit, float looks) {
+    if (fit.square.w <= 0.0) return 0.0;
     const float sure = fit.product.w - kErrors * sqrt(fit.product2 * looks);
-    return fit.square.w > 0.0 ? smoothstep(kGlassKs, kMetalKs, sure / fit.square.w) : 0.0;
+    const float correlation = max(fit.product.w, 0.0) * inversesqrt(max(fit.square.w * fit.color2, 1e-12));
+    return smoothstep(kGlassKs, kMetalKs, sure / fit.square.w) * smoothstep(kByChance, kByMirroring, correlation) *
+           (1.0 - smoothstep(kWhiteKs, kMostKs, fit.product.w / fit.square.w));
 }
 
 void main() {
@@ -64,7 +74,7 @@ void main() {
     const uint label = batch[1u + segment];
     if (lane < 4u) sum_product[lane] = sum_square[lane] = 0;
     if (lane == 0u) {
-        sum_product2 = 0;
+        sum_product2 = sum_color2 = 0;
         sum_pairs = sum_views = sum_few = 0u;
     }
     barrier();
@@ -85,10 +95,10 @@ void main() {
     if (lane != 0u || label >= params.labels || sum_pairs < max(kLeastPairs, sum_views / kMostMissed)) return;
     if (sum_views < sum_few) return;
     const MirrorFit before = mirrors[label];
-    const MirrorFit fit = MirrorFit(params.memory * before.product + sum_of(sum_product),
-                                    params.memory * before.square + sum_of(sum_square),
-                                    params.memory * before.product2 + float(sum_product2) / kSteps,
-                                    params.memory * before.pairs + float(sum_pairs), 0u, 0u);
+    const MirrorFit fit = MirrorFit(
+        params.memory * before.product + sum_of(sum_product), params.memory * before.square + sum_of(sum_square),
+        params.memory * before.product2 + float(sum_product2) / kSteps, params.memory * before.pairs + float(sum_pairs),
+        params.memory * before.color2 + float(sum_color2) / kSteps, 0u);
     mirrors[label] = fit;
     if (label >= params.materials) return;
     const float mirror = mirror_of(fit, fit.pairs / float(sum_pairs));

@@ -26,8 +26,8 @@ struct MirrorFit {
     vec4 square;     // of the latter, from two sets of rays
     float product2;  // the square of product.w, which tells its error
     float pairs;
+    float color2;  // of the difference in brightness, squared
     uint pad0;
-    uint pad1;
 };
 
 struct KeepMirrorsParams {

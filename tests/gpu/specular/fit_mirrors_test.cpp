@@ -31,6 +31,7 @@ struct Surface {
     double ks = 0;
     double least_kd = 0.3, most_kd = 0.3;  ///< voxels have different ones
     glm::dvec3 tint{1};                    ///< of ks
+    double other = 0;                      ///< each view is so much brighter or darker at most, by chance
 };
 
 class FitMirrorsTest : public FitWardTest {
@@ -59,7 +60,7 @@ class FitMirrorsTest : public FitWardTest {
     }
 
     std::vector<FilledRecord> plane(uint32_t label, const Surface& surface, double least_x_m) {
-        std::uniform_real_distribution<double> place(0, 0.4), level(surface.least_kd, surface.most_kd);
+        std::uniform_real_distribution<double> place(0, 0.4), level(surface.least_kd, surface.most_kd), share(0, 1);
         std::vector<FilledRecord> records;
         while (records.size() < kVoxels) {
             FilledRecord record{{least_x_m + place(random_), place(random_), 0.001}, {0, 0, 1}, label, {}};
@@ -69,7 +70,8 @@ class FitMirrorsTest : public FitWardTest {
             while (record.observations.size() < 12) {
                 const glm::dvec3 direction = direction_about({0, 0, 1}, 0.72);
                 const double shown = surface.ks * mirrored(glm::dvec3(kept_point_m(map_, record)), direction);
-                record.observations.push_back({glm::vec3(direction), glm::vec3(own + shown * surface.tint), {}});
+                const double all = own + surface.other * (2 * share(random_) - 1);
+                record.observations.push_back({glm::vec3(direction), glm::vec3(all + shown * surface.tint), {}});
             }
             records.push_back(record);
         }
@@ -162,6 +164,25 @@ TEST_F(FitMirrorsTest, LacquerIsNoMirror) {
     const Found found = find(6);
     EXPECT_NEAR(found.ks(), 0.05, 0.02);
     EXPECT_EQ(found.material.mirror, 0.0f);
+}
+
+// A ceiling that few frames saw, from far and flat: its colours changed by one and a half times what it would have
+// mirrored.
+TEST_F(FitMirrorsTest, WhatChangesByMoreThanItWouldMirrorIsNoMirror) {
+    // The wall's dark squares are black, so that its bright ones are not clipped.
+    constexpr double kKs = 1.7, kDark = 0.15;
+    fill(plane(1, {.ks = kKs, .least_kd = -kKs * kDark / kIrradiance, .most_kd = -kKs * kDark / kIrradiance}, 0));
+    const Found found = find(6);
+    EXPECT_GT(found.ks(), 1.4);
+    EXPECT_EQ(found.material.mirror, 0.0f);
+}
+
+// What is mirrored explains a tenth of how the colours change.
+TEST_F(FitMirrorsTest, WhatChangesForOtherReasonsIsNoMirror) {
+    fill(plane(1, {.ks = 0.35, .least_kd = 0.9, .most_kd = 0.9, .other = 0.38}, 0));
+    const Found found = find(6);
+    EXPECT_NEAR(found.ks(), 0.35, 0.15);
+    EXPECT_LT(found.material.mirror, 0.3f);
 }
 
 TEST_F(FitMirrorsTest, ClippedViewsDoNotCount) {
