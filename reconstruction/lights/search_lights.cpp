@@ -15,6 +15,7 @@ constexpr double kFewHighlights = 200;  // they count half
 constexpr double kLeastLight = 0.01;    // of the mean irradiance
 constexpr double kLeastCost = 0.05;     // what the best explanation leaves: lamps that gain little beside it are none
 constexpr double kWorthwhile = 0.998;   // of the cost before: moves stay as long as they are
+constexpr float kSamePlace = 0.35f;     // of a lamp's distance from the middle of the surface
 
 /// Along axes and diagonals.
 std::vector<glm::vec3> directions() {
@@ -52,19 +53,19 @@ std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const 
 
 class Search {
   public:
-    Search(const LitSurface& surface, const TryLamps& try_lamps, const LightSearchSettings& settings,
-           const GivenLight& given)
-        : surface_(surface), try_(try_lamps), settings_(settings), given_(given) {}
+    Search(const LitSurface& surface, const TryLamps& try_lamps, std::span<const glm::vec3> seen_m,
+           const LightSearchSettings& settings, const GivenLight& given)
+        : surface_(surface), try_(try_lamps), seen_m_(seen_m), settings_(settings), given_(given) {}
 
-    std::vector<TrialLamp> run(std::span<const glm::vec3> seen_m) {
-        const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m), kCoarsePlaces);
+    std::vector<TrialLamp> run() {
+        const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m_), kCoarsePlaces);
         double best = cost(lamps_);
         while (lamps_.size() < settings_.most_lamps) {
             const std::vector<TrialLamp> before = lamps_;
             lamps_.push_back(best_addition(places));
             const double now = move_all();
             // Two more lamps may help where neither does alone: what a lamp must be worth in the end is asked later.
-            if (now > (1 - 0.5 * settings_.least_gain) * best) {
+            if (now > (1 - 0.5 * std::min(settings_.least_gain, settings_.expected_gain)) * best) {
                 lamps_ = before;
                 break;
             }
@@ -123,29 +124,41 @@ class Search {
         return now;
     }
 
+    /// By how much the cost without a lamp exceeds what makes it worth having.
+    double worth(size_t lamp) const {
+        std::vector<TrialLamp> without = lamps_;
+        without.erase(without.begin() + static_cast<ptrdiff_t>(lamp));
+        const bool expected =
+            std::ranges::any_of(seen_m_, [&](glm::vec3 m) { return is_same_place(surface_, lamps_[lamp].place_m, m); });
+        return (1 - double{expected ? settings_.expected_gain : settings_.least_gain}) * cost(without) - cost(lamps_);
+    }
+
     /// Leaves out the lamp that matters least, if it matters too little.
     bool remove_one() {
-        double least = 1e9;
-        std::vector<TrialLamp> best;
-        for (size_t l = 0; l < lamps_.size(); ++l) {
-            std::vector<TrialLamp> trial = lamps_;
-            trial.erase(trial.begin() + static_cast<ptrdiff_t>(l));
-            const double value = cost(trial);
-            if (value < least) best = trial, least = value;
-        }
-        if (lamps_.empty() || cost(lamps_) < (1 - settings_.least_gain) * least) return false;
-        lamps_ = best;
+        size_t least = 0;
+        for (size_t l = 1; l < lamps_.size(); ++l)
+            if (worth(l) < worth(least)) least = l;
+        if (lamps_.empty() || worth(least) > 0) return false;
+        lamps_.erase(lamps_.begin() + static_cast<ptrdiff_t>(least));
         return true;
     }
 
     const LitSurface& surface_;
     const TryLamps& try_;
+    std::span<const glm::vec3> seen_m_;
     LightSearchSettings settings_;
     const GivenLight& given_;
     std::vector<TrialLamp> lamps_;
 };
 
 }  // namespace
+
+bool is_same_place(const LitSurface& surface, glm::vec3 a_m, glm::vec3 b_m) {
+    glm::vec3 middle_m(0);
+    for (const gpu::LightSample& sample : surface.samples())
+        middle_m += glm::vec3(sample.point_m) / static_cast<float>(surface.size());
+    return glm::distance(a_m, b_m) < kSamePlace * glm::distance(a_m, middle_m);
+}
 
 double unexplained_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps,
                               std::span<const double> intensities) {
@@ -167,7 +180,7 @@ std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& 
                                      std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
                                      const GivenLight& given) {
     if (surface.size() == 0) return {};
-    return Search(surface, try_lamps, settings, given).run(seen_m);
+    return Search(surface, try_lamps, seen_m, settings, given).run();
 }
 
 }  // namespace patina

@@ -15,6 +15,7 @@ struct LightSearchSettings {
     uint32_t most_lamps = 6;
     float highlight_share = 0.5f;  ///< what unexplained highlights count beside the misfit of diffuse light
     float least_gain = 0.12f;      ///< a lamp makes the sum of both smaller by this share, or is left out
+    float expected_gain = 0.12f;   ///< the same of a lamp that is found where one is expected
 };
 
 /// A lamp's place, what it gives the samples, and how badly it explains each highlight.
@@ -39,8 +40,12 @@ struct GivenLight {
     ReceivedLight ambient;              ///< null: 1 for all samples
 };
 
-/// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, all moved to
-/// better places whenever there is a new one; then those that matter too little are left out.
+/// Whether two lamps may be the same one, found twice: nearer to each other than a third of the way to the middle of
+/// the surface.
+bool is_same_place(const LitSurface& surface, glm::vec3 a_m, glm::vec3 b_m);
+
+/// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, where lamps are
+/// expected, all moved to better places whenever there is a new one; then those that matter too little are left out.
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
                                      std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
                                      const GivenLight& given = {});

@@ -17,8 +17,9 @@ constexpr double kMostUnexplained = 0.125;  // a room whose lamps were found had
 constexpr float kDarkWhite = 0.75f, kBrightWhite = 1.125f;  // of the albedo of white surfaces
 constexpr double kBrightest = 0.1;                          // the share of the surface that is
 constexpr double kLeastKnownShare = 0.05;                   // of all light, to tell how bright the rest is
+constexpr double kOwnTint = 0.5;                            // of what the surface tells; the rest is other lamps'
 constexpr double kLeastScale = 0.05;                        // of what was fitted
-constexpr float kSamePlace = 0.35f;                         // of a lamp's distance from the middle of the surface
+constexpr float kExpectedGain = 0.06f;                      // LightSearchSettings
 constexpr double kKnownAround = 0.35, kHardlyKnown = 0.55;  // share of light that comes from unknown directions
 
 /// Whether the median of its sightings is a lower bound.
@@ -73,15 +74,10 @@ std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const Receiv
 /// Which of the lamps that were found are where lamps were found before.
 std::vector<TrialLamp> found_again(const std::vector<TrialLamp>& found, std::span<const glm::vec3> before_m,
                                    const LitSurface& surface) {
-    glm::vec3 middle_m(0);
-    for (const gpu::LightSample& sample : surface.samples())
-        middle_m += glm::vec3(sample.point_m) / static_cast<float>(surface.size());
     std::vector<TrialLamp> again;
-    for (const TrialLamp& lamp : found) {
-        const float near_m = kSamePlace * glm::distance(lamp.place_m, middle_m);
-        if (std::ranges::any_of(before_m, [&](glm::vec3 m) { return glm::distance(m, lamp.place_m) < near_m; }))
+    for (const TrialLamp& lamp : found)
+        if (std::ranges::any_of(before_m, [&](glm::vec3 m) { return is_same_place(surface, lamp.place_m, m); }))
             again.push_back(lamp);
-    }
     return again;
 }
 
@@ -107,7 +103,8 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     given.lights.insert(given.lights.end(), clipped.begin(), clipped.end());
     // Most highlights are of lamps that pictures show.
     const std::vector<TrialLamp> found =
-        search_lights(surface, try_lamps, {}, {.most_lamps = most_added, .highlight_share = 0}, given);
+        search_lights(surface, try_lamps, before_m,
+                      {.most_lamps = most_added, .highlight_share = 0, .expected_gain = kExpectedGain}, given);
     for (const TrialLamp& lamp : found) result.places_m.push_back(lamp.place_m);
     const std::vector<TrialLamp> believed = found_again(found, before_m, surface);
     std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
@@ -137,7 +134,7 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
                        surface, lamps, channel);
         for (size_t l = 0; l < lamps.size(); ++l)
             intensities[l][c] = scale * std::lerp(measured.tint[c] * fitted.intensities[l], own.intensities[l],
-                                                  own.has_scale ? sure : 0);
+                                                  own.has_scale ? kOwnTint * sure : 0);
     }
     for (size_t l = 0; l < clipped.size(); ++l) result.clipped.emplace_back(intensities[l]);
     for (size_t l = 0; l < believed.size(); ++l)
@@ -162,7 +159,8 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
         brightness.push_back(mean_of(measured.known[i]));
     }
     measured.usual = usual_light(drawn);
-    ToldLamps all{.lamps = std::vector(lamps.begin(), lamps.end()), .places_m = {}};
+    ToldLamps all{.lamps = std::vector(lamps.begin(), lamps.end()),
+                  .places_m = std::vector(before_m.begin(), before_m.end())};
     if (clipped.empty() && least_unseen_light(drawn, brightness) <= 0) return all;
     glm::vec3 together(0);
     for (const Light& lamp : sure) together += glm::vec3(lamp.intensity);
@@ -178,7 +176,7 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
         static_cast<uint32_t>(gpu::kMaxPointLights - std::min<size_t>(lamps.size(), gpu::kMaxPointLights));
     const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, of_clipped, before_m, try_lamps,
                                                       std::min(room, LightSearchSettings().most_lamps));
-    all.places_m = told.places_m;
+    all.places_m.insert(all.places_m.end(), told.places_m.begin(), told.places_m.end());
     size_t next = 0;
     for (FoundLight& lamp : all.lamps) {
         if (!is_clipped(lamp) || told.clipped.empty()) continue;

@@ -31,7 +31,7 @@ struct UnmeasuredLamps {
 /// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps three quarters of
 /// `white_albedo` or more. Where hardly any light is known, it begins at `white_albedo`. Never has more than a fifth of
 /// the surface an albedo an eighth above that. `clipped` is what these lamps give the surface at an intensity of 1. A
-/// lamp that no picture shows is believed where the search before, of fewer frames, found it, too: `before_m`. At most
+/// lamp that no picture shows is believed where a search before, of fewer frames, found it, too: `before_m`. At most
 /// `most_added` are searched for. Nothing is told where the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
                                      std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
@@ -39,7 +39,7 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
 
 struct ToldLamps {
     std::vector<FoundLight> lamps;    ///< clipped ones as bright as what they light tells, then unseen ones
-    std::vector<glm::vec3> places_m;  ///< UnmeasuredLamps
+    std::vector<glm::vec3> places_m;  ///< where this search and those before found lamps, believed or not
 };
 
 /// The same for what the pipeline has observed, beside `lamps`, which are as_measured(); `drawn` as draw_samples

@@ -53,7 +53,7 @@ struct Illumination {
     glm::dvec3 ambient{0};  ///< irradiance over pi that every surface receives, linear pixel value
     float misfit = 0;       ///< of the main sequence's surface: FittedLights
     float unexplained = 0;
-    std::vector<glm::vec3> candidates_m{};  ///< where the last search found lamps that no picture shows
+    std::vector<glm::vec3> candidates_m{};  ///< where searches found lamps that no picture shows
 };
 
 /// Whether anything receives light.

@@ -265,6 +265,20 @@ TEST(SearchLights, FindsLampsFromShadingAndHighlights) {
     }
 }
 
+// What makes a weak lamp worth having is less where one is expected.
+TEST(SearchLights, AWeakLampIsFoundWhereOneIsExpected) {
+    std::vector<Lamp> lamps(kTwoLamps.begin(), kTwoLamps.end());
+    lamps[1].intensity *= 0.07f;
+    const Balls balls(lamps, glm::vec3(0.05f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const LightSearchSettings settings{.highlight_share = 0, .expected_gain = 0.06f};
+    for (size_t expected = 0; expected < 2; ++expected) {
+        const auto found =
+            search_lights(surface, balls.try_lamps(surface), std::span(&lamps[expected].place_m, 1), settings);
+        EXPECT_EQ(found.size(), expected + 1);
+    }
+}
+
 TEST(SearchLights, NothingSeenNothingFound) {
     const LitSurface surface(std::vector<gpu::LightSample>(2 * gpu::kLightSamples), 1);
     EXPECT_EQ(surface.size(), 0u);
