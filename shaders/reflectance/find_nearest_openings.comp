@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Finds for a part of all directions the nearest one, 25 degrees off at most, that an opening showed something in.
+// Finds for a part of all directions the nearest one, 45 degrees off at most, that an opening showed something in.
 #include "lib/lighting/surroundings.glsl"
 #include "shared/reflectance/far_field.h"
 
@@ -9,7 +9,7 @@ layout(std430, binding = 0) buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { OpeningParams params; };
 
 const int kReachTexels = 14;        // 25 degrees around an axis of the octahedron, more elsewhere
-const float kLeastCosine = 0.9063;  // of 25 degrees
+const float kLeastCosine = 0.7071;  // of 45 degrees
 const int kEdge = int(kOpeningEdge);
 
 // Beyond a side of the map lies what is beside it, turned around the side's middle.

@@ -27,7 +27,7 @@ INTEROP_CONST uint kSurroundingsGroup = 8u;
 INTEROP_CONST uint kOpeningEdge = 64u;      // texels of what openings show along each side: 3 degrees each
 INTEROP_CONST uint kOpeningTexels = 4096u;  // of the whole octahedral map
 INTEROP_CONST uint kOpeningGroup = 64u;
-INTEROP_CONST uint kOpeningTurns = 8u;  // frames after which each direction has looked for the nearest known one
+INTEROP_CONST uint kOpeningTurns = 16u;  // frames after which each direction has looked for the nearest known one
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
 struct SurroundingsSums {
