@@ -124,22 +124,23 @@ class Search {
         return now;
     }
 
-    /// By how much the cost without a lamp exceeds what makes it worth having.
-    double worth(size_t lamp) const {
+    /// By how much the cost without a lamp exceeds what makes it worth having; `now` is the cost with it.
+    double worth(size_t lamp, double now) const {
         std::vector<TrialLamp> without = lamps_;
         without.erase(without.begin() + static_cast<ptrdiff_t>(lamp));
         const bool expected =
             std::ranges::any_of(seen_m_, [&](glm::vec3 m) { return is_same_place(surface_, lamps_[lamp].place_m, m); });
-        return (1 - double{expected ? settings_.expected_gain : settings_.least_gain}) * cost(without) - cost(lamps_);
+        return (1 - double{expected ? settings_.expected_gain : settings_.least_gain}) * cost(without) - now;
     }
 
     /// Leaves out the lamp that matters least, if it matters too little.
     bool remove_one() {
-        size_t least = 0;
-        for (size_t l = 1; l < lamps_.size(); ++l)
-            if (worth(l) < worth(least)) least = l;
-        if (lamps_.empty() || worth(least) > 0) return false;
-        lamps_.erase(lamps_.begin() + static_cast<ptrdiff_t>(least));
+        const double now = cost(lamps_);
+        std::vector<double> worths;
+        for (size_t l = 0; l < lamps_.size(); ++l) worths.push_back(worth(l, now));
+        const auto least = std::ranges::min_element(worths);
+        if (least == worths.end() || *least > 0) return false;
+        lamps_.erase(lamps_.begin() + (least - worths.begin()));
         return true;
     }
 

@@ -5,6 +5,7 @@
 #include "lib/camera/camera.glsl"
 #include "lib/color/luminance.glsl"
 #include "lib/lighting/surroundings.glsl"
+#include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
 layout(local_size_x = kSurroundingsGroup, local_size_y = kSurroundingsGroup) in;
@@ -63,7 +64,7 @@ bool is_placed(uint place, uint key, ivec3 cell, bool grows) {
     atomicAdd(sums.b, steps.b);
 
 void add_to_opening(vec3 direction, uvec3 steps) {
-    const uint texel = opening_index(opening_texel(direction));
+    const uint texel = octahedral_texel(direction, kOpeningEdge);
     if (params.radiance_scale > 0.0) {
         ADD_TO(openings[texel].light.low, steps)
     } else {

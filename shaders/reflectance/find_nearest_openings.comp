@@ -2,13 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 // Finds for a part of all directions the nearest one, 45 degrees off at most, that an opening showed something in.
 #include "lib/lighting/surroundings.glsl"
+#include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
 layout(local_size_x = kOpeningGroup) in;
 layout(std430, binding = 0) buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { OpeningParams params; };
 
-const int kReachTexels = 14;        // 25 degrees around an axis of the octahedron, more elsewhere
+const int kReachTexels = 26;        // 45 degrees around an axis of the octahedron, more elsewhere
 const float kLeastCosine = 0.7071;  // of 45 degrees
 const int kEdge = int(kOpeningEdge);
 
@@ -21,9 +22,11 @@ ivec2 wrapped(ivec2 texel) {
     return texel;
 }
 
+uint index_of(ivec2 texel) { return uint(texel.y) * kOpeningEdge + uint(texel.x); }
+
 vec3 direction_of(ivec2 texel) { return from_octahedral((vec2(texel) + 0.5) / float(kEdge) * 2.0 - 1.0); }
 
-bool is_seen(ivec2 texel) { return samples_of(openings[opening_index(texel)].light) >= kLeastSurroundingsSamples; }
+bool is_seen(ivec2 texel) { return samples_of(openings[index_of(texel)].light) >= kLeastSurroundingsSamples; }
 
 void main() {
     const uint index = gl_GlobalInvocationID.x * kOpeningTurns + params.turn;
@@ -39,7 +42,7 @@ void main() {
             const float cosine = dot(direction, direction_of(texel));
             if (cosine <= best) continue;
             best = cosine;
-            nearest = opening_index(texel) + 1u;
+            nearest = index_of(texel) + 1u;
         }
     }
     openings[index].nearest = nearest;

@@ -4,11 +4,7 @@
 #include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
-uint far_field_texel(vec3 direction) {
-    const vec2 at = (to_octahedral(direction) * 0.5 + 0.5) * float(kFarFieldEdge);
-    const uvec2 texel = min(uvec2(max(at, 0.0)), uvec2(kFarFieldEdge - 1u));
-    return texel.y * kFarFieldEdge + texel.x;
-}
+uint far_field_texel(vec3 direction) { return octahedral_texel(direction, kFarFieldEdge); }
 
 // Radiance from a direction; a is 0 where no pixel looked.
 vec4 far_radiance(FarFieldTexel texel) {

@@ -5,6 +5,7 @@
 #ifndef PATINA_LIB_MARCH_SURROUNDINGS_GLSL
 #define PATINA_LIB_MARCH_SURROUNDINGS_GLSL
 #include "lib/lighting/surroundings.glsl"
+#include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
 const float kReachCells = 256.0;     // 12.8 m
@@ -46,7 +47,7 @@ const float kLeastSky = 0.5;  // radiance; where pictures are exposed for a room
 // are black or shiny things that the depth camera does not see.
 vec3 radiance_towards(SurroundingsColor met, vec3 direction) {
     if (!met.opening || max(max(met.mean.r, met.mean.g), met.mean.b) < kLeastSky) return met.mean.rgb;
-    const uint nearest = openings[opening_index(opening_texel(direction))].nearest;
+    const uint nearest = openings[octahedral_texel(direction, kOpeningEdge)].nearest;
     return nearest == 0u ? met.mean.rgb : mean_radiance(openings[nearest - 1u].light);
 }
 

@@ -2,7 +2,6 @@
 #ifndef PATINA_LIB_SURROUNDINGS_GLSL
 #define PATINA_LIB_SURROUNDINGS_GLSL
 #include "lib/map/voxel_map.glsl"
-#include "lib/math/octahedral.glsl"
 #include "shared/reflectance/surroundings.h"
 
 // 10 bits of each coordinate, so that cells 51 m apart are one; never 0.
@@ -35,13 +34,5 @@ vec3 mean_radiance(SurroundingsLight light) {
 }
 
 uint samples_of(SurroundingsLight light) { return light.usual.samples + light.low.samples; }
-
-// Where a direction lies in what openings show.
-ivec2 opening_texel(vec3 direction) {
-    const vec2 at = (to_octahedral(direction) * 0.5 + 0.5) * float(kOpeningEdge);
-    return ivec2(min(uvec2(max(at, 0.0)), uvec2(kOpeningEdge - 1u)));
-}
-
-uint opening_index(ivec2 texel) { return uint(texel.y) * kOpeningEdge + uint(texel.x); }
 
 #endif

@@ -19,4 +19,11 @@ vec3 from_octahedral(vec2 point) {
         vec3(point.x - (point.x >= 0.0 ? folded : -folded), point.y - (point.y >= 0.0 ? folded : -folded), z));
 }
 
+// Where a direction lies in a map of edge x edge texels, row by row.
+uint octahedral_texel(vec3 direction, uint edge) {
+    const vec2 at = (to_octahedral(direction) * 0.5 + 0.5) * float(edge);
+    const uvec2 texel = min(uvec2(max(at, 0.0)), uvec2(edge - 1u));
+    return texel.y * edge + texel.x;
+}
+
 #endif
