@@ -47,8 +47,8 @@ void add_to_map(const Light& light, glm::dvec3 from_m, Image<glm::vec3>& map) {
             sum += covered.back().solid_angle;
         }
     }
-    for (const Covered& each : covered)
-        map.pixels()[each.pixel] += glm::vec3(light.intensity / (distance_m * distance_m * sum));
+    const glm::vec3 radiance(intensity_towards(light, from_m) / (distance_m * distance_m * sum));
+    for (const Covered& each : covered) map.pixels()[each.pixel] += radiance;
 }
 
 Image<glm::vec3> light_map(const SceneParts& scene, glm::dvec3 from_m, Extent2D extent) {

@@ -19,7 +19,8 @@ double irradiance(const Light& light, const Patch& patch) {
     const glm::dvec3 to_light_m = light.position_m - glm::dvec3(patch.center_m), area_m2(patch.area_m2);
     const double distance_m = std::max({glm::length(to_light_m), light.radius_m, kNearestLamp_m});
     const double cosine = glm::dot(to_light_m, area_m2) / (distance_m * glm::length(area_m2));
-    return luminance(light.intensity) * std::max(cosine, 0.0) / (distance_m * distance_m);
+    return luminance(intensity_towards(light, glm::dvec3(patch.center_m))) * std::max(cosine, 0.0) /
+           (distance_m * distance_m);
 }
 
 double with_six_digits(double value) {

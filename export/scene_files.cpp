@@ -37,6 +37,7 @@ Lighting rounded(Lighting lighting) {
         light.position_m = rounded(light.position_m);
         light.intensity = rounded(light.intensity);
         light.radius_m = rounded(glm::dvec3(light.radius_m)).x;
+        light.axis = rounded(light.axis);
     }
     return lighting;
 }

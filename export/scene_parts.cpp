@@ -166,7 +166,9 @@ class Reader {
         if (index < 0) return;
         const tinygltf::Light& lamp = arrays_.at(model_.lights, static_cast<int>(index), "light");
         Light light;
-        light.position_m = glm::dvec3(to_gltf * transform_of(node)[3]);
+        const glm::dmat4 to_lamp = to_gltf * transform_of(node);
+        light.position_m = glm::dvec3(to_lamp[3]);
+        if (lamp.type == "spot") light.axis = -glm::normalize(glm::dvec3(to_lamp[2]));
         const glm::dvec3 color =
             lamp.color.size() == 3 ? glm::dvec3(lamp.color[0], lamp.color[1], lamp.color[2]) : glm::dvec3(1);
         light.intensity = color * (lamp.intensity / scene_.candela_per_intensity);

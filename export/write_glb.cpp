@@ -4,10 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <glm/gtc/quaternion.hpp>
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
@@ -28,6 +30,7 @@ using Value = tinygltf::Value;
 constexpr const char* kSpecular = "KHR_materials_specular";
 constexpr const char* kIor = "KHR_materials_ior";
 constexpr const char* kLights = "KHR_lights_punctual";
+constexpr double kInnerCosine = 0.75;  // of a spot that has the power of a flat lamp, and its intensity along the axis
 constexpr const char* kSurface = "surface";
 
 GltfColor encode(glm::vec3 linear) {
@@ -256,7 +259,11 @@ struct GlbWriter::State {
         const int index = static_cast<int>(model.lights.size());
         tinygltf::Light lamp;
         lamp.name = "light " + std::to_string(index + 1);
-        lamp.type = "point";
+        lamp.type = is_flat(light) ? "spot" : "point";
+        if (is_flat(light)) {
+            lamp.spot.innerConeAngle = std::acos(kInnerCosine);
+            lamp.spot.outerConeAngle = std::numbers::pi / 2;
+        }
         lamp.color = {color.r, color.g, color.b};
         lamp.intensity = strongest * candela_per_intensity;
         Value::Object extras{{"calibrated", Value(false)}};
@@ -264,6 +271,10 @@ struct GlbWriter::State {
         lamp.extras = Value(std::move(extras));
         tinygltf::Node& node = add_node(lamp.name);
         node.translation = {light.position_m.x, light.position_m.y, light.position_m.z};
+        if (is_flat(light)) {
+            const glm::dquat turn(glm::dvec3(0, 0, -1), glm::normalize(light.axis));
+            node.rotation = {turn.x, turn.y, turn.z, turn.w};
+        }
         node.extensions[kLights] = Value(Value::Object{{"light", Value(index)}});
         model.lights.push_back(std::move(lamp));
         use_extension(kLights);

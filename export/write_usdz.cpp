@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
 
 #include "export/stored_zip.h"
 
@@ -132,18 +133,22 @@ std::string mesh_text(const SceneParts& scene, const ScenePart& part, size_t num
     return text + " (\n  interpolation = \"vertex\"\n )\n}\n}\n";
 }
 
-/// A sphere of radiance L has L pi r^2 candela; with `normalize` the intensity is L times the sphere's area.
+/// A sphere of radiance L has L pi r^2 candela, and so has a disc along its axis; with `normalize` the intensity is L
+/// times the area.
 std::string light_text(const Light& light, double candela_per_intensity, size_t number) {
     const glm::dvec3 candela = light.intensity * candela_per_intensity;
     const double strongest = std::max({candela.r, candela.g, candela.b});
     const glm::vec3 color = strongest > 0 ? glm::vec3(candela / strongest) : glm::vec3(1);
+    const glm::dquat turn =
+        is_flat(light) ? glm::dquat(glm::dvec3(0, 0, -1), glm::normalize(light.axis)) : glm::dquat(1, 0, 0, 0);
     return fmt::format(
-        "def SphereLight \"light_{}\"\n{{\n color3f inputs:color = {}\n float inputs:intensity = {:.6g}\n"
+        "def {} \"light_{}\"\n{{\n color3f inputs:color = {}\n float inputs:intensity = {:.6g}\n"
         " bool inputs:normalize = 1\n float inputs:radius = {:.4f}\n double3 xformOp:translate = ({:.6f}, {:.6f}, "
-        "{:.6f})\n"
-        " uniform token[] xformOpOrder = [\"xformOp:translate\"]\n}}\n",
-        number + 1, tuple(color), 4 * strongest, light.radius_m > 0 ? light.radius_m : 0.01, light.position_m.x,
-        light.position_m.y, light.position_m.z);
+        "{:.6f})\n quatf xformOp:orient = ({:.6g}, {:.6g}, {:.6g}, {:.6g})\n"
+        " uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n}}\n",
+        is_flat(light) ? "DiskLight" : "SphereLight", number + 1, tuple(color), (is_flat(light) ? 1 : 4) * strongest,
+        light.radius_m > 0 ? light.radius_m : 0.01, light.position_m.x, light.position_m.y, light.position_m.z, turn.w,
+        turn.x, turn.y, turn.z);
 }
 
 }  // namespace

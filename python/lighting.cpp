@@ -15,13 +15,16 @@ glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}
 
 void bind_lamps(py::module_& m) {
     py::class_<Light>(m, "Light", "A lamp: radiance at distance r is intensity / r^2.")
-        .def(py::init([](std::array<double, 3> position, std::array<double, 3> intensity, double radius) {
-                 return Light{to_vector(position), to_vector(intensity), radius};
+        .def(py::init([](std::array<double, 3> position, std::array<double, 3> intensity, double radius,
+                         std::array<double, 3> axis) {
+                 return Light{to_vector(position), to_vector(intensity), radius, to_vector(axis)};
              }),
-             py::arg("position"), py::arg("intensity"), py::arg("radius") = 0.0)
+             py::arg("position"), py::arg("intensity"), py::arg("radius") = 0.0,
+             py::arg("axis") = std::array<double, 3>{})
         .def_property_readonly("position", [](const Light& light) { return to_tuple(light.position_m); })
         .def_property_readonly("intensity", [](const Light& light) { return to_tuple(light.intensity); })
-        .def_readonly("radius", &Light::radius_m);
+        .def_readonly("radius", &Light::radius_m)
+        .def_property_readonly("axis", [](const Light& light) { return to_tuple(light.axis); });
     py::class_<Lighting>(m, "Lighting", "What lights a room: lamps, and light that arrives everywhere alike.")
         .def(py::init([](std::vector<Light> lights, std::array<double, 3> ambient) {
                  return Lighting{std::move(lights), to_vector(ambient), "given"};

@@ -32,4 +32,11 @@ Intrinsics read_camera(const JsonValue& camera) {
     return intrinsics;
 }
 
+glm::dvec3 read_direction(const JsonValue& value) {
+    const std::vector<double> numbers = value.numbers(3);
+    const glm::dvec3 direction(numbers[0], numbers[1], numbers[2]);
+    if (!(glm::length(direction) > 0)) throw Error(value.where(), " is [0, 0, 0], which is no direction");
+    return direction;
+}
+
 }  // namespace patina::sensor

@@ -17,13 +17,6 @@ RigidTransform read_transform(const JsonValue& value) {
     return checked_pose(matrix_from_rows(value.numbers(16)), value.where()).transform;
 }
 
-glm::dvec3 read_direction(const JsonValue& value) {
-    const std::vector<double> numbers = value.numbers(3);
-    const glm::dvec3 direction(numbers[0], numbers[1], numbers[2]);
-    if (!(glm::length(direction) > 0)) throw Error(value.where(), " is [0, 0, 0], which is no direction");
-    return direction;
-}
-
 void expect_format(const JsonValue& root) {
     const std::string format = root.at("format").string();
     if (format != "patina-sequence") {

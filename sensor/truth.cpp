@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "sensor/camera_json.h"
 #include "sensor/files/json_file.h"
 #include "sensor/files/text_file.h"
 
@@ -60,6 +61,7 @@ void write_lights(const std::filesystem::path& file, std::span<const Light> ligh
     for (const Light& light : lights) {
         Json entry{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
         if (light.radius_m > 0) entry["radius"] = light.radius_m;
+        if (is_flat(light)) entry["axis"] = to_json(light.axis);
         list.push_back(std::move(entry));
     }
     Json all{{"lights", list}};
@@ -85,9 +87,10 @@ std::vector<Light> read_lights(const std::filesystem::path& file) {
         throw Error(file.string(), ": lights has ", elements.size(), " elements, at most ", kMostLights, " are read");
     std::vector<Light> lights;
     for (const JsonValue& light : elements) {
-        const auto radius = light.find("radius");
+        const auto radius = light.find("radius"), axis = light.find("axis");
         lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity")),
-                          radius ? radius->not_negative() : 0});
+                          radius ? radius->not_negative() : 0,
+                          axis ? glm::normalize(read_direction(*axis)) : glm::dvec3(0)});
     }
     return lights;
 }

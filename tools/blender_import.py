@@ -102,7 +102,14 @@ def is_bulb_of(lamp, mesh_object):
 def set_lamps(things, candela_per_intensity):
     for lamp in [thing for thing in things if thing.type == "LIGHT"]:
         lamp.data.energy /= candela_per_intensity
-        lamp.data.shadow_soft_size = lamp.data.get("radius_m", POINT_LAMP_RADIUS_M)
+        radius_m = lamp.data.get("radius_m", POINT_LAMP_RADIUS_M)
+        if lamp.data.type == "SPOT":  # flat: exactly a disc of Blender, of the same intensity along its axis
+            lamp.data.type = "AREA"
+            lamp.data.shape = "DISK"
+            lamp.data.size = 2 * radius_m
+            lamp.data.energy /= 4
+            continue
+        lamp.data.shadow_soft_size = radius_m
         for bulb in [thing for thing in things if thing.type == "MESH" and is_bulb_of(lamp, thing)]:
             bulb.visible_shadow = False
 

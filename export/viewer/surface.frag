@@ -12,7 +12,7 @@ uniform sampler2D page;
 uniform highp sampler2D materials;
 uniform bool has_page;
 uniform int mode, light_count;
-uniform vec3 light_m[64], light_intensity[64];
+uniform vec3 light_m[64], light_intensity[64], light_axis[64];  // axis: of a flat lamp, else 0
 uniform vec3 ambient, eye_m;
 uniform float exposure;
 
@@ -32,8 +32,11 @@ vec3 shaded(vec3 kd, vec3 ks, float alpha) {
     // An interpolated normal may turn away from a viewer who sees the triangle: it is brought to where it is seen.
     n = normalize(n + max(0.02 - dot(n, to_viewer), 0.0) * to_viewer);
     vec3 radiance = ambient * kd;
-    for (int i = 0; i < light_count; ++i)
-        radiance += ward_point_light(kd, ks, alpha, n, light_m[i] - world_m, light_intensity[i], to_viewer);
+    for (int i = 0; i < light_count; ++i) {
+        vec3 offset_m = light_m[i] - world_m;
+        float emission = light_axis[i] == vec3(0.0) ? 1.0 : max(-dot(light_axis[i], normalize(offset_m)), 0.0);
+        radiance += ward_point_light(kd, ks, alpha, n, offset_m, emission * light_intensity[i], to_viewer);
+    }
     return radiance;
 }
 

@@ -202,6 +202,7 @@ function drawSurface(shown, eye, clip) {
     gl.uniform1i(surface.at('light_count'), lights.length);
     if (lights.length) {
         gl.uniform3fv(surface.at('light_m'), lights.flatMap((l) => l.position));
+        gl.uniform3fv(surface.at('light_axis'), lights.flatMap((l) => l.axis));
         gl.uniform3fv(surface.at('light_intensity'), lights.flatMap((l, i) => l.intensity.map((v) => v * light.lamps[i])));
     }
     gl.uniform1i(surface.at('page'), 0);

@@ -170,7 +170,9 @@ Json scene_json(const SceneParts& scene) {
     for (const PartMaterial& material : scene.materials) json["materials"].push_back(material_json(material));
     json["lights"] = Json::array();
     for (const Light& light : scene.lights)
-        json["lights"].push_back({{"position", list_of(light.position_m)}, {"intensity", list_of(light.intensity)}});
+        json["lights"].push_back({{"position", list_of(light.position_m)},
+                                  {"intensity", list_of(light.intensity)},
+                                  {"axis", list_of(light.axis)}});
     json["start"] = start_json(scene);
     return json;
 }

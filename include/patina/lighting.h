@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,14 +9,34 @@
 
 namespace patina {
 
-/// A lamp: the radiance that arrives at distance r is intensity / r^2, in the sequence's linear pixel values.
+/// A lamp: the radiance that arrives at distance r is intensity / r^2, in the sequence's linear pixel values. A lamp
+/// with an axis is flat, as a panel in a ceiling: its intensity falls with the cosine of the angle to the axis
+/// (Lambert), and nothing goes behind it.
 struct Light {
     glm::dvec3 position_m{0};  ///< world
-    glm::dvec3 intensity{0};   ///< RGB, linear pixel value * m^2
+    glm::dvec3 intensity{0};   ///< RGB, linear pixel value * m^2; along the axis if there is one
     double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for; 0: a point, or unknown
+    glm::dvec3 axis{0};        ///< unit length, to where it shines; 0: it shines alike in all directions
 
     bool operator==(const Light&) const = default;
 };
+
+inline bool is_flat(const Light& light) { return light.axis != glm::dvec3(0); }
+
+/// What a lamp sends towards a point of the world; a flat one nothing to one that it stands in.
+inline glm::dvec3 intensity_towards(const Light& light, glm::dvec3 point_m) {
+    if (!is_flat(light)) return light.intensity;
+    const glm::dvec3 way_m = point_m - light.position_m;
+    const double distance_m = glm::length(way_m);
+    return distance_m > 0 ? light.intensity * (std::max(glm::dot(light.axis, way_m), 0.0) / distance_m) : glm::dvec3(0);
+}
+
+/// A lamp in another world.
+inline Light moved(Light light, const glm::dmat4& to_from) {
+    light.position_m = glm::dvec3(to_from * glm::dvec4(light.position_m, 1));
+    if (is_flat(light)) light.axis = glm::normalize(glm::dmat3(to_from) * light.axis);
+    return light;
+}
 
 /// From this far from the origin on a lamp is a sun: its place tells a direction. Recordings that begin farther than 1
 /// km away are moved to the origin, so that their lamps are none. In a reconstruction whose surfaces light each other a
@@ -35,7 +56,7 @@ struct Lighting {
 };
 
 /// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or
-/// no finite number, or an intensity or a radius is below 0.
+/// no finite number, an intensity or a radius is below 0, or an axis is 0 0 0.
 Lighting read_lighting(const std::filesystem::path& file);
 
 /// Writes lights.json of the sequence format. Throws Error when the file cannot be written.

@@ -1,6 +1,7 @@
 #include "passes/state/lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "engine/core/error.h"
@@ -10,17 +11,19 @@ namespace patina {
 
 namespace {
 
+constexpr float kAxisError = 1e-3f;  // of its length
+
 bool finite(glm::vec3 v) { return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v)); }
 bool a_power(glm::vec3 v) { return finite(v) && glm::all(glm::greaterThanEqual(v, glm::vec3(0))); }
 
 bool is_sound(const gpu::PointLight& light) {
     return finite(glm::vec3(light.position_m)) && a_power(glm::vec3(light.intensity)) &&
-           a_power(glm::vec3(light.position_m.w));
+           a_power(glm::vec3(light.position_m.w)) && std::abs(glm::length(light.axis) - 1) < kAxisError;
 }
 
 bool same_place(const gpu::PointLight& a, const gpu::PointLight& b) { return a.position_m == b.position_m; }
 bool same_light(const gpu::PointLight& a, const gpu::PointLight& b) {
-    return same_place(a, b) && a.intensity == b.intensity;
+    return same_place(a, b) && a.intensity == b.intensity && a.axis == b.axis;
 }
 
 }  // namespace
@@ -36,7 +39,8 @@ void Lights::set(std::span<const Light> lights, glm::dvec3 ambient_term) {
         now.push_back(make_point_light(light));
         if (!is_sound(now.back())) {
             throw Error("light ", now.size() - 1,
-                        " has a position, an intensity or a radius that is negative or not finite");
+                        " has a position, an intensity or a radius that is negative or not finite, or an axis whose "
+                        "length is not 1");
         }
     }
     const bool same_places = std::ranges::equal(now, lights_, same_place);

@@ -57,7 +57,7 @@ FittedLights summarise(const LitSurface& surface, std::span<const TrialLamp> lam
     const double scale = brightest_albedo(channels) / double{settings.white_albedo};
     FittedLights fitted;
     for (size_t l = 0; l < lamps.size(); ++l) {
-        Light lamp{.position_m = glm::dvec3(lamps[l].place_m)};
+        Light lamp{.position_m = glm::dvec3(lamps[l].place_m), .axis = glm::dvec3(lamps[l].axis)};
         for (int c = 0; c < 3; ++c) lamp.intensity[c] = scale * channels[c].intensities[l];
         fitted.lamps.push_back({rounded_to_float(lamp), measure_highlights(surface, lamps, l)});
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace patina {
 namespace {
@@ -10,6 +11,7 @@ constexpr uint32_t kCoarsePlaces = 1024;  // of the samples, from which new lamp
 constexpr uint32_t kCoarseSteps = 3, kFineSteps = 4;
 constexpr double kMostPlaces = 1500;                                              // that a new lamp may have
 constexpr float kMarginShare = 0.35f, kLeastMarginM = 0.5f, kMostMarginM = 2.5f;  // around what was seen
+constexpr float kTurnByMove = 1.5f;  // radians of a lamp's axis by metres of its place
 constexpr float kFirstMoveM = 0.3f, kLastMoveM = 0.03f, kShorter = 0.6f;
 constexpr double kFewHighlights = 200;  // they count half
 constexpr double kLeastLight = 0.01;    // of the mean irradiance
@@ -51,6 +53,15 @@ std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const 
     return places;
 }
 
+bool is_flat(const TrialLamp& lamp) { return lamp.axis != glm::vec3(0); }
+
+glm::vec3 middle_of(const LitSurface& surface) {
+    glm::vec3 middle_m(0);
+    for (const gpu::LightSample& sample : surface.samples())
+        middle_m += glm::vec3(sample.point_m) / static_cast<float>(surface.size());
+    return middle_m;
+}
+
 class Search {
   public:
     Search(const LitSurface& surface, const TryLamps& try_lamps, std::span<const glm::vec3> seen_m,
@@ -59,19 +70,22 @@ class Search {
 
     std::vector<TrialLamp> run() {
         const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m_), kCoarsePlaces);
-        double best = cost(lamps_);
+        std::vector<std::vector<TrialLamp>> best{lamps_};  // of each number of lamps
+        double least = handicapped(lamps_);
+        const double least_gain = std::min(settings_.least_gain, settings_.expected_gain);
         while (lamps_.size() < settings_.most_lamps) {
-            const std::vector<TrialLamp> before = lamps_;
-            lamps_.push_back(best_addition(places));
-            const double now = move_all();
+            const double now = add_one(places);
             // Two more lamps may help where neither does alone: what a lamp must be worth in the end is asked later.
-            if (now > (1 - 0.5 * std::min(settings_.least_gain, settings_.expected_gain)) * best) {
-                lamps_ = before;
-                break;
-            }
-            best = now;
+            if (now > (1 - 0.5 * least_gain) * least) break;
+            best.push_back(lamps_);
+            least = now;
         }
-        while (remove_one()) move_all();
+        while (best.size() > 1 && cost(best.back()) > (1 - least_gain) * cost(best.end()[-2])) best.pop_back();
+        lamps_ = best.back();
+        while (remove_one()) {
+            const double moved = move_all();
+            if (handicapped(best[lamps_.size()]) < moved) lamps_ = best[lamps_.size()];
+        }
         return lamps_;
     }
 
@@ -87,60 +101,115 @@ class Search {
         return kLeastCost + fitted.misfit + share * unexplained_highlights(surface_, lamps, fitted.intensities);
     }
 
-    TrialLamp best_addition(const std::vector<TrialLamp>& places) const {
+    /// The cost, and what flat lamps must be worth more than others.
+    double handicapped(std::span<const TrialLamp> lamps) const {
+        return handicapped(lamps, kFineSteps, surface_.size());
+    }
+    double handicapped(std::span<const TrialLamp> lamps, uint32_t steps, size_t count) const {
+        const auto flat = std::ranges::count_if(lamps, [](const TrialLamp& lamp) { return is_flat(lamp); });
+        return cost(lamps, steps, count) / std::pow(1 - double{settings_.flat_gain}, static_cast<double>(flat));
+    }
+
+    /// Adds the lamp that helps most once all are moved, begun as one that shines all around and as a flat one: each
+    /// may stay near a place where the other would be better. Returns the cost.
+    double add_one(const std::vector<TrialLamp>& places) {
+        const std::vector<TrialLamp> before = lamps_;
+        lamps_.push_back(best_addition(places, false));
+        const double all_around = move_all();
+        std::vector<TrialLamp> first = std::exchange(lamps_, before);
+        lamps_.push_back(best_addition(places, true));
+        const double flat = move_all();
+        if (flat < all_around) return flat;
+        lamps_ = std::move(first);
+        return all_around;
+    }
+
+    /// `flat`: among flat lamps that face the middle of the surface, else among those that shine all around.
+    TrialLamp best_addition(const std::vector<TrialLamp>& places, bool flat) const {
         const size_t count = surface_.samples_before(kCoarsePlaces);
         std::vector<TrialLamp> trial = lamps_;
         trial.emplace_back();
-        const TrialLamp* best = &places.front();
+        const glm::vec3 middle_m = middle_of(surface_);
+        TrialLamp best = places.front();
         double least = 1e9;
+        const auto consider = [&](const TrialLamp& lamp) {
+            trial.back() = lamp;
+            const double value = handicapped(trial, kCoarseSteps, count);
+            if (value < least) best = lamp, least = value;
+        };
         for (const TrialLamp& place : places) {
-            trial.back() = place;
-            const double value = cost(trial, kCoarseSteps, count);
-            if (value < least) best = &place, least = value;
+            if (!flat)
+                consider(place);
+            else if (place.place_m != middle_m)
+                consider(as_flat(surface_, place, glm::normalize(middle_m - place.place_m)));
         }
-        return try_(std::span(&best->place_m, 1), gpu::kLightSamples).front();
+        const TrialLamp all_around = try_(std::span(&best.place_m, 1), gpu::kLightSamples).front();
+        return is_flat(best) ? as_flat(surface_, all_around, best.axis) : all_around;
     }
 
-    /// Moves each lamp in turn to the best of the places around it, by ever shorter moves. Returns the cost.
+    /// Moves each lamp in turn to the best of the places around it, and turns it, by ever shorter moves. Returns the
+    /// cost.
     double move_all() {
         const std::vector<glm::vec3> around = directions();
-        double now = cost(lamps_);
+        double now = handicapped(lamps_);
         for (float move_m = kFirstMoveM; move_m > kLastMoveM;) {
             std::vector<glm::vec3> places_m;
-            for (const TrialLamp& lamp : lamps_)
+            for (const TrialLamp& lamp : lamps_) {
+                places_m.push_back(lamp.place_m);
                 for (const glm::vec3& direction : around) places_m.push_back(lamp.place_m + move_m * direction);
-            const std::vector<TrialLamp> tried = try_(places_m, gpu::kLightSamples);
-            const double before = now;
-            for (size_t l = 0; l < lamps_.size(); ++l) {
-                std::vector<TrialLamp> trial = lamps_;
-                for (size_t d = 0; d < around.size(); ++d) {
-                    trial[l] = tried[l * around.size() + d];
-                    const double value = cost(trial);
-                    if (value < now) lamps_[l] = trial[l], now = value;
-                }
             }
+            const std::vector<TrialLamp> tried = try_(places_m, gpu::kLightSamples);
+            const size_t each = around.size() + 1;
+            const double before = now;
+            for (size_t l = 0; l < lamps_.size(); ++l)
+                move(l, std::span(tried).subspan(l * each, each), kTurnByMove * move_m, now);
             if (now > kWorthwhile * before) move_m *= kShorter;
         }
         return now;
     }
 
-    /// By how much the cost without a lamp exceeds what makes it worth having; `now` is the cost with it.
-    double worth(size_t lamp, double now) const {
-        std::vector<TrialLamp> without = lamps_;
-        without.erase(without.begin() + static_cast<ptrdiff_t>(lamp));
-        const bool expected =
-            std::ranges::any_of(seen_m_, [&](glm::vec3 m) { return is_same_place(surface_, lamps_[lamp].place_m, m); });
-        return (1 - double{expected ? settings_.expected_gain : settings_.least_gain}) * cost(without) - now;
+    /// The best of these places for a lamp, whose own is the first one; there the best of axes near its own, or none,
+    /// if it is flat.
+    void move(size_t lamp, std::span<const TrialLamp> places, float turn, double& now) {
+        std::vector<TrialLamp> trial = lamps_;
+        const auto is_better = [&](TrialLamp changed) {
+            trial[lamp] = std::move(changed);
+            const double value = handicapped(trial);
+            if (!(value < now)) return false;
+            lamps_[lamp] = trial[lamp];
+            now = value;
+            return true;
+        };
+        const TrialLamp* at = &places.front();
+        for (const TrialLamp& place : places.subspan(1))
+            if (is_better(is_flat(lamps_[lamp]) ? as_flat(surface_, place, lamps_[lamp].axis) : place)) at = &place;
+        if (!is_flat(lamps_[lamp])) return;
+        const glm::vec3 axis = lamps_[lamp].axis;
+        for (const glm::vec3& direction : directions())
+            is_better(as_flat(surface_, *at, glm::normalize(axis + turn * direction)));
+        is_better(*at);
     }
 
-    /// Leaves out the lamp that matters least, if it matters too little.
+    /// Whether the cost without a lamp exceeds `now`, the cost with it, by enough.
+    bool is_worthwhile(const TrialLamp& lamp, double without, double now) const {
+        const bool expected =
+            std::ranges::any_of(seen_m_, [&](glm::vec3 m) { return is_same_place(surface_, lamp.place_m, m); });
+        return now < (1 - double{expected ? settings_.expected_gain : settings_.least_gain}) * without;
+    }
+
+    /// Leaves out a lamp that matters too little: of these the one without which the others explain most.
     bool remove_one() {
         const double now = cost(lamps_);
-        std::vector<double> worths;
-        for (size_t l = 0; l < lamps_.size(); ++l) worths.push_back(worth(l, now));
-        const auto least = std::ranges::min_element(worths);
-        if (least == worths.end() || *least > 0) return false;
-        lamps_.erase(lamps_.begin() + (least - worths.begin()));
+        size_t least = lamps_.size();
+        double least_cost = 1e9;
+        for (size_t l = 0; l < lamps_.size(); ++l) {
+            std::vector<TrialLamp> others = lamps_;
+            others.erase(others.begin() + static_cast<ptrdiff_t>(l));
+            const double without = cost(others);
+            if (without < least_cost && !is_worthwhile(lamps_[l], without, now)) least = l, least_cost = without;
+        }
+        if (least == lamps_.size()) return false;
+        lamps_.erase(lamps_.begin() + static_cast<ptrdiff_t>(least));
         return true;
     }
 
@@ -155,10 +224,27 @@ class Search {
 }  // namespace
 
 bool is_same_place(const LitSurface& surface, glm::vec3 a_m, glm::vec3 b_m) {
-    glm::vec3 middle_m(0);
-    for (const gpu::LightSample& sample : surface.samples())
-        middle_m += glm::vec3(sample.point_m) / static_cast<float>(surface.size());
+    const glm::vec3 middle_m = middle_of(surface);
     return glm::distance(a_m, b_m) < kSamePlace * glm::distance(a_m, middle_m);
+}
+
+TrialLamp as_flat(const LitSurface& surface, const TrialLamp& all_around, glm::vec3 axis) {
+    const auto emission = [&](const gpu::LightSample& sample) {
+        const glm::vec3 way_m = glm::vec3(sample.point_m) - all_around.place_m;
+        return std::max(glm::dot(axis, way_m), 0.0f) / std::max(glm::length(way_m), 1e-6f);
+    };
+    TrialLamp flat = all_around;
+    flat.axis = axis;
+    auto light = std::make_shared<ReceivedLightValues>();
+    light->by_sample.reserve(surface.size());
+    for (size_t i = 0; i < surface.size(); ++i) {
+        light->by_sample.push_back(all_around.received->by_sample[i] * emission(surface.samples()[i]));
+        light->mean += light->by_sample.back() / static_cast<double>(surface.size());
+    }
+    flat.received = std::move(light);
+    for (size_t k = 0; k < flat.unexplained.size(); ++k)
+        if (emission(surface.highlights()[k]) <= 0) flat.unexplained[k] = 1;
+    return flat;
 }
 
 double unexplained_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps,

@@ -67,25 +67,29 @@ glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {
 std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                                      std::span<const Light> lights) {
     static_assert(gpu::kMaxPointLights <= gpu::kTrialLights, "all lights are tried at once");
-    std::vector<glm::vec3> places_m, directions, of_lamps, of_suns;
+    std::vector<glm::vec3> places_m, directions, of_suns;
+    std::vector<Light> lamps;
     for (const Light& light : lights) {
         if (is_sun(light)) {
             directions.emplace_back(glm::normalize(light.position_m));
             of_suns.emplace_back(light.intensity / (glm::dot(light.position_m, light.position_m) * std::numbers::pi));
         } else {
             places_m.emplace_back(light.position_m);
-            of_lamps.emplace_back(light.intensity);
+            lamps.push_back(light);
         }
     }
     std::vector<glm::vec3> received(gpu::kLightSamples, glm::vec3(0));
-    const auto add = [&](const std::vector<float>& tried, std::span<const glm::vec3> intensities) {
-        for (size_t l = 0; l < intensities.size(); ++l)
+    const auto add = [&](const std::vector<float>& tried, size_t count, const auto& intensity) {
+        for (size_t l = 0; l < count; ++l)
             for (size_t i = 0; i < gpu::kLightSamples; ++i)
-                received[i] += tried[l * gpu::kLightSamples + i] * intensities[l];
+                received[i] += tried[l * gpu::kLightSamples + i] * intensity(l, glm::dvec3(samples[i].point_m));
     };
-    if (!places_m.empty()) add(try_lamps(pipeline, samples, places_m), of_lamps);
+    if (!places_m.empty())
+        add(try_lamps(pipeline, samples, places_m), lamps.size(),
+            [&](size_t lamp, glm::dvec3 point_m) { return glm::vec3(intensity_towards(lamps[lamp], point_m)); });
     if (!directions.empty())
-        add(try_suns(pipeline, samples, directions, gpu::kLightSamples, ball_around(samples)), of_suns);
+        add(try_suns(pipeline, samples, directions, gpu::kLightSamples, ball_around(samples)), of_suns.size(),
+            [&](size_t sun, glm::dvec3 /*point_m*/) { return of_suns[sun]; });
     return received;
 }
 

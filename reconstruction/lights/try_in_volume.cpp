@@ -17,24 +17,30 @@ std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& hig
 }  // namespace
 
 TryLampsInVolume::TryLampsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
-                                   const LitSurface& surface)
-    : pipeline_(pipeline), drawn_(drawn), surface_(surface), highlights_(in_groups(surface.highlights())) {}
+                                   const LitSurface& surface, const RuledOutPlaces* ruled_out)
+    : pipeline_(pipeline),
+      drawn_(drawn),
+      surface_(surface),
+      ruled_out_(ruled_out),
+      highlights_(in_groups(surface.highlights())) {}
 
 std::vector<TrialLamp> TryLampsInVolume::operator()(std::span<const glm::vec3> places_m, uint32_t count) const {
     std::vector<TrialLamp> lamps;
     while (!places_m.empty()) {
         const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
         places_m = places_m.subspan(batch.size());
-        const std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
+        const std::vector<bool> without = ruled_out_ ? (*ruled_out_)(batch) : std::vector<bool>(batch.size());
+        std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
         const std::vector<float> reached =
             highlights_.empty() ? std::vector<float>()
                                 : try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
         for (size_t i = 0; i < batch.size(); ++i) {
-            const std::span<const float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
+            const std::span<float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
+            if (without[i]) std::ranges::fill(row, 0.0f);
             lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
             TrialLamp& lamp = lamps.back();
             for (size_t k = 0; k < lamp.unexplained.size(); ++k)
-                if (reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
+                if (without[i] || reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
         }
     }
     return lamps;

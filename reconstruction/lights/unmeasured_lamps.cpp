@@ -106,7 +106,8 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
         search_lights(surface, try_lamps, before_m,
                       {.most_lamps = most_added, .highlight_share = 0, .expected_gain = kExpectedGain}, given);
     for (const TrialLamp& lamp : found) result.places_m.push_back(lamp.place_m);
-    const std::vector<TrialLamp> believed = found_again(found, before_m, surface);
+    const bool knows_enough = sureness(unknown) == 1;
+    const std::vector<TrialLamp> believed = knows_enough ? found : found_again(found, before_m, surface);
     std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
     for (const TrialLamp& lamp : believed) lamps.push_back(lamp.received);
     if (lamps.empty()) return result;
@@ -138,8 +139,9 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     }
     for (size_t l = 0; l < clipped.size(); ++l) result.clipped.emplace_back(intensities[l]);
     for (size_t l = 0; l < believed.size(); ++l)
-        result.added.push_back(
-            {.position_m = glm::dvec3(believed[l].place_m), .intensity = intensities[clipped.size() + l]});
+        result.added.push_back({.position_m = glm::dvec3(believed[l].place_m),
+                                .intensity = intensities[clipped.size() + l],
+                                .axis = glm::dvec3(believed[l].axis)});
     return result;
 }
 
@@ -167,14 +169,15 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     if (mean_of(together) > 0) measured.tint = together / mean_of(together);
 
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
-    const TryLampsInVolume try_lamps(pipeline, drawn, surface);
+    const RuledOutPlaces ruled_out(pipeline, pipeline.reflectance()->low_exposure_cameras());
+    const TryLampsInVolume try_known(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);
     std::vector<glm::vec3> places_m;
     for (const Light& lamp : clipped) places_m.emplace_back(lamp.position_m);
     std::vector<ReceivedLight> of_clipped;
-    for (const TrialLamp& lamp : try_lamps(places_m, gpu::kLightSamples)) of_clipped.push_back(lamp.received);
+    for (const TrialLamp& lamp : try_known(places_m, gpu::kLightSamples)) of_clipped.push_back(lamp.received);
     const auto room =
         static_cast<uint32_t>(gpu::kMaxPointLights - std::min<size_t>(lamps.size(), gpu::kMaxPointLights));
-    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, of_clipped, before_m, try_lamps,
+    const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, of_clipped, before_m, try_unseen,
                                                       std::min(room, LightSearchSettings().most_lamps));
     all.places_m.insert(all.places_m.end(), told.places_m.begin(), told.places_m.end());
     size_t next = 0;

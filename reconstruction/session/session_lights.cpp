@@ -164,6 +164,7 @@ nlohmann::ordered_json lights_json(const Illumination& illumination) {
         nlohmann::ordered_json lamp{{"position_m", to_json(world_position_m(illumination, light))},
                                     {"intensity", to_json(light.intensity)}};
         if (is_sun(light)) lamp["sun"] = true;
+        if (is_flat(light)) lamp["axis"] = to_json(light.axis);
         if (found) {
             lamp["radius_m"] = light.radius_m;
             lamp["spread_m"] = evidence.spread_m;

@@ -131,6 +131,7 @@ void ReflectanceStage::add_low_exposure(graph::FrameGraph& graph, const Surround
     ReflectanceStateIds state;
     state.surroundings = state_.import_surroundings(graph);
     add_collect_surroundings(graph, state, frame);
+    low_exposure_cameras_.push_back(frame.color_camera);
     graph.keep(state.surroundings);
 }
 
@@ -317,6 +318,7 @@ void ReflectanceStage::visit(graph::StateVisitor& visitor) {
     state_.visit(visitor);
     away_.visit(visitor);
     visitor.value("reflectance.any_left", any_left_);
+    visitor.values("reflectance.low_exposure_cameras", low_exposure_cameras_);
     visitor.value("reflectance.shared", shared_);
     visitor.value("reflectance.reclaim_at", reclaim_at_);
     visitor.value("reflectance.reclaim_turn", reclaim_turn_);

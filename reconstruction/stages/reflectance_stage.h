@@ -109,6 +109,9 @@ class ReflectanceStage {
     /// is the recording's exposure over the frame's. It is in the world of the frames.
     void add_low_exposure(graph::FrameGraph& graph, const SurroundingsInputs& frame);
 
+    /// The colour cameras of the frames of low exposure.
+    const std::vector<gpu::Camera>& low_exposure_cameras() const { return low_exposure_cameras_; }
+
     /// Collects a frame's observations and refines what they change. Returns the records that they changed.
     RecordList add(graph::FrameGraph& graph, const VoxelMapIds& voxels, const ObservationInputs& inputs,
                    const FrameContext& frame);
@@ -206,6 +209,7 @@ class ReflectanceStage {
     Lights lights_;
     SegmentMaterials materials_;
     ReflectanceState state_;
+    std::vector<gpu::Camera> low_exposure_cameras_;
     AwayAlbedo away_;
     bool any_left_ = false;    ///< records, since the map was reset
     uint64_t reclaim_at_ = 0;  ///< the frame from which on that is due

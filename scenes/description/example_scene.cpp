@@ -141,6 +141,7 @@ void draw_lamps(Draws draws, const ExampleShape& shape, ExampleScene& result) {
         const double strength = draws.factor(2);
         total += strength;
         result.lamps[i].position_m = glm::vec4(glm::vec3(distance_m * glm::normalize(away)), 0);
+        result.lamps[i].axis = glm::vec4(0, 0, 0, 1);
         result.lamps[i].intensity = glm::vec4(glm::vec3(strength * distance_m * distance_m * lamp_tint(draws)), 0);
     }
     if (result.scene.windows > 0) return;

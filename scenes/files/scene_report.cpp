@@ -32,6 +32,7 @@ std::string objects_line(const SyntheticScene& scene) {
 std::string light_line(const Light& light) {
     return text(
         "intensity ", triple(light.intensity, 3), " at ", triple(light.position_m, 3), " m, ",
+        is_flat(light) ? text("flat, along ", triple(light.axis, 3), ", ") : "",
         light.radius_m > 0 ? text("radius ", sensor::fixed(light.radius_m, 3), " m") : "a point that no camera sees");
 }
 

@@ -117,6 +117,6 @@ void main() {
     const float spread_m = median(has_depth ? distance(s.center_radius.xyz, position_m) : miss_m, count);
     if (lane != 0u) return;
     const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0) && is_image == 0u;
-    found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0)), spread_m,
-                              found_one ? track.sightings : 0u, track.has_depth, track.clipped);
+    found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0), vec4(0.0, 0.0, 0.0, 1.0)),
+                              spread_m, found_one ? track.sightings : 0u, track.has_depth, track.clipped);
 }

@@ -7,6 +7,7 @@
 // One invocation per record; lights in the outer loop, so that what a light and a surface have in common is computed
 // once, and observations unrolled in the inner one.
 #include "lib/brdf/ward.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "lib/map/voxel_chunks.glsl"
 #include "lib/math/mean.glsl"
 #include "lib/math/pi.glsl"
@@ -85,7 +86,7 @@ Irradiance add_lights(Irradiance irradiance, uint count, vec3 point_m, vec3 norm
         const float distance2 = max(dot(offset_m, offset_m), 1e-6);
         const vec3 to_light = offset_m * inversesqrt(distance2);
         const float cosine = max(dot(normal, to_light), 0.0);
-        const vec3 facing = lights[i].intensity.rgb / distance2;
+        const vec3 facing = intensity_from(lights[i], to_light) / distance2;
         const vec3 received = facing * (cosine / kPi);
         const bool lit = bit_is_set(reached, i);
         irradiance.sum += lit ? received : vec3(0.0);

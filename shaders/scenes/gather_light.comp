@@ -6,6 +6,7 @@
 #define BUNDLE_RAYS 1u
 #include "lib/brdf/ward.glsl"
 #include "lib/camera/camera.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "lib/math/pi.glsl"
 #include "lib/math/random.glsl"
 #include "lib/math/sampling.glsl"
@@ -90,7 +91,7 @@ Way way_to_lamp(Vertex v, PointLight lamp, vec2 u) {
     const float across2 = distance2 * dot(local.xy, local.xy);
     const float reach_m = max(sqrt(distance2) * local.z - sqrt(max(radius2 - across2, 0.0)), 0.0);
     // Radiance times solid angle: I / (pi r^2) * 2 pi cap_height, without the division by r.
-    const vec3 irradiance = lamp.intensity.rgb * (2.0 / ((2.0 - cap_height) * max(distance2, radius2)));
+    const vec3 irradiance = intensity_from(lamp, to_light) * (2.0 / ((2.0 - cap_height) * max(distance2, radius2)));
     return Way(v.surface.point_m + reach_m * to_light, reflected(v, to_light) * irradiance);
 }
 

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/brdf/ward.glsl"
 #include "lib/camera/camera.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "scenes/scene.glsl"
 #include "shared/scenes/trace_scene.h"
 
@@ -46,9 +47,10 @@ void add_light(PointLight light, Seen seen[kBundleRays], inout vec3 sums[kBundle
     }
     if (kShadows != 0u) find_occluded(rays, blocked);
     EACH_RAY {
+        const vec3 offset_m = light.position_m.xyz - seen[k].point_m;
         const vec3 reflected =
-            ward_point_light(seen[k].kd, seen[k].ks_alpha.rgb, seen[k].ks_alpha.a, seen[k].normal,
-                             light.position_m.xyz - seen[k].point_m, light.intensity.rgb, seen[k].to_viewer);
+            ward_point_light(seen[k].kd, seen[k].ks_alpha.rgb, seen[k].ks_alpha.a, seen[k].normal, offset_m,
+                             intensity_from(light, normalize(offset_m)), seen[k].to_viewer);
         sums[k] += blocked[k] ? vec3(0.0) : reflected;
     }
 }

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera/camera.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "scenes/surface.glsl"
 #include "shared/scenes/trace_scene.h"
 
@@ -29,7 +30,7 @@ void store(ivec2 pixel, Ray ray, Hit hit, uint lamp, Surface surface) {
     vec3 facing = surface.normal, emitted = vec3(0.0);
     if (lamp != kNothingHit) {
         facing = normalize(ray.origin_m + hit.t * ray.direction - lights[lamp].light.position_m.xyz);
-        emitted = lights[lamp].emitted.rgb;
+        emitted = lights[lamp].emitted.rgb * emission_from(lights[lamp].light, normalize(ray.direction));
     }
     imageStore(normal, pixel, seen ? vec4(facing, 0.0) : vec4(0.0));
     imageStore(radiance, pixel, vec4(emitted, seen ? 1.0 : 0.0));

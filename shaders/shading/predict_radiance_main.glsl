@@ -7,6 +7,7 @@
 #include "lib/brdf/ward.glsl"
 #include "lib/camera/camera.glsl"
 #include "lib/camera/view_grid.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "lib/math/mean.glsl"
 #include "lib/math/pi.glsl"
 #include "lib/records/blend_records.glsl"
@@ -181,7 +182,7 @@ void add_lamp(inout LampLight sums, uint i, bool counts, SurfacePoint point, vec
     const float inverse2 = 1.0 / max(dot(offset, offset), 1e-20);
     const vec3 to_light = offset * sqrt(inverse2);
     const float facing = counts ? max(dot(point.normal, to_light), 0.0) * inverse2 : 0.0;
-    const vec3 unshadowed = lights[i].intensity.rgb * facing;
+    const vec3 unshadowed = intensity_from(lights[i], to_light) * facing;
     const float lit = share_lit(i);
     const vec3 received = lit * unshadowed;
     sums.received += received;

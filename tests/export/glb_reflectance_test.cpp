@@ -14,6 +14,7 @@ namespace {
 
 using test::TemporaryFolder;
 using test::wavy_sheet;
+using testing::DoubleNear;
 using testing::ElementsAre;
 
 const GlbInfo kInfo{.version = "1.2.3", .name = "kitchen"};
@@ -309,6 +310,33 @@ TEST(GlbReflectance, LightsAreNodesBelowTheRoot) {
     EXPECT_EQ(scene.model.nodes[3].extensions.at("KHR_lights_punctual").Get("light").GetNumberAsInt(), 1);
     EXPECT_THAT(scene.model.nodes[0].children, ElementsAre(1, 2, 3));
     EXPECT_THAT(scene.model.extensionsUsed, ElementsAre("KHR_lights_punctual"));
+}
+
+TEST(GlbReflectance, AFlatLampIsASpotOfItsPower) {
+    const Mesh mesh = wavy_sheet(2, 2);
+    GlbInfo info = kInfo;
+    info.lights = {{{1, -2, 3}, {2, 4, 1}, 0.05, {0, 1, 0}}, {{1, -2, 3}, {2, 4, 1}, 0, {0, 0, 1}}};
+    info.candela_per_intensity = 25;
+    const Scene scene = written_and_read({{mesh}}, info);
+    ASSERT_EQ(scene.model.lights.size(), 2u);
+    const tinygltf::Light& spot = scene.model.lights[0];
+    EXPECT_EQ(spot.type, "spot");
+    EXPECT_EQ(spot.intensity, 100) << "along the axis";
+    // Of the whole half space, times the squared share of cosines between both cones, as the extension recommends.
+    const double inner = std::cos(spot.spot.innerConeAngle), outer = std::cos(spot.spot.outerConeAngle);
+    double power = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const double share = std::clamp(((i + 0.5) / 1000 - outer) / (inner - outer), 0.0, 1.0);
+        power += share * share / 1000;
+    }
+    EXPECT_NEAR(power, 0.5, 1e-3) << "that of a cosine";
+    // From -z to +y, and to +z.
+    EXPECT_THAT(scene.model.nodes[2].rotation, ElementsAre(DoubleNear(std::sqrt(0.5), 1e-9), DoubleNear(0, 1e-9),
+                                                           DoubleNear(0, 1e-9), DoubleNear(std::sqrt(0.5), 1e-9)));
+    ASSERT_EQ(scene.model.nodes[3].rotation.size(), 4u);
+    const std::vector<double>& q = scene.model.nodes[3].rotation;
+    const glm::dvec3 turned = glm::dquat(q[3], q[0], q[1], q[2]) * glm::dvec3(0, 0, -1);
+    EXPECT_LT(glm::distance(turned, {0, 0, 1}), 1e-9);
 }
 
 TEST(GlbReflectance, RefusesAnAlbedoThatIsNotFinite) {

@@ -188,7 +188,18 @@ TEST(WriteUsdz, HoldsTextAndPages) {
     EXPECT_THAT(text, HasSubstr("doc = \"object \\\"2\\\"\""));
     EXPECT_THAT(text, HasSubstr("rel material:binding = </scene/materials/material_1_page_1>"));
     // The lamp has 600 candela in green.
+    EXPECT_THAT(text, HasSubstr("def SphereLight \"light_1\""));
     EXPECT_THAT(text, HasSubstr("float inputs:intensity = 2400"));
+}
+
+TEST(WriteUsdz, AFlatLampIsADiscThatFacesItsAxis) {
+    Light flat = test::kSmallLamp;
+    flat.axis = {0, 1, 0};  // down
+    const std::string text = usda_text(small_scene(flat), {"page-1.png"});
+    EXPECT_THAT(text, HasSubstr("def DiskLight \"light_1\""));
+    EXPECT_THAT(text, HasSubstr("float inputs:intensity = 600\n"));
+    EXPECT_THAT(text, HasSubstr("quatf xformOp:orient = (0.707107, -0.707107, 0, 0)\n"));
+    EXPECT_THAT(text, HasSubstr("xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]"));
 }
 
 TEST(LightMap, AddsUpToWhatArrives) {
@@ -207,6 +218,11 @@ TEST(LightMap, AddsUpToWhatArrives) {
     EXPECT_GT(map.at(0, 0).g, 0);     // straight up
     EXPECT_GT(map.at(128, 64).g, 0);  // +x
     EXPECT_EQ(map.at(192, 64).g, 0);  // +z
+    scene.lights[0].axis = {0, -0.6, 0.8};
+    scene.lights[1].axis = {1, 0, 0};
+    const Image<glm::vec3> flat = light_map(scene, glm::dvec3(0), extent);
+    EXPECT_NEAR(flat.at(0, 0).g, 0.6f * map.at(0, 0).g, 1e-4f * map.at(0, 0).g);
+    EXPECT_EQ(flat.at(128, 64).g, 0) << "it shines away";
 }
 
 TEST(LightMap, AmbientLightIsEverywhere) {

@@ -15,6 +15,11 @@ TEST(Photometric, AWhiteSurfaceBelowALampGets500Lux) {
     EXPECT_NEAR(candela_per_intensity(lights, patches), 500, 1e-3);
 }
 
+TEST(Photometric, AFlatLampCountsByTheCosineToItsAxis) {
+    const std::vector<Light> slanted{{{0, 2, 0}, glm::dvec3(4), 0, {0, -0.8, 0.6}}};
+    EXPECT_NEAR(candela_per_intensity(slanted, std::vector<Patch>{level_patch({0, 0, 0}, 0.01f)}), 500 / 0.8, 1e-3);
+}
+
 TEST(Photometric, TheMeanIsOverTheAreaOfAllLampsByLuminance) {
     const std::vector<Light> lights{{{0, 1, 0}, {1, 0, 0}, 0}, {{0, 1, 0}, {0, 1, 1}, 0}};
     const std::vector<Patch> lit_and_turned_away{level_patch({0, 0, 0}, 1), level_patch({0, 2, 0}, 3)};

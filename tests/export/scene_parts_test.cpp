@@ -59,6 +59,17 @@ TEST(SceneParts, ReadsBackWhatWasWritten) {
     EXPECT_EQ(scene.candela_per_intensity, test::kCandela);
 }
 
+TEST(SceneParts, AFlatLampReadsBackWithItsAxis) {
+    Light flat = test::kSmallLamp;
+    flat.axis = {0, 0.6, 0.8};
+    const SceneParts scene = test::small_scene(flat);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    expect_near(scene.lights[0].position_m, {0.5, 3, -1}, 1e-9);
+    expect_near(scene.lights[0].axis, {0, -0.6, -0.8}, 1e-9);
+    expect_near(scene.lights[0].intensity, {3, 6, 3}, 1e-9);
+    EXPECT_EQ(test::small_scene().lights.at(0).axis, glm::dvec3(0));
+}
+
 TEST(SceneParts, AlbedoOfThePageIsThatOfTheSegment) {
     const TemporaryFolder folder;
     test::write_small_glb(folder / "scene.glb", kTexel);

@@ -15,11 +15,13 @@ inline Upright lifted() {
 }
 
 inline constexpr double kCandela = 100;
+inline const Light kSmallLamp{{0.5, -2, 1}, {3, 6, 3}, 0.05};
 
 /// Writes a scene.glb of two segments: 1 is a unit square at z = 1 in the corner of a page whose texels are `texel`, of
 /// gloss that was observed; 2 is a triangle at z = 2, of gloss that was not. A normal map of half the page's size. The
-/// world has y down, its floor at y = 1. One lamp at (0.5, -2, 1).
-inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel = glm::vec3(0.25f, 0.5f, 0.125f)) {
+/// world has y down, its floor at y = 1. One lamp.
+inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel = glm::vec3(0.25f, 0.5f, 0.125f),
+                            const Light& light = kSmallLamp) {
     TextureLayout layout{0.002, {{64, 64}}, {}, {{0, {0, 0}, {64, 64}, 1}}};
     TexturedSurface& piece = layout.pieces.emplace_back();
     std::vector<SegmentReflectance>& segments = piece.reflectance.segments;
@@ -49,14 +51,14 @@ inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel =
                    .name = "small",
                    .upright = lifted(),
                    .segment_names = {"", "wall 1", "object \"2\""},
-                   .lights = {{{0.5, -2, 1}, {3, 6, 3}, 0.05}},
+                   .lights = {light},
                    .candela_per_intensity = kCandela});
 }
 
 /// The same, read back.
-inline SceneParts small_scene() {
+inline SceneParts small_scene(const Light& light = kSmallLamp) {
     const TemporaryFolder folder;
-    write_small_glb(folder / "scene.glb");
+    write_small_glb(folder / "scene.glb", glm::vec3(0.25f, 0.5f, 0.125f), light);
     return read_scene_parts(folder / "scene.glb");
 }
 

@@ -108,7 +108,8 @@ TEST(Viewer, SaysWhatIsKnownOfMaterials) {
     const std::string html = viewer_html(small_scene());
     EXPECT_THAT(html, HasSubstr(R"("name":"wall 1","label":1)"));
     EXPECT_THAT(html, HasSubstr(R"("observed":false)"));
-    EXPECT_THAT(html, HasSubstr(R"("lights":[{"position":[0.5,3.0,-1.0],"intensity":[3.0,6.0,3.0]}])"));
+    EXPECT_THAT(html,
+                HasSubstr(R"("lights":[{"position":[0.5,3.0,-1.0],"intensity":[3.0,6.0,3.0],"axis":[0.0,0.0,0.0]}])"));
     EXPECT_THAT(html, HasSubstr("prefers-color-scheme: dark"));
 }
 

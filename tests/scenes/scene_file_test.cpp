@@ -280,6 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SceneFault{"/lights/0/intensity/1", -4, "lights[0].intensity[1] is -4, must be from 0 to"},
                       SceneFault{"/lights/0/radius", -0.1, "lights[0].radius is -0.1, must be from 0 to"},
                       SceneFault{"/lights/0/position", {}, "lights[0].position is missing"},
+                      SceneFault{"/lights/0/axis", {0, 0, 0}, "lights[0].axis is [0,0,0], must not be zero"},
                       SceneFault{"/lights/0/power", 60,
                                  "lights[0].power is 60, an unknown key; known are: position, intensity, radi"},
                       SceneFault{"/environment", {{"file", "no.hdr"}}, "environment.file: "},
@@ -348,7 +349,8 @@ class IncludedScenes : public ::testing::Test {
     json including() {
         json other = small_scene();
         other["name"] = "part";
-        other["lights"] = {{{"position", {0, -2, 1}}, {"intensity", 3}}, {{"position", {0, -2, 2}}, {"intensity", 4}}};
+        other["lights"] = {{{"position", {0, -2, 1}}, {"intensity", 3}},
+                           {{"position", {0, -2, 2}}, {"intensity", 4}, {"axis", {3, 4, 0}}}};
         write_text(folder_ / "other.json", other.dump());
         json scene = small_scene();
         scene["lights"] = {{{"position", {9, 9, 9}}, {"intensity", 1}}};
@@ -385,6 +387,9 @@ TEST_F(IncludedScenes, AreCopiedToTheirPlaces) {
     EXPECT_EQ(scene.lights[0].position_m, glm::dvec3(9));
     EXPECT_LT(glm::distance(scene.lights[2].position_m, glm::dvec3(10, -2, -2)), 1e-12);
     EXPECT_EQ(scene.lights[2].intensity, glm::dvec3(4));
+    EXPECT_EQ(scene.lights[0].axis, glm::dvec3(0));
+    EXPECT_LT(glm::distance(scene.lights[1].axis, glm::dvec3(0.6, 0.8, 0)), 1e-12);
+    EXPECT_LT(glm::distance(scene.lights[2].axis, glm::dvec3(-0.6, 0.8, 0)), 1e-12);
 }
 
 TEST_F(IncludedScenes, WhatTheyDoNotHaveIsNamed) {

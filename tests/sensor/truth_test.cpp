@@ -28,7 +28,7 @@ TEST(Truth, LightsAndMaterialsFollowTheFormat) {
 
 TEST(Truth, WhatIsWrittenReadsBackTheSame) {
     const TemporaryFolder folder;
-    const std::vector<Light> lights{{{1, -2, 3}, {4, 0, 6.5}, 0.05}, {{0.1, 0.2, 0.3}, {1, 1, 1}}};
+    const std::vector<Light> lights{{{1, -2, 3}, {4, 0, 6.5}, 0.05}, {{0.1, 0.2, 0.3}, {1, 1, 1}, 0, {0, 0, -1}}};
     const std::vector<Material> materials{{1, "floor", glm::dvec3(0.1, 0.2, 1), glm::dvec3(0.5), 0.125},
                                           {65535, "wood", std::nullopt, glm::dvec3(0), 1}};
     write_lights(folder / "lights.json", lights);
@@ -39,6 +39,7 @@ TEST(Truth, WhatIsWrittenReadsBackTheSame) {
         EXPECT_EQ(read[i].position_m, lights[i].position_m);
         EXPECT_EQ(read[i].intensity, lights[i].intensity);
         EXPECT_EQ(read[i].radius_m, lights[i].radius_m);
+        EXPECT_EQ(read[i].axis, lights[i].axis);
     }
     EXPECT_EQ(read_ambient(folder / "lights.json"), glm::dvec3(0));
     write_lights(folder / "lights.json", lights, {0.1, 0.2, 0.3});
@@ -53,6 +54,13 @@ TEST(Truth, WhatIsWrittenReadsBackTheSame) {
         EXPECT_EQ(read_back[i].ks, materials[i].ks);
         EXPECT_EQ(read_back[i].alpha, materials[i].alpha);
     }
+}
+
+TEST(Truth, AnAxisIsReadWithUnitLength) {
+    const TemporaryFolder folder;
+    write_text(folder / "l.json",
+               R"({"lights": [{"position": [1, 2, 3], "intensity": [1, 1, 1], "axis": [0, 3, -4]}]})");
+    EXPECT_LT(glm::distance(read_lights(folder / "l.json").at(0).axis, {0, 0.6, -0.8}), 1e-12);
 }
 
 TEST(Truth, SaysWhatIsWrongInLights) {
@@ -73,6 +81,8 @@ TEST(Truth, SaysWhatIsWrongInLights) {
                 EndsWith("lights[0].position[2] is null, must be a number"));
     EXPECT_THAT(complaint(R"({"lights": [{"position": [1, 2, 3], "intensity": [1, -1, 1]}]})"),
                 EndsWith("lights[0].intensity is [1,-1,1], must not be negative"));
+    EXPECT_THAT(complaint(R"({"lights": [{"position": [1, 2, 3], "intensity": [1, 1, 1], "axis": [0, 0, 0]}]})"),
+                EndsWith("lights[0].axis is [0, 0, 0], which is no direction"));
 }
 
 TEST(Truth, SaysWhatIsWrongInMaterials) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reconstruction/lights/search_lights.h"
+#include "tests/reference/lighting/lamp_emission.h"
 #include "tests/reference/lighting/received.h"
 
 namespace patina {
@@ -14,11 +15,15 @@ namespace patina {
 struct Lamp {
     glm::vec3 place_m;
     glm::vec3 intensity;
+    glm::vec3 axis{0};  ///< of a flat one
 };
 
 /// What a lamp of intensity 1 gives a surface that nothing shades.
-inline float received(const gpu::LightSample& sample, glm::vec3 place_m) {
-    return reference::received({glm::vec3(sample.point_m), glm::vec3(sample.normal)}, place_m);
+inline float received(const gpu::LightSample& sample, glm::vec3 place_m, glm::vec3 axis = glm::vec3(0)) {
+    const glm::dvec3 emitted =
+        reference::emitted(glm::dvec3(1), glm::dvec3(axis), glm::dvec3(place_m) - glm::dvec3(sample.point_m));
+    return reference::received({glm::vec3(sample.point_m), glm::vec3(sample.normal)}, place_m) *
+           static_cast<float>(emitted.x);
 }
 
 /// Balls on a floor (y points down), of one albedo each but for tiles of the floor, under lamps and ambient light: a
@@ -30,7 +35,7 @@ class Balls {
         : lamps_(std::move(lamps)), ambient_(ambient), dark_tiles_(dark_tiles) {
         std::normal_distribution<float> normal(0, 1);
         for (uint32_t place = 0; place < gpu::kLightSamples; ++place) {
-            if (place % 4 == 3) continue;  // not all places have a sample
+            if (place % 8 > 3) continue;  // not all places have a sample
             gpu::LightSample sample = place % 2 == 0 ? on_floor() : on_ball(place / 2 % 3);
             sample.diffuse *= 1 + noise * normal(random_);
             drawn_[place] = sample;
@@ -51,7 +56,7 @@ class Balls {
         std::vector<float> row(gpu::kLightSamples);
         for (uint32_t i = 0; i < gpu::kLightSamples; ++i)
             for (const Lamp& lamp : lamps_)
-                row[i] += glm::dot(lamp.intensity, glm::vec3(1)) / 3 * received(drawn_[i], lamp.place_m);
+                row[i] += glm::dot(lamp.intensity, glm::vec3(1)) / 3 * received(drawn_[i], lamp.place_m, lamp.axis);
         return row;
     }
 
@@ -59,7 +64,9 @@ class Balls {
         return [this, &surface](std::span<const glm::vec3> places_m, uint32_t) {
             std::vector<TrialLamp> lamps;
             for (const glm::vec3& place_m : places_m)
-                lamps.push_back({place_m, received_from(surface, place_m), surface.unexplained(place_m)});
+                lamps.push_back({.place_m = place_m,
+                                 .received = received_from(surface, place_m),
+                                 .unexplained = surface.unexplained(place_m)});
             return lamps;
         };
     }
@@ -70,7 +77,7 @@ class Balls {
     gpu::LightSample lit(glm::vec3 point_m, glm::vec3 normal, glm::vec3 kd) const {
         gpu::LightSample sample{glm::vec4(point_m, 10), glm::vec4(normal, 0), {}, {}, {}};
         glm::vec3 irradiance = ambient_;
-        for (const Lamp& lamp : lamps_) irradiance += lamp.intensity * received(sample, lamp.place_m);
+        for (const Lamp& lamp : lamps_) irradiance += lamp.intensity * received(sample, lamp.place_m, lamp.axis);
         sample.diffuse = glm::vec4(kd * irradiance, 0);
         return sample;
     }

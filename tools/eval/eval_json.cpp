@@ -160,7 +160,9 @@ struct Convert {
     }
 
     static Json to_json(const Light& light) {
-        return {{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
+        Json json{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
+        if (is_flat(light)) json["axis"] = to_json(light.axis);
+        return json;
     }
 
     static Json to_json(const LightMatch& match) {

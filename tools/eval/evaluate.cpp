@@ -99,9 +99,7 @@ void measure_lights(const fs::path& sequence, const fs::path& run, const RigidTr
     const fs::path truth_file = sequence / "truth" / "lights.json", run_file = run / "lights.json";
     if (!path_exists(truth_file) || !path_exists(run_file)) return;
     std::vector<Light> lights = sensor::read_lights(run_file);
-    for (Light& light : lights) {
-        light.position_m = glm::dvec3(truth_from_run * glm::dvec4(light.position_m, 1.0));
-    }
+    for (Light& light : lights) light = moved(light, truth_from_run);
     const std::vector<Light> truth = sensor::read_lights(truth_file);
     // Where the truth has lamps, it has no suns: what is far from all of them is one.
     std::erase_if(lights, [&](const Light& light) {

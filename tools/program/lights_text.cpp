@@ -14,7 +14,9 @@ namespace {
 std::string words_of(const FoundLight& found) {
     const LightEvidence& evidence = found.evidence;
     if (is_sun(found.light)) return fmt::format("a sun, in {} samples of its patches", evidence.sightings);
-    if (evidence.unseen) return "no picture shows it, found in what it lights";
+    if (evidence.unseen)
+        return is_flat(found.light) ? "no picture shows it, found in what it lights, flat"
+                                    : "no picture shows it, found in what it lights";
     std::string words = fmt::format("radius {:.3f} m  spread {:.1f} mm  {} sightings", found.light.radius_m,
                                     1000 * evidence.spread_m, evidence.sightings);
     if (!evidence.has_depth) words += ", triangulated";

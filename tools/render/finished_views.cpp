@@ -99,7 +99,7 @@ void render_finished_views(const SequenceOptions& run, const FinishedViews& view
     if (relit.empty()) return;
 
     std::vector<Light> lights = sensor::read_lights(truth / "relit" / "truth" / "lights.json");
-    for (Light& light : lights) light.position_m = glm::dvec3(session_from_truth * glm::dvec4(light.position_m, 1));
+    for (Light& light : lights) light = moved(light, session_from_truth);
     session.pipeline().relight({.lights = lights, .far_field = {}});
     write_views(session, relit, "relit", out, count);
 }

@@ -50,7 +50,8 @@ std::vector<Beam> beams_of(const Lighting& lights) {
     for (const Light& light : lights.lights) {
         const double distance_m = std::max(glm::length(light.position_m), kNearest_m);
         if (glm::length(light.position_m) > 0)
-            beams.push_back({glm::normalize(light.position_m), light.intensity / (distance_m * distance_m)});
+            beams.push_back({glm::normalize(light.position_m),
+                             intensity_towards(light, glm::dvec3(0)) / (distance_m * distance_m)});
     }
     if (beams.empty()) {
         const glm::dvec3 strength = lights.ambient == glm::dvec3(0) ? glm::dvec3(1) : 2.0 * lights.ambient;

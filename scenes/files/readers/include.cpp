@@ -32,7 +32,7 @@ void add_copy(const SyntheticScene& part, const RigidTransform& world_from_part,
         scene.objects.push_back(std::move(object));
     }
     for (Light light : part.lights) {
-        light.position_m = glm::dvec3(world_from_part * glm::dvec4(light.position_m, 1));
+        light = moved(light, world_from_part);
         scene.lights.push_back(light);
     }
 }

@@ -13,10 +13,7 @@ namespace {
 
 RigidTransform read_rotation(const sensor::JsonValue& value) {
     value.expect_keys({"axis", "degrees"});
-    const sensor::JsonValue axis = value.at("axis");
-    const glm::dvec3 direction = read_vector(axis);
-    if (!(glm::length(direction) > 1e-12)) axis.fail("must not be zero");
-    return placed(glm::dvec3(0), direction, read_degrees(value.at("degrees")));
+    return placed(glm::dvec3(0), read_direction(value.at("axis")), read_degrees(value.at("degrees")));
 }
 
 }  // namespace
@@ -26,6 +23,12 @@ glm::dvec3 read_vector(const sensor::JsonValue& value) {
     glm::dvec3 vector(0);
     for (int i = 0; i < 3; ++i) vector[i] = elements[size_t(i)].number_within(-kLargestValue, kLargestValue);
     return vector;
+}
+
+glm::dvec3 read_direction(const sensor::JsonValue& value) {
+    const glm::dvec3 direction = read_vector(value);
+    if (!(glm::length(direction) > 1e-12)) value.fail("must not be zero");
+    return glm::normalize(direction);
 }
 
 double read_positive(const sensor::JsonValue& value) {

@@ -19,6 +19,9 @@ inline constexpr double kLargestValue = 1e6;
 /// Three numbers of magnitude up to kLargestValue: a position or an axis.
 glm::dvec3 read_vector(const sensor::JsonValue& value);
 
+/// The same, not 0 0 0, as a vector of unit length.
+glm::dvec3 read_direction(const sensor::JsonValue& value);
+
 /// A number above 0 and up to kLargestValue: a length, a duration.
 double read_positive(const sensor::JsonValue& value);
 

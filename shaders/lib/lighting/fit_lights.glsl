@@ -3,6 +3,7 @@
 #ifndef PATINA_LIB_FIT_LIGHTS_GLSL
 #define PATINA_LIB_FIT_LIGHTS_GLSL
 #include "lib/brdf/ward.glsl"
+#include "lib/lighting/lamp_emission.glsl"
 #include "lib/records/reflectance.glsl"
 
 struct FitLight {
@@ -17,7 +18,7 @@ FitLight fit_light(uint i, vec3 point_m, vec3 normal, uvec2 reached) {
     const float distance2 = max(dot(offset_m, offset_m), 1e-6);
     const vec3 to_light = offset_m * inversesqrt(distance2);
     const float cosine = max(dot(normal, to_light), 0.0);
-    const vec3 facing = bit_is_set(reached, i) ? lights[i].intensity.rgb / distance2 : vec3(0.0);
+    const vec3 facing = bit_is_set(reached, i) ? intensity_from(lights[i], to_light) / distance2 : vec3(0.0);
     return FitLight(to_light, cosine, facing * ward_light_part(cosine), facing * (cosine / kPi));
 }
 

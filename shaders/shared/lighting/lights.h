@@ -9,6 +9,7 @@ INTEROP_CONST uint kMaxPointLights = 64u;
 struct PointLight {
     vec4 position_m;  // xyz world; w: radius of the lamp around it, 0 where unknown
     vec4 intensity;   // rgb, linear pixel value * m^2; w: 1 of a sun (is_sun), which shines in where the sky is seen
+    vec4 axis;        // xyz: unit direction to where a flat lamp shines, w 0; of others 0 0 0 1 (lamp_emission.glsl)
 };
 
 // What precedes the point lights in their buffer.

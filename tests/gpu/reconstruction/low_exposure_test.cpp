@@ -1,11 +1,14 @@
 #include <algorithm>
 
 #include "engine/core/srgb.h"
+#include "reconstruction/lights/ruled_out_places.h"
+#include "reconstruction/lights/surface_samples.h"
 #include "reconstruction/pipeline.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "scenes/files/scene_file.h"
 #include "scenes/render/synthetic_source.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/reference/lighting/lamp_emission.h"
 
 // Frames of low exposure before the first one.
 
@@ -136,6 +139,53 @@ TEST_F(LowExposureTest, AfterTheFirstFrameItTellsNoGeometry) {
     pipeline.end_low_exposure();
     EXPECT_EQ(with_depth(view(pipeline, kFrames - 1)), before);
     EXPECT_EQ(pipeline.frames(), 1u);
+}
+
+TEST_F(LowExposureTest, RulesOutUnseenLampsWhereTwoPicturesLooked) {
+    Pipeline pipeline(device(), settings());
+    pipeline.set_lights(tour_.lights);
+    for (size_t i = 0; i < 2; ++i) pipeline.add(frame(i));
+    const ModelView seen = view(pipeline, 0);
+    const Extent2D extent = seen.position_m.extent();
+    const glm::vec3 surface_m(seen.position_m.at(extent.width / 2, extent.height / 2));
+    const glm::vec3 camera_m((*tour_.frames[0].world_from_camera)[3]);
+    const glm::vec3 way = glm::normalize(surface_m - camera_m);
+    const std::vector<glm::vec3> places_m{0.5f * (camera_m + surface_m), surface_m + 0.4f * way, camera_m - 0.3f * way,
+                                          camera_m - 2.0f * way};
+    for (uint32_t pictures = 0; pictures < 3; ++pictures) {
+        const std::vector<gpu::Camera>& cameras = pipeline.reflectance()->low_exposure_cameras();
+        ASSERT_EQ(cameras.size(), pictures);
+        const RuledOutPlaces ruled_out(pipeline, cameras);
+        const bool enough = pictures == 2;
+        EXPECT_EQ(ruled_out(places_m), (std::vector<bool>{enough, false, enough, false})) << pictures;
+        add_low(pipeline, 0);
+    }
+}
+
+TEST_F(LowExposureTest, SurfaceReceivesOfAFlatLampByTheCosineToItsAxis) {
+    Pipeline pipeline(device(), settings());
+    pipeline.set_lights(tour_.lights);
+    for (size_t i = 0; i < 2; ++i) pipeline.add(frame(i));
+    const ModelView seen = view(pipeline, 0);
+    const std::vector<glm::vec4>&places = seen.position_m.pixels(), &normals = seen.normal.pixels();
+    std::vector<gpu::LightSample> samples(gpu::kLightSamples);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const size_t pixel = i * places.size() / samples.size();
+        samples[i].point_m = glm::vec4(glm::vec3(places[pixel]), places[pixel].w > 0 ? 9 : 0);
+        samples[i].normal = normals[pixel];
+    }
+    Light flat = tour_.lights.at(0);
+    flat.axis = glm::normalize(glm::dvec3(0.5, 1, 0.2));
+    const std::vector<glm::vec3> around = received_from(pipeline, samples, std::span(tour_.lights).first(1));
+    const std::vector<glm::vec3> received = received_from(pipeline, samples, std::span(&flat, 1));
+    size_t lit = 0;
+    for (size_t i = 0; i < received.size(); ++i) {
+        const glm::dvec3 to_lamp = flat.position_m - glm::dvec3(samples[i].point_m);
+        const glm::dvec3 expected = reference::emitted(glm::dvec3(around[i]), flat.axis, to_lamp);
+        EXPECT_LT(glm::distance(glm::dvec3(received[i]), expected), 1e-5) << i;
+        lit += received[i].g > 0;
+    }
+    EXPECT_GT(lit, 100u);
 }
 
 }  // namespace

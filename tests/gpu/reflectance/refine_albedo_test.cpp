@@ -21,13 +21,16 @@ using reference::Ward;
 constexpr int kViews = 30;
 constexpr double kPacking = 1.0 / 512;  // of colours and of kd: a shared exponent keeps 9 bits
 
-const std::vector<Light> kLights = {
-    {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
+const std::vector<Light> kLights = {{{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}},
+                                    {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}},
+                                    {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}, 0, {0.6, 0.8, 0}}};
 
 std::vector<ReceivedLight> received(const Lights& lights) {
     std::vector<ReceivedLight> result;
     for (const gpu::PointLight& light : lights.point_lights())
-        result.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
+        result.push_back({.position_m = glm::dvec3(light.position_m),
+                          .intensity = glm::dvec3(light.intensity),
+                          .axis = glm::dvec3(light.axis)});
     return result;
 }
 

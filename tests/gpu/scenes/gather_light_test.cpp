@@ -284,7 +284,7 @@ SyntheticScene mixed_scene() {
                      glossy(3, {part_at(scenes::BoxShape{{0.3, 0.3, 0.3}}, {-0.4, 0.3, 2.8}, {0, 1, 0}, 0.5)}),
                      glossy(4, {part_at(scenes::SphereShape{0.35}, {0.5, 0.25, 2.9})})};
     for (auto& object : scene.objects) object.material.alpha = 0.4;
-    scene.lights = {{{1, -1.5, 2}, {3, 3, 2}, 0.3}, {{-1.2, -0.5, 1.5}, {1, 2, 2}}};
+    scene.lights = {{{1, -1.5, 2}, {3, 3, 2}, 0.3, {-0.6, 0.8, 0}}, {{-1.2, -0.5, 1.5}, {1, 2, 2}}};
     scene.environment = environment_of(uneven_sky());
     return scene;
 }

@@ -26,7 +26,7 @@ SyntheticScene mixed_scene() {
         {{{scenes::RectangleShape{{1.5, 1.0}}, scenes::placed({0, 0, 0}, {1, 0, 0}, 1.4)}}, gloss},
         {{{scenes::SphereShape{0.2}, scenes::placed({0.2, -0.3, -0.9}, {0, 1, 0}, 0)}}, with_id(3)},
     };
-    scene.lights = {{{1.5, -2.5, -2.0}, {4, 5, 6}}, {{-2.0, -1.5, -1.0}, {3, 3, 3}}};
+    scene.lights = {{{1.5, -2.5, -2.0}, {4, 5, 6}}, {{-2.0, -1.5, -1.0}, {3, 3, 3}, 0, {0.8, 0.6, 0}}};
     return scene;
 }
 

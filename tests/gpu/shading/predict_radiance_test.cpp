@@ -443,7 +443,8 @@ TEST_F(PredictRadiance, AgreesWithTheReferenceOnRandomRecords) {
         };
         const RigidTransform poses[] = {kPose, reference::look_at({0.5, -0.3, 0.1}, {0, 0, 1})};
         ShadingRig rig = this->rig(field, voxel_m, {poses[0], poses[1]});
-        std::vector<Light> lights = {kLamp, {{-0.5f, -0.5f, 0}, {0.5f, 1, 1}}, {{0, -1, 0.8f}, {1, 1, 1}}};
+        std::vector<Light> lights = {
+            kLamp, {{-0.5f, -0.5f, 0}, {0.5f, 1, 1}, 0, {0.8, 0.6, 0}}, {{0, -1, 0.8f}, {1, 1, 1}}};
         rig.lights.set(lights, glm::dvec3(kAmbient));
         rig.materials.set(1, glm::vec3(0.1f), 0.2f);
         rig.materials.set(2, glm::vec3(0.05f), 0.4f);

@@ -224,7 +224,7 @@ reference::ShadedScene ShadingRig::scene() const {
     scene.records = painted_;
     scene.segment_kd = reference::average_segments(painted_);
     for (const gpu::PointLight& light : lights.point_lights()) {
-        scene.lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
+        scene.lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity), glm::dvec3(light.axis)});
     }
     scene.ambient = glm::dvec3(lights.ambient());
     return scene;

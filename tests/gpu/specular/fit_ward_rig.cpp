@@ -15,8 +15,9 @@ constexpr glm::dvec3 kAmbient(0.05, 0.04, 0.03);
 
 }  // namespace
 
-const std::vector<Light> FitWardTest::kLights = {
-    {{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}}, {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}}, {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}}};
+const std::vector<Light> FitWardTest::kLights = {{{1.0f, -2.0f, 0.5f}, {3, 2.5f, 2}},
+                                                 {{-1.5f, -1.8f, -1.0f}, {2, 2, 2.5f}},
+                                                 {{0.2f, -2.2f, 1.5f}, {1, 1.5f, 1}, 0, {0, 0.8, -0.6}}};
 
 FitWardTest::FitWardTest() {
     graph::FrameGraph frame = runner().begin();
@@ -32,7 +33,8 @@ FitWardTest::FitWardTest() {
 
 std::vector<reference::ReceivedLight> FitWardTest::received() {
     std::vector<reference::ReceivedLight> lights;
-    for (const Light& light : kLights) lights.push_back({glm::dvec3(light.position_m), glm::dvec3(light.intensity)});
+    for (const Light& light : kLights)
+        lights.push_back({.position_m = light.position_m, .intensity = light.intensity, .axis = light.axis});
     return lights;
 }
 

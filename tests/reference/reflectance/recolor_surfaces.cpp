@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/reference/lighting/lamp_emission.h"
+
 namespace patina::reference {
 
 glm::dvec3 sent_by(const KnownSurface& surface, const std::vector<Light>& lamps) {
@@ -12,7 +14,8 @@ glm::dvec3 sent_by(const KnownSurface& surface, const std::vector<Light>& lamps)
         const glm::dvec3 off = lamps[i].position_m - surface.point_m;
         const double distance = glm::length(off);
         if (surface.lit[i])
-            irradiance += lamps[i].intensity * std::max(glm::dot(off, surface.normal), 0.0) / std::pow(distance, 3);
+            irradiance += emitted(lamps[i].intensity, lamps[i].axis, off) *
+                          std::max(glm::dot(off, surface.normal), 0.0) / std::pow(distance, 3);
     }
     glm::dvec3 kd(0);
     for (int c = 0; c < 3; ++c) {

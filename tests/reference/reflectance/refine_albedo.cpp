@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/reference/lighting/lamp_emission.h"
+
 namespace patina::reference {
 
 namespace {
@@ -103,8 +105,8 @@ glm::dvec3 shade(const Ward& material, const SurfacePoint& point, const std::vec
         const glm::dvec3 offset = light.position_m - point.position_m;
         const double cosine = glm::dot(point.normal, glm::normalize(offset));
         if (!light.reaches || cosine <= 0) continue;
-        sum += ward(material, point.normal, glm::normalize(offset), to_viewer) * light.intensity * cosine /
-               glm::dot(offset, offset);
+        sum += ward(material, point.normal, glm::normalize(offset), to_viewer) *
+               emitted(light.intensity, light.axis, offset) * cosine / glm::dot(offset, offset);
     }
     return sum;
 }

@@ -23,6 +23,7 @@ struct ReceivedLight {
     glm::dvec3 intensity;
     bool reaches = true;
     bool uncertain = false;
+    glm::dvec3 axis{0};  ///< of a flat lamp
 };
 
 struct SurfacePoint {

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/reference/lighting/lamp_emission.h"
 #include "tests/reference/scenes/scene_shapes.h"
 #include "tests/reference/shading/ward.h"
 
@@ -85,7 +86,7 @@ class World {
         const glm::dvec3 offset_m = light.position_m + light.radius_m * outward - at.position_m;
         const double r = glm::length(offset_m);
         const glm::dvec3 to_light = offset_m / r;
-        glm::dvec3 irradiance = light.intensity / (r * r);
+        glm::dvec3 irradiance = emitted(light.intensity, light.axis, to_light) / (r * r);
         if (light.radius_m > 0) irradiance *= 4 * std::max(0.0, -glm::dot(outward, to_light));
         const auto blocking = first_hit(at.position_m, to_light, false);
         if (blocking && glm::distance(blocking->position_m, at.position_m) < r) return glm::dvec3(0);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tests/reference/lighting/lamp_emission.h"
 #include "tests/reference/scenes/scene_shapes.h"
 #include "tests/reference/shading/ward.h"
 
@@ -70,8 +71,8 @@ TracedPixel shade(const TracedWorld& world, const scenes::SyntheticScene& scene,
         if (shadows && occluded(world, spot.smooth_m + 1e-9 * geometric, light.position_m)) continue;
         const double r = glm::distance(light.position_m, point_m);
         const glm::dvec3 to_light = (light.position_m - point_m) / r;
-        pixel.radiance += ward({pixel.kd, m.ks, m.alpha}, pixel.normal, to_light, -direction) * light.intensity /
-                          (r * r) * glm::dot(pixel.normal, to_light);
+        pixel.radiance += ward({pixel.kd, m.ks, m.alpha}, pixel.normal, to_light, -direction) *
+                          emitted(light.intensity, light.axis, to_light) / (r * r) * glm::dot(pixel.normal, to_light);
     }
     return pixel;
 }
@@ -84,7 +85,8 @@ std::optional<TracedPixel> see_lamp(const Light& light, glm::dvec3 origin_m, glm
     if (!hit || *hit >= distance_m) return std::nullopt;
     distance_m = *hit;
     TracedPixel pixel{.seen = true};
-    pixel.radiance = light.intensity / (std::numbers::pi * light.radius_m * light.radius_m);
+    pixel.radiance =
+        emitted(light.intensity, light.axis, direction) / (std::numbers::pi * light.radius_m * light.radius_m);
     pixel.normal = (origin_m + distance_m * direction - light.position_m) / light.radius_m;
     return pixel;
 }

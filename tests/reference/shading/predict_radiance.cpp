@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 
+#include "tests/reference/lighting/lamp_emission.h"
+
 namespace patina::reference {
 
 namespace {
@@ -155,7 +157,8 @@ ShadedPoint predict_radiance(const ShadedScene& scene, glm::dvec3 point_m, glm::
         if (scene.shadows)
             lit = share_lit(around, i).value_or(fill && fill->marched ? double(fill->reached >> i & 1) : 1);
         const Ward material{result.kd, result.gloss.ks, std::max(result.gloss.alpha, 0.01)};
-        const glm::dvec3 facing = scene.lights[i].intensity / glm::dot(offset, offset);
+        const glm::dvec3 facing =
+            emitted(scene.lights[i].intensity, scene.lights[i].axis, to_light) / glm::dot(offset, offset);
         result.rgb += lit * ward(material, normal, to_light, glm::normalize(viewer_m - point_m)) * facing *
                       std::max(glm::dot(normal, to_light), 0.0);
     }

@@ -28,6 +28,7 @@ struct ShadedRecord {
 struct ShadedLight {
     glm::dvec3 position_m;
     glm::dvec3 intensity;
+    glm::dvec3 axis{0};  ///< of a flat lamp
 };
 
 /// A model and its lights.
