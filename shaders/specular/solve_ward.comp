@@ -37,6 +37,11 @@ const float kMostMirrorAlpha = 0.25;     // a wider lobe blurs what is mirrored,
 const float kUnblurredShare = 0.66;      // and leaves less than this of its contrasts, and of the ks that they tell
 const float kLeastShareOfSquare = 0.25;  // of what is mirrored, of a channel: with less it tells nothing of its own
 
+// A strong gloss far bluer than the lamps is not theirs: it is the sky in a window. Of 66 measured materials (MERL, as
+// fitted by Ngan, Durand and Matusik 2005) none with a ks of 0.1 or more is bluer than grey ones by over a tenth.
+const vec2 kStrongKs = vec2(0.2, 0.3);  // from where on it is doubted, and not believed
+const vec2 kBlueKs = vec2(1.3, 1.6);    // blue over red, likewise
+
 struct Prior {
     float alpha;
     float ks_weight;  // of squared deviations, in units of the cost
@@ -120,6 +125,15 @@ Estimate averaged(uint best, float unit) {
                     share / sum * (dull ? 1.0 : 1.0 / (1.0 + octaves2 / (kSharpAlpha * kSharpAlpha))));
 }
 
+// What is believed of an estimate; of the rest only the prior is known.
+Estimate believed(Estimate estimate, Prior prior) {
+    const vec3 ks = estimate.ks_alpha.rgb;
+    const float strong = smoothstep(kStrongKs.x, kStrongKs.y, max(max(ks.r, ks.g), ks.b));
+    const float share = 1.0 - strong * smoothstep(kBlueKs.x, kBlueKs.y, ks.b / max(ks.r, 1e-6));
+    return Estimate(mix(vec4(vec3(kKsBefore), prior.alpha), estimate.ks_alpha, share), share * estimate.observed,
+                    share * estimate.confidence);
+}
+
 // Of a segment that is sure to be a metal or a mirror: what the surroundings that it mirrors tell, where highlights
 // tell too little; or far less, as they do when they are sharp and clipped; or of a wide lobe, where it mirrors sharply
 // (what the room sends is then taken for light of the lamps). Else 0.
@@ -157,7 +171,7 @@ void main() {
     // Without an observation only the prior is known; it may change before there is one.
     if (a != 0u) return;
     const uint best = best_alpha();
-    const Estimate estimate = averaged(best, unit);
+    const Estimate estimate = believed(averaged(best, unit), prior);
     fit.color2_weight = observed[best];
     fit.ks_alpha = estimate.ks_alpha;
     fit.confidence = estimate.confidence;

@@ -218,6 +218,25 @@ TEST_F(FitWardTest, VoxelsThatWereSeenSeldomTellOfKdAlone) {
     EXPECT_LT(materials_[2].unobserved, 0.3f);
 }
 
+// No such material is known: what is so blue is a window that it mirrors.
+TEST_F(FitWardTest, StrongGlossFarBluerThanTheLampsIsNotBelieved) {
+    const std::vector<std::pair<glm::dvec3, double>> believed{
+        {{0.2, 0.3, 0.4}, 0}, {{0.4, 0.3, 0.2}, 1}, {{0.1, 0.15, 0.18}, 1}, {{0.28, 0.33, 0.4}, 0.5}};
+    for (const auto& [ks, share] : believed) {
+        graph::FrameGraph frame = runner().begin();
+        table_.reset(frame);
+        run(std::move(frame));
+        const std::vector<FilledRecord> records = sphere(1, {{}, ks, 0.15});
+        fill(records);
+        const gpu::WardFit fitted = fit({1})[1];
+        expect_agreement(fitted, reference_fits(records, 1)[0], 2e-4, 2e-4, 0.01);
+        const glm::dvec3 expected = glm::mix(glm::dvec3(0.04), ks, share);
+        EXPECT_LT(max_of(glm::abs(glm::dvec3(fitted.ks_alpha) - expected)), share == 0.5 ? 0.05 : 2e-3) << ks.b;
+        EXPECT_NEAR(fitted.confidence, share, share == 0.5 ? 0.2 : 0.3) << ks.b;
+        EXPECT_NEAR(materials_[1].unobserved, 1 - share, share == 0.5 ? 0.2 : 0.1) << ks.b;
+    }
+}
+
 TEST_F(FitWardTest, SegmentsWithoutVoxelsOrLightAreUnknown) {
     fill(sphere(1, {{}, glm::dvec3(0.1), 0.15}, 20));
     shadow_all();

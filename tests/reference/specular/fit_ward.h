@@ -58,6 +58,7 @@ class WardFitSeries {
     std::array<Line, 3> sum(const std::vector<Weighed>& voxels, size_t step) const;
     Solution solve(size_t step) const;
     void set_estimate();
+    void doubt_blue();
     void sum_diffuse(const std::vector<Weighed>& voxels);
 
     SpecularPrior prior_;
