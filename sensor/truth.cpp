@@ -91,6 +91,7 @@ std::vector<Light> read_lights(const std::filesystem::path& file) {
         lights.push_back({read_vector(light.at("position")), read_intensity(light.at("intensity")),
                           radius ? radius->not_negative() : 0,
                           axis ? glm::normalize(read_direction(*axis)) : glm::dvec3(0)});
+        if (axis && is_sun(lights.back())) axis->fail("must not be there: the lamp is a sun, 5 km away or farther");
     }
     return lights;
 }

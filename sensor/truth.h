@@ -28,7 +28,8 @@ void write_lights(const std::filesystem::path& file, std::span<const Light> ligh
 void write_materials(const std::filesystem::path& file, std::span<const Material> materials);
 
 /// Read what write_lights and write_materials write. Throw Error when the file is missing or no JSON, a
-/// member is missing, no finite number, or outside what it may be: an intensity or a radius below 0, an axis of 0, an
+/// member is missing, no finite number, or outside what it may be: an intensity or a radius below 0, an axis of 0
+/// or of a sun, an
 /// id of 0 or another material's, kd or ks outside 0 .. 1, alpha outside (0, 1].
 std::vector<Light> read_lights(const std::filesystem::path& file);
 glm::dvec3 read_ambient(const std::filesystem::path& file);  ///< 0 where the file has none

@@ -91,11 +91,11 @@ def set_material(material, description):
     link(both.outputs[0], surface)
 
 
-def is_bulb_of(lamp, mesh_object):
+def is_bulb_of(lamp, radius_m, mesh_object):
     """Whether the surface of a bulb was recorded, at which its own light would end."""
     center = mesh_object.matrix_world.inverted() @ lamp.matrix_world.translation
     vertices = mesh_object.data.vertices
-    near = sum((vertex.co - center).length < 1.5 * lamp.data.shadow_soft_size for vertex in vertices)
+    near = sum((vertex.co - center).length < 1.5 * radius_m for vertex in vertices)
     return near > len(vertices) / 2
 
 
@@ -103,14 +103,14 @@ def set_lamps(things, candela_per_intensity):
     for lamp in [thing for thing in things if thing.type == "LIGHT"]:
         lamp.data.energy /= candela_per_intensity
         radius_m = lamp.data.get("radius_m", POINT_LAMP_RADIUS_M)
-        if lamp.data.type == "SPOT":  # flat: exactly a disc of Blender, of the same intensity along its axis
+        if lamp.data.type == "SPOT":  # flat: a disc of Blender, of the same intensity along its axis
             lamp.data.type = "AREA"
             lamp.data.shape = "DISK"
             lamp.data.size = 2 * radius_m
-            lamp.data.energy /= 4
-            continue
-        lamp.data.shadow_soft_size = radius_m
-        for bulb in [thing for thing in things if thing.type == "MESH" and is_bulb_of(lamp, thing)]:
+            lamp.data.energy /= math.pi
+        else:
+            lamp.data.shadow_soft_size = radius_m
+        for bulb in [thing for thing in things if thing.type == "MESH" and is_bulb_of(lamp, radius_m, thing)]:
             bulb.visible_shadow = False
 
 

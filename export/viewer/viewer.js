@@ -160,8 +160,11 @@ function usualExposure(bytes) {
         const words = new Uint16Array(bytes.slice(group.vertices, group.triangles).buffer);
         for (let i = 0; i < words.length; i += 8 * 97, ++count) {
             const at = [0, 1, 2].map((k) => scene.low[k] + words[i + k] / 65535 * size_m[k]);
-            for (const l of scene.lights)
-                sum += 0.25 * l.intensity[1] / Math.max(dot(add(l.position, at, -1), add(l.position, at, -1)), 0.04) / Math.PI;
+            for (const l of scene.lights) {
+                const offset = add(l.position, at, -1), distance2 = dot(offset, offset);
+                const emission = dot(l.axis, l.axis) ? Math.max(-dot(l.axis, offset), 0) / Math.sqrt(Math.max(distance2, 1e-12)) : 1;
+                sum += 0.25 * emission * l.intensity[1] / Math.max(distance2, 0.04) / Math.PI;
+            }
             sum += 0.4 * scene.ambient[1];
         }
     }

@@ -16,7 +16,7 @@ struct Light {
     glm::dvec3 position_m{0};  ///< world
     glm::dvec3 intensity{0};   ///< RGB, linear pixel value * m^2; along the axis if there is one
     double radius_m = 0;       ///< of the sphere-shaped lamp that it stands for; 0: a point, or unknown
-    glm::dvec3 axis{0};        ///< unit length, to where it shines; 0: it shines alike in all directions
+    glm::dvec3 axis{0};        ///< unit length, to where it shines; 0: it shines alike in all directions, as a sun must
 
     bool operator==(const Light&) const = default;
 };

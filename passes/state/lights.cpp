@@ -11,14 +11,15 @@ namespace patina {
 
 namespace {
 
-constexpr float kAxisError = 1e-3f;  // of its length
+constexpr float kAxisError = 1e-3f;  // of its length: files have six digits
 
 bool finite(glm::vec3 v) { return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v)); }
 bool a_power(glm::vec3 v) { return finite(v) && glm::all(glm::greaterThanEqual(v, glm::vec3(0))); }
 
 bool is_sound(const gpu::PointLight& light) {
     return finite(glm::vec3(light.position_m)) && a_power(glm::vec3(light.intensity)) &&
-           a_power(glm::vec3(light.position_m.w)) && std::abs(glm::length(light.axis) - 1) < kAxisError;
+           a_power(glm::vec3(light.position_m.w)) && std::abs(glm::length(light.axis) - 1) < kAxisError &&
+           (light.intensity.w == 0 || light.axis.w == 1);
 }
 
 bool same_place(const gpu::PointLight& a, const gpu::PointLight& b) { return a.position_m == b.position_m; }
@@ -40,7 +41,7 @@ void Lights::set(std::span<const Light> lights, glm::dvec3 ambient_term) {
         if (!is_sound(now.back())) {
             throw Error("light ", now.size() - 1,
                         " has a position, an intensity or a radius that is negative or not finite, or an axis whose "
-                        "length is not 1");
+                        "length is not 1, or it is a sun with an axis");
         }
     }
     const bool same_places = std::ranges::equal(now, lights_, same_place);

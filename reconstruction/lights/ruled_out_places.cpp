@@ -7,11 +7,11 @@
 namespace patina {
 namespace {
 
-constexpr size_t kMostViews = 256;
-constexpr float kBorder = 0.03f;  // of a picture, in which a lamp may be cut off
-constexpr int kLeastViews = 2;    // one may be of a wrong pose
+constexpr size_t kMostViews = 256;  // a sixteenth of a lamp's samples: what trying takes grows by as much
+constexpr float kBorder = 0.03f;    // of a picture, in which a lamp may be cut off
+constexpr int kLeastViews = 2;      // one may be of a wrong pose
 
-constexpr float kCarrierBehind_m = 0.8f, kCarrierReach_m = 0.4f;
+constexpr float kCarrierBehind_m = 0.8f, kCarrierReach_m = 0.4f;  // an arm's length, and half a person's width
 
 gpu::LightSample view_of(const gpu::Camera& camera) {
     const glm::mat3 world_from_camera = glm::transpose(glm::mat3(camera.camera_from_world));

@@ -21,8 +21,8 @@ bool is_carrier(const gpu::Camera& camera, glm::vec3 point_m);
 /// the camera stood.
 class RuledOutPlaces {
   public:
-    /// `cameras`: of the pictures, in the reconstruction's world; of very many some are taken. Keeps a reference to the
-    /// pipeline.
+    /// `cameras`: of the pictures, in the reconstruction's world; at most 256 are taken, evenly spread. Keeps a
+    /// reference to the pipeline.
     RuledOutPlaces(Pipeline& pipeline, std::span<const gpu::Camera> cameras);
 
     /// Of each place whether at least two pictures rule it out: they show it, with nothing that the map holds before

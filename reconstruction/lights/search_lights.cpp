@@ -11,7 +11,7 @@ constexpr uint32_t kCoarsePlaces = 1024;  // of the samples, from which new lamp
 constexpr uint32_t kCoarseSteps = 3, kFineSteps = 4;
 constexpr double kMostPlaces = 1500;                                              // that a new lamp may have
 constexpr float kMarginShare = 0.35f, kLeastMarginM = 0.5f, kMostMarginM = 2.5f;  // around what was seen
-constexpr float kTurnByMove = 1.5f;  // radians of a lamp's axis by metres of its place
+constexpr float kTurnByMove = 1.5f;  // radians of a lamp's axis by metres of its place: 0.45 at first, 0.05 at last
 constexpr float kFirstMoveM = 0.3f, kLastMoveM = 0.03f, kShorter = 0.6f;
 constexpr double kFewHighlights = 200;  // they count half
 constexpr double kLeastLight = 0.01;    // of the mean irradiance

@@ -29,18 +29,18 @@ std::vector<TrialLamp> TryLampsInVolume::operator()(std::span<const glm::vec3> p
     while (!places_m.empty()) {
         const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
         places_m = places_m.subspan(batch.size());
-        const std::vector<bool> without = ruled_out_ ? (*ruled_out_)(batch) : std::vector<bool>(batch.size());
+        const std::vector<bool> is_ruled_out = ruled_out_ ? (*ruled_out_)(batch) : std::vector<bool>(batch.size());
         std::vector<float> received = try_lamps(pipeline_, drawn_, batch, count);
         const std::vector<float> reached =
             highlights_.empty() ? std::vector<float>()
                                 : try_lamps(pipeline_, highlights_, batch, static_cast<uint32_t>(highlights_.size()));
         for (size_t i = 0; i < batch.size(); ++i) {
             const std::span<float> row(received.data() + i * gpu::kLightSamples, gpu::kLightSamples);
-            if (without[i]) std::ranges::fill(row, 0.0f);
+            if (is_ruled_out[i]) std::ranges::fill(row, 0.0f);
             lamps.push_back({batch[i], surface_.received(row), surface_.unexplained(batch[i])});
             TrialLamp& lamp = lamps.back();
             for (size_t k = 0; k < lamp.unexplained.size(); ++k)
-                if (without[i] || reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
+                if (is_ruled_out[i] || reached[i * gpu::kLightSamples + k] <= 0) lamp.unexplained[k] = 1;
         }
     }
     return lamps;

@@ -58,8 +58,9 @@ struct LightingRecording {
 struct SyntheticScene {
     std::string name;
     std::vector<SceneObject> objects;
-    /// Lamps. One whose radius is above 0 is a sphere that shines evenly, with the radiance intensity / (pi radius^2):
-    /// cameras see it, it has depth, no reflectance and label 0, and casts no shadow.
+    /// Lamps. One whose radius is above 0 is a sphere with the radiance intensity / (pi radius^2), if it is flat
+    /// times the cosine of the direction to its axis: cameras see it, it has depth, no reflectance and label 0, and
+    /// casts no shadow.
     std::vector<Light> lights;
     std::optional<Environment> environment;
     CameraPath path;
@@ -75,7 +76,7 @@ struct SyntheticScene {
 /// What goes into truth/materials.json: every object's material, in the objects' order.
 std::vector<sensor::Material> materials_of(const SyntheticScene& scene);
 
-/// The radiance of a sphere-shaped lamp; 0 for a point.
+/// The radiance of a sphere-shaped lamp, of a flat one along its axis; 0 for a point.
 glm::dvec3 emitted_radiance(const Light& light);
 
 }  // namespace patina::scenes

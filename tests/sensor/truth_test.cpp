@@ -83,6 +83,8 @@ TEST(Truth, SaysWhatIsWrongInLights) {
                 EndsWith("lights[0].intensity is [1,-1,1], must not be negative"));
     EXPECT_THAT(complaint(R"({"lights": [{"position": [1, 2, 3], "intensity": [1, 1, 1], "axis": [0, 0, 0]}]})"),
                 EndsWith("lights[0].axis is [0, 0, 0], which is no direction"));
+    EXPECT_THAT(complaint(R"({"lights": [{"position": [1, 2, 6000], "intensity": [1, 1, 1], "axis": [0, 0, 1]}]})"),
+                EndsWith("lights[0].axis is [0,0,1], must not be there: the lamp is a sun, 5 km away or farther"));
 }
 
 TEST(Truth, SaysWhatIsWrongInMaterials) {

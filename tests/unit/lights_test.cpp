@@ -94,6 +94,7 @@ TEST(Lights, WhatCannotShineIsRefusedAndChangesNothing) {
     refuses({{0, 0, 0}, {1, -1, 1}}, "darkness");
     refuses({{0, 0, 0}, {1, 1, 1}, -0.1}, "a radius below 0");
     refuses({{0, 0, 0}, {1, 1, 1}, 0, {0, 2, 0}}, "an axis of another length");
+    refuses({{0, 0, 6000}, {1, 1, 1}, 0, {0, 1, 0}}, "a sun with an axis");
     refuses({{0, 0, 0}, {1, 1, 1}, 0, {0, std::numeric_limits<double>::infinity(), 0}}, "an axis that is none");
     EXPECT_THAT([&] { lights.set(std::vector<Light>(gpu::kMaxPointLights + 1, kLamp)); },
                 ThrowsMessage<Error>(HasSubstr("there are 65 lights, at most 64 can be used")));

@@ -147,7 +147,7 @@ TEST_F(TraceShapesTest, NormalsBelowTheViewersHorizonGiveWayToTheTriangles) {
 TEST_F(TraceShapesTest, LampsAreSeenButReflectNothingAndCastNoShadow) {
     SyntheticScene scene = scene_of("lamps", glossy(1, {part_at(scenes::RectangleShape{{3, 3}}, {0, 0, 2})}));
     scene.lights = {{{0.3, -0.2, 1.2}, {0.5, 0.4, 0.3}, 0.15},
-                    {{-0.2, 0.1, 0.8}, {0.2, 0.2, 0.6}, 0.1},
+                    {{-0.2, 0.1, 0.8}, {0.2, 0.2, 0.6}, 0.1, {0, 0.6, -0.8}},
                     {{-0.15, 0.1, -0.5}, {1, 1, 1}},
                     {{0.4, 0.4, 2.5}, {3, 3, 3}, 0.3}};
     expect_reference(scene, camera_of({161, 133}), RigidTransform(1.0), 1e-3);
