@@ -111,7 +111,8 @@ TEST_F(RelightTest, AFieldOfAnotherSizeIsRefused) {
 
 TEST_F(RelightTest, ColoursAreThoseOfTheReference) {
     const auto model = observed(kAll);
-    const std::vector<Light> lamps{{{0.1, -0.15, 0.05}, {0.6, 0.4, 0.2}, 0}, {{-0.2, 0.1, 0.2}, {0.1, 0.2, 0.3}, 0}};
+    const std::vector<Light> lamps{{{0.1, -0.15, 0.05}, {0.6, 0.4, 0.2}, 0},
+                                   {{-0.2, 0.1, 0.2}, {0.1, 0.2, 0.3}, 0, {0.6, 0, -0.8}}};
     model->reflectance.lights.set(lamps);
     model->reflectance.relight({.finds_visibility = true});
     model->reflectance.relight({.gathered_rays = kRays});

@@ -25,7 +25,10 @@ class FitWardTest : public GpuTest {
 
     FitWardTest();
 
-    static std::vector<reference::ReceivedLight> received();
+    /// In place of kLights.
+    void set_lights(const std::vector<Light>& lights);
+
+    std::vector<reference::ReceivedLight> received() const;
 
     glm::dvec3 direction_about(glm::dvec3 axis, double least_cosine);
 
@@ -70,6 +73,7 @@ class FitWardTest : public GpuTest {
     static void expect_agreement(const gpu::WardFit& got, const ReferenceFit& want, double ks, double alpha,
                                  double confidence);
 
+    std::vector<Light> lights_;
     std::mt19937 random_{1};
     std::set<std::array<int, 3>> used_;  // a voxel has one record
     bool backwards_ = false;
