@@ -271,7 +271,7 @@ TEST(SearchLights, FindsAFlatLampAndItsAxis) {
     const std::vector<Lamp> lamps{kTwoLamps[0], {{1.3f, -1.7f, 0.4f}, {9, 9, 9}, glm::normalize(glm::vec3(-1, 1, 0))}};
     const Balls balls(lamps, glm::vec3(0.05f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
-    const auto found = search_lights(surface, balls.try_lamps(surface), {}, {.highlight_share = 0});
+    const auto found = search_lights(surface, balls.try_lamps(surface), {}, {.most_lamps = 2, .highlight_share = 0});
     ASSERT_EQ(found.size(), 2u);
     const bool in_order = found[1].axis != glm::vec3(0);
     EXPECT_LT(glm::distance(found[in_order ? 0 : 1].place_m, lamps[0].place_m), 0.15f);
@@ -310,7 +310,7 @@ TEST(SearchLights, AWeakLampIsFoundWhereOneIsExpected) {
     lamps[1].intensity *= 0.07f;
     const Balls balls(lamps, glm::vec3(0.05f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
-    const LightSearchSettings settings{.highlight_share = 0, .expected_gain = 0.06f};
+    const LightSearchSettings settings{.most_lamps = 2, .highlight_share = 0, .expected_gain = 0.06f};
     for (size_t expected = 0; expected < 2; ++expected) {
         const auto found =
             search_lights(surface, balls.try_lamps(surface), std::span(&lamps[expected].place_m, 1), settings);

@@ -237,7 +237,7 @@ TEST_F(FitWardTest, StrongGlossFarBluerThanTheLampsIsNotBelieved) {
         graph::FrameGraph frame = runner().begin();
         table_.reset(frame);
         run(std::move(frame));
-        const std::vector<FilledRecord> records = sphere(1, {{}, ks, 0.15});
+        const std::vector<FilledRecord> records = sphere(1, {{}, ks, 0.15}, 60);
         fill(records);
         const gpu::WardFit fitted = fit({1})[1];
         expect_agreement(fitted, reference_fits(records, 1)[0], 1e-3, 1e-3, 0.01);
