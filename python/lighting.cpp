@@ -14,7 +14,8 @@ namespace {
 glm::dvec3 to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 void bind_lamps(py::module_& m) {
-    py::class_<Light>(m, "Light", "A lamp: radiance at distance r is intensity / r^2.")
+    py::class_<Light>(m, "Light",
+                      "A lamp: radiance at distance r is intensity / r^2, of a flat one times the cosine to its axis.")
         .def(py::init([](std::array<double, 3> position, std::array<double, 3> intensity, double radius,
                          std::array<double, 3> axis) {
                  return Light{to_vector(position), to_vector(intensity), radius, to_vector(axis)};

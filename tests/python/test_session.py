@@ -49,6 +49,10 @@ def test_lights_are_given_in_every_way(device, tmp_path):
     file = tmp_path / "lamps"
     patina.write_lighting(file, lighting)
     assert patina.read_lighting(file).ambient == (0.25, 0.5, 0.75)
+    assert patina.read_lighting(file).lights[0].axis == (0, 0, 0)
+    patina.write_lighting(file, patina.Lighting([patina.Light((1, 2, 3), (1, 1, 1), axis=(0, 0, -1))]))
+    assert patina.read_lighting(file).lights[0].axis == (0, 0, -1)
+    patina.write_lighting(file, lighting)
     for given in (lighting, patina.LightsFromFile(file), patina.LightsFromFile(str(file))):
         found = patina.Session(device, CUBES, frames=1, lighting=given).lighting
         assert found.ambient == lighting.ambient
