@@ -21,6 +21,7 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
+/// Whether it has an axis.
 inline bool is_flat(const Light& light) { return light.axis != glm::dvec3(0); }
 
 /// What a lamp sends towards a point of the world; a flat one nothing to one that it stands in.
@@ -56,7 +57,7 @@ struct Lighting {
 };
 
 /// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or
-/// no finite number, an intensity or a radius is below 0, or an axis is 0 0 0.
+/// no finite number, an intensity or a radius is below 0, or an axis is 0 0 0 or a sun's.
 Lighting read_lighting(const std::filesystem::path& file);
 
 /// Writes lights.json of the sequence format. Throws Error when the file cannot be written.

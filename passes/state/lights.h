@@ -19,8 +19,8 @@ class Lights {
   public:
     /// Replaces all. Positions are in the map's world; a lamp's radius is that of the obstacle that the map holds.
     /// `ambient` is the irradiance over pi (linear pixel value) that every surface receives from all around. All are
-    /// rounded to float; versions change only if something does. Throws Error for too many lights, or values that are
-    /// not finite or below zero.
+    /// rounded to float; versions change only if something does. Throws Error for too many lights, values that are not
+    /// finite or below zero, or an axis whose length is not 1 or that a sun has.
     void set(std::span<const Light> lights, glm::dvec3 ambient = glm::dvec3(0));
 
     void visit(graph::StateVisitor& visitor);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "patina/lighting.h"
+
 namespace patina {
 namespace {
 
@@ -229,9 +231,10 @@ bool is_same_place(const LitSurface& surface, glm::vec3 a_m, glm::vec3 b_m) {
 }
 
 TrialLamp as_flat(const LitSurface& surface, const TrialLamp& all_around, glm::vec3 axis) {
+    const Light lamp{
+        .position_m = glm::dvec3(all_around.place_m), .intensity = glm::dvec3(1), .axis = glm::dvec3(axis)};
     const auto emission = [&](const gpu::LightSample& sample) {
-        const glm::vec3 way_m = glm::vec3(sample.point_m) - all_around.place_m;
-        return std::max(glm::dot(axis, way_m), 0.0f) / std::max(glm::length(way_m), 1e-6f);
+        return static_cast<float>(intensity_towards(lamp, glm::dvec3(sample.point_m)).x);
     };
     TrialLamp flat = all_around;
     flat.axis = axis;

@@ -31,11 +31,12 @@ inline float received(const gpu::LightSample& sample, glm::vec3 place_m, glm::ve
 class Balls {
   public:
     /// Every other tile of the floor, 0.4 m wide, has `dark_tiles` times the albedo of the others.
-    Balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise = 0, float dark_tiles = 1)
+    /// `sparse`: half as many samples.
+    Balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise = 0, float dark_tiles = 1, bool sparse = false)
         : lamps_(std::move(lamps)), ambient_(ambient), dark_tiles_(dark_tiles) {
         std::normal_distribution<float> normal(0, 1);
         for (uint32_t place = 0; place < gpu::kLightSamples; ++place) {
-            if (place % 8 > 3) continue;  // not all places have a sample
+            if (place % 4 == 3 || (sparse && place % 8 > 3)) continue;  // not all places have a sample
             gpu::LightSample sample = place % 2 == 0 ? on_floor() : on_ball(place / 2 % 3);
             sample.diffuse *= 1 + noise * normal(random_);
             drawn_[place] = sample;
@@ -119,5 +120,10 @@ class Balls {
 };
 
 inline const std::vector<Lamp> kTwoLamps{{{-1.2f, -1.8f, -0.8f}, {8, 7.5f, 7}}, {{1.5f, -1.6f, 0.6f}, {5, 5, 5.5f}}};
+
+/// Half as many samples, for searches, which then take half as long.
+inline Balls sparse_balls(std::vector<Lamp> lamps, glm::vec3 ambient, float noise) {
+    return {std::move(lamps), ambient, noise, 1, true};
+}
 
 }  // namespace patina

@@ -24,7 +24,7 @@ void expect_second_lamp(glm::vec3 intensity, double share) {
 }
 
 TEST(UnmeasuredLamps, ALampThatNoPictureShowsIsFoundBesideAMeasuredOne) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const UnmeasuredLamps told =
         fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
@@ -35,7 +35,7 @@ TEST(UnmeasuredLamps, ALampThatNoPictureShowsIsFoundBesideAMeasuredOne) {
 }
 
 TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
-    const Balls balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
     MeasuredLight measured = first_lamp(balls, 0.2f);
@@ -48,7 +48,7 @@ TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
 }
 
 TEST(UnmeasuredLamps, OneThatNoPictureShowsIsBelievedWhenItIsFoundAgainOrMostIsKnown) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const glm::vec3 elsewhere_m = kTwoLamps[1].place_m + glm::vec3(0, 0, 1);
     const auto told_where = [&](float unknown) {
@@ -63,7 +63,7 @@ TEST(UnmeasuredLamps, OneThatNoPictureShowsIsBelievedWhenItIsFoundAgainOrMostIsK
 }
 
 TEST(UnmeasuredLamps, NoMoreAreSearchedForThanThereIsRoomFor) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const UnmeasuredLamps told = fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1),
                                                       balls.try_lamps(surface), 0);
@@ -72,7 +72,7 @@ TEST(UnmeasuredLamps, NoMoreAreSearchedForThanThereIsRoomFor) {
 }
 
 TEST(UnmeasuredLamps, WhatIsExplainedNeedsNone) {
-    const Balls balls({kTwoLamps[0]}, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls({kTwoLamps[0]}, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     const UnmeasuredLamps told =
         fit_unmeasured_lamps(surface, first_lamp(balls, 0.1f), {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
@@ -80,7 +80,7 @@ TEST(UnmeasuredLamps, WhatIsExplainedNeedsNone) {
 }
 
 TEST(UnmeasuredLamps, NothingIsToldWhereSurfaceIsNotExplained) {
-    const Balls balls(kTwoLamps, glm::vec3(0.2f), 0.6f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0.2f), 0.6f);
     const LitSurface surface(balls.drawn(), 1);
     const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
     const UnmeasuredLamps told =
@@ -94,7 +94,7 @@ TEST(UnmeasuredLamps, NothingIsToldWhereSurfaceIsNotExplained) {
 
 // The floor is the brightest surface, with 0.33. In half as much light it would have 0.66.
 TEST(UnmeasuredLamps, WhereLittleIsKnownOfTheRoomItsBrightestSurfaceIsNotDark) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     MeasuredLight measured = first_lamp(balls, 0.6f);
     measured.tint = {1.2f, 1, 0.8f};
@@ -109,7 +109,7 @@ TEST(UnmeasuredLamps, WhereLittleIsKnownOfTheRoomItsBrightestSurfaceIsNotDark) {
 
 // Then the brightest surface, the floor with a mean of 0.323, has the albedo of white.
 TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceAsks) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
     MeasuredLight measured{.known = std::vector<glm::vec3>(gpu::kLightSamples, glm::vec3(1e-4f)),
                            .unknown = std::vector<float>(gpu::kLightSamples, 0.1f)};
@@ -126,7 +126,7 @@ TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceA
 
 // Albedos of 1.3 are none: then light is missing.
 TEST(UnmeasuredLamps, AFifthOfTheSurfaceAtMostIsBrighterThanPaint) {
-    const Balls balls(kTwoLamps, glm::vec3(0), 0.02f);
+    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0), 0.02f);
     std::vector<gpu::LightSample> drawn = balls.drawn();
     for (gpu::LightSample& sample : drawn) sample.diffuse *= 4.0f;
     const LitSurface surface(drawn, 1);

@@ -3,6 +3,7 @@
 #include "engine/core/srgb.h"
 #include "reconstruction/lights/ruled_out_places.h"
 #include "reconstruction/lights/surface_samples.h"
+#include "reconstruction/lights/try_in_volume.h"
 #include "reconstruction/pipeline.h"
 #include "reconstruction/session/rgbd_frame.h"
 #include "scenes/files/scene_file.h"
@@ -87,6 +88,21 @@ class LowExposureTest : public GpuTest {
         return pending.get();
     }
 
+    /// Samples all over a view, the second half with highlights that mirror the camera.
+    static std::vector<gpu::LightSample> samples_of(const ModelView& view) {
+        const std::vector<glm::vec4>&places = view.position_m.pixels(), &normals = view.normal.pixels();
+        std::vector<gpu::LightSample> samples(2 * gpu::kLightSamples);
+        for (size_t i = 0; i < samples.size(); ++i) {
+            const size_t pixel = i * places.size() / samples.size();
+            if (places[pixel].w <= 0) continue;
+            samples[i].point_m = glm::vec4(glm::vec3(places[pixel]), 9);
+            samples[i].normal = normals[pixel];
+            samples[i].diffuse = glm::vec4(0.5f);
+            samples[i].highlight = glm::vec4(glm::vec3(normals[pixel]), 1);
+        }
+        return samples;
+    }
+
     static size_t with_depth(const ModelView& view) {
         return static_cast<size_t>(
             std::ranges::count_if(view.position_m.pixels(), [](glm::vec4 position_m) { return position_m.w > 0; }));
@@ -162,18 +178,32 @@ TEST_F(LowExposureTest, RulesOutUnseenLampsWhereTwoPicturesLooked) {
     }
 }
 
+TEST_F(LowExposureTest, LampsInRuledOutPlacesGiveNothing) {
+    Pipeline pipeline(device(), settings());
+    pipeline.set_lights(tour_.lights);
+    for (size_t i = 0; i < 2; ++i) pipeline.add(frame(i));
+    for (int i = 0; i < 2; ++i) add_low(pipeline, 0);
+    std::vector<gpu::LightSample> drawn = samples_of(view(pipeline, 0));
+    const LitSurface surface(drawn, 1);
+    const RuledOutPlaces ruled_out(pipeline, pipeline.reflectance()->low_exposure_cameras());
+    const TryLampsInVolume try_any(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);
+    const RigidTransform& camera = *tour_.frames[0].world_from_camera;
+    const std::vector<glm::vec3> places_m{glm::vec3(camera[3] - 0.3 * camera[2]),
+                                          glm::vec3(camera[3] - 2.0 * camera[2])};
+    const auto any = try_any(places_m, gpu::kLightSamples), unseen = try_unseen(places_m, gpu::kLightSamples);
+    EXPECT_GT(any[0].received->mean, 0);
+    EXPECT_GT(any[1].received->mean, 0);
+    EXPECT_EQ(unseen[0].received->mean, 0);
+    EXPECT_EQ(unseen[1].received->by_sample, any[1].received->by_sample);
+    for (const float share : unseen[0].unexplained) EXPECT_EQ(share, 1);
+}
+
 TEST_F(LowExposureTest, SurfaceReceivesOfAFlatLampByTheCosineToItsAxis) {
     Pipeline pipeline(device(), settings());
     pipeline.set_lights(tour_.lights);
     for (size_t i = 0; i < 2; ++i) pipeline.add(frame(i));
-    const ModelView seen = view(pipeline, 0);
-    const std::vector<glm::vec4>&places = seen.position_m.pixels(), &normals = seen.normal.pixels();
-    std::vector<gpu::LightSample> samples(gpu::kLightSamples);
-    for (size_t i = 0; i < samples.size(); ++i) {
-        const size_t pixel = i * places.size() / samples.size();
-        samples[i].point_m = glm::vec4(glm::vec3(places[pixel]), places[pixel].w > 0 ? 9 : 0);
-        samples[i].normal = normals[pixel];
-    }
+    std::vector<gpu::LightSample> samples = samples_of(view(pipeline, 0));
+    samples.resize(gpu::kLightSamples);
     Light flat = tour_.lights.at(0);
     flat.axis = glm::normalize(glm::dvec3(0.5, 1, 0.2));
     const std::vector<glm::vec3> around = received_from(pipeline, samples, std::span(tour_.lights).first(1));

@@ -200,7 +200,8 @@ void WardFitSeries::doubt_blue() {
         const double t = std::clamp((value - low) / (high - low), 0.0, 1.0);
         return t * t * (3 - 2 * t);
     };
-    const double doubt = step(0.2, 0.3, max_of(estimate_.ks)) * step(1.3, 1.6, estimate_.ks.b / estimate_.ks.r);
+    const double doubt =
+        step(0.2, 0.3, max_of(estimate_.ks)) * step(1.3, 1.6, estimate_.ks.b / std::max(estimate_.ks.r, 1e-6));
     estimate_.ks += doubt * (prior_.ks - estimate_.ks);
     estimate_.alpha += doubt * (prior_.alpha - estimate_.alpha);
     confidence_ *= 1 - doubt;
