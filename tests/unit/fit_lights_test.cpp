@@ -304,6 +304,19 @@ TEST(SearchLights, AFlatLampGivesNothingAndMirrorsNothingBehindIt) {
     EXPECT_EQ(flat.axis, axis);
 }
 
+// Two lamps a metre apart: without either of them, where it stands, much is unexplained; one between them explains
+// nearly all.
+TEST(SearchLights, ALampMustBeWorthHavingBesideTheBestOfFewer) {
+    const glm::vec3 middle_m{0.2f, -1.5f, 0.1f};
+    const std::vector<Lamp> lamps{{middle_m - glm::vec3(0.5f, 0, 0), {5, 5, 5}},
+                                  {middle_m + glm::vec3(0.5f, 0, 0), {5, 5, 5}}};
+    const Balls balls = sparse_balls(lamps, glm::vec3(0.05f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const auto found = search_lights(surface, balls.try_lamps(surface), {}, {.most_lamps = 2, .highlight_share = 0});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_LT(glm::distance(found[0].place_m, middle_m), 0.3f);
+}
+
 // What makes a weak lamp worth having is less where one is expected.
 TEST(SearchLights, AWeakLampIsFoundWhereOneIsExpected) {
     std::vector<Lamp> lamps(kTwoLamps.begin(), kTwoLamps.end());
