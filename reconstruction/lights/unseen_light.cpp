@@ -98,6 +98,20 @@ glm::vec3 usual_light(std::span<const gpu::LightSample> samples) {
     return known > 0 ? glm::vec3(sum / known) : glm::vec3(0);
 }
 
+glm::vec3 surface_light(std::span<const gpu::LightSample> samples) {
+    glm::vec3 light(0);
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float> sent;
+        for (const gpu::LightSample& sample : samples)
+            if (sample.point_m.w > 0) sent.push_back(sample.diffuse[c]);
+        if (sent.empty()) continue;
+        const auto middle = sent.begin() + static_cast<ptrdiff_t>(sent.size() / 2);
+        std::nth_element(sent.begin(), middle, sent.end());
+        light[c] = *middle;
+    }
+    return light;
+}
+
 std::optional<float> least_strength(std::span<const gpu::LightSample> samples, std::span<const float> received,
                                     std::span<const float> reached, float albedo, double share) {
     std::vector<float> asked;
@@ -126,6 +140,15 @@ std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const Kn
     return glm::vec3(beside_sun ? 0 : *fitted);
 }
 
+glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual, bool beside_sun,
+                              float least) {
+    const auto chosen = choose_unseen_light(surface, known, usual, beside_sun);
+    if (!chosen) return glm::max(surface_light(surface.samples()), kLeastUnseen);
+    const float radiance = mean_of(*chosen), enough = std::max(least, kLeastUnseen);
+    if (radiance >= enough) return *chosen;
+    return radiance > 0 ? enough / radiance * *chosen : glm::vec3(enough);
+}
+
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                            std::span<const Light> lights) {
     for (gpu::LightSample& sample : drawn)
@@ -141,11 +164,8 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
         unknown.push_back(drawn[i].around.w);
     }
     const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
-    const auto chosen = choose_unseen_light(surface, known, usual, std::ranges::any_of(lights, is_sun));
-    if (!chosen) return std::nullopt;
-    const float least = std::max(least_unseen_light(drawn, all), kLeastUnseen), radiance = mean_of(*chosen);
-    if (radiance >= least) return chosen;
-    return radiance > 0 ? least / radiance * *chosen : glm::vec3(least);
+    return decide_unseen_light(surface, known, usual, std::ranges::any_of(lights, is_sun),
+                               least_unseen_light(drawn, all));
 }
 
 }  // namespace patina

@@ -43,6 +43,11 @@ std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLigh
 /// Radiance that known directions send on average over all samples that have some; linear pixel value.
 glm::vec3 usual_light(std::span<const gpu::LightSample> samples);
 
+/// Radiance that the surface itself sends, by channel the median over all samples; linear pixel value, 0 where there
+/// are none. Unlike usual_light() windows and lamps' surroundings do not count: they are few, and what is hidden is
+/// mostly more of the same walls.
+glm::vec3 surface_light(std::span<const gpu::LightSample> samples);
+
 /// How strong light has to be that gives the samples `reached` at a strength of 1, for no more than `share` of these to
 /// have an albedo above `albedo`, beside the light that they receive. Both are irradiance over pi by sample, mean of
 /// the channels. What light does not reach (0) does not count. Below 0 where they receive more than enough; empty where
@@ -65,9 +70,13 @@ float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<co
 std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual,
                                              bool beside_sun);
 
-/// choose_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it. Not
-/// less than that without which surfaces were too bright. Empty where nothing explains the surface: then as much as
-/// each record receives from elsewhere is better. Above 0: no light at all would count as not known. At least one lamp,
+/// What counts in the end: choose_unseen_light(), but not less than `least` (least_unseen_light()); where nothing
+/// explains the surface, what that sends itself (surface_light()). Above 0: no light at all would count as not known.
+glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual, bool beside_sun,
+                              float least);
+
+/// decide_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it.
+/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. At least one lamp,
 /// at most gpu::kMaxPointLights lights. Waits for the device.
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                            std::span<const Light> lights);

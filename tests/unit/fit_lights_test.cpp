@@ -164,6 +164,37 @@ TEST(UsualLight, IsWhatKnownDirectionsSend) {
     EXPECT_EQ(usual_light({}), glm::vec3(0));
 }
 
+TEST(SurfaceLight, IsTheMedianOfWhatTheSurfaceSends) {
+    const auto sends = [](float observations, glm::vec3 light) {
+        gpu::LightSample sample{};
+        sample.point_m.w = observations;
+        sample.diffuse = glm::vec4(light, 0);
+        return sample;
+    };
+    std::vector<gpu::LightSample> samples(200, sends(5, {0.1f, 0.2f, 0.3f}));
+    samples.insert(samples.end(), 50, sends(3, {4, 3, 2}));             // a patch of sun
+    samples.insert(samples.end(), 49, sends(3, {0.05f, 0.02f, 0.1f}));  // black tiles
+    samples.insert(samples.end(), 500, sends(0, {9, 9, 9}));            // no samples
+    EXPECT_EQ(surface_light(samples), glm::vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(surface_light(std::vector(7, sends(0, {9, 9, 9}))), glm::vec3(0));
+}
+
+glm::vec3 decided(float noise, float least) {
+    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), noise), 0.5f * LitRoom::kWalls);
+    const LitSurface surface(room.drawn, 1);
+    return decide_unseen_light(surface, room.known_on(surface), glm::vec3(LitRoom::kWalls), false, least);
+}
+
+TEST(DecideUnseenLight, IsAtLeastWhatSurfacesAskForWhereItIsExplained) {
+    EXPECT_NEAR(decided(0.02f, 0).g, 0.5f * LitRoom::kWalls, 0.01f);
+    EXPECT_NEAR(decided(0.02f, 1).g, 1, 1e-6f);
+}
+
+TEST(DecideUnseenLight, IsWhatTheSurfaceSendsWhereNothingExplainsIt) {
+    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), 0.5f), 0.5f * LitRoom::kWalls);
+    EXPECT_EQ(decided(0.5f, 1), surface_light(room.drawn));
+}
+
 gpu::LightSample sample_of(float value, float unknown) {
     return {glm::vec4(1), glm::vec4(0), glm::vec4(value), glm::vec4(0), glm::vec4(0, 0, 0, unknown)};
 }

@@ -14,6 +14,8 @@ def build(room, sky):
     linen = Material("linen", (0.7, 0.68, 0.62))
     blanket = Material("blanket", speckled((0.14, 0.22, 0.4), (0.2, 0.3, 0.48), 30))
     brass = Material("brass", (0.03, 0.025, 0.01), (0.72, 0.55, 0.26), 0.15)
+    picture = Material("print", speckled((0.7, 0.65, 0.5), (0.15, 0.3, 0.3), 5))
+    rug = Material("rug", speckled((0.5, 0.46, 0.38), (0.4, 0.3, 0.22), 15))
     curtain = Material("curtain", (0.5, 0.36, 0.2))
 
     room.box("floor", (0, 0, -0.1), (4.0, 4.4, 0), floor)
@@ -42,15 +44,16 @@ def build(room, sky):
     room.box("book", (3.14, 3.94, 0.5), (3.28, 4.14, 0.53), Material("red cover", (0.5, 0.06, 0.06), 0.03, 0.2))
 
     room.box("wardrobe", (0.0, 2.2, 0.0), (0.6, 4.3, 2.2), white_wood, 0.008)
+    gap = Material("gap", (0.05, 0.05, 0.05))
     for y in (2.9, 3.6):
-        room.box(f"wardrobe line {y}", (0.601, y - 0.005, 0.02), (0.605, y + 0.005, 2.18), Material("gap", (0.05, 0.05, 0.05)))
+        room.box(f"wardrobe line {y}", (0.601, y - 0.005, 0.02), (0.605, y + 0.005, 2.18), gap)
         room.cylinder(f"knob {y}", (0.62, y - 0.07, 1.0), 0.015, 0.12, brass)
     room.box("drawers", (0.0, 0.5, 0.0), (0.45, 1.7, 0.85), walnut, 0.008)
     room.monkey("figure", (0.22, 0.8, 1.0), 0.28, Material("green glaze", (0.08, 0.3, 0.14), 0.06, 0.1), 1.57)
     room.ring("ring", (0.22, 1.3, 0.91), 0.1, 0.03, Material("steel", (0.04, 0.04, 0.04), (0.56, 0.55, 0.53), 0.18))
     room.box("picture frame", (0.0, 0.65, 1.25), (0.02, 1.55, 1.95), walnut)
-    room.box("picture", (0.018, 0.72, 1.32), (0.024, 1.48, 1.88), Material("print", speckled((0.7, 0.65, 0.5), (0.15, 0.3, 0.3), 5)))
-    room.box("rug", (0.9, 0.6, 0), (3.1, 1.9, 0.012), Material("rug", speckled((0.5, 0.46, 0.38), (0.4, 0.3, 0.22), 15)))
+    room.box("picture", (0.018, 0.72, 1.32), (0.024, 1.48, 1.88), picture)
+    room.box("rug", (0.9, 0.6, 0), (3.1, 1.9, 0.012), rug)
     room.parts("chair", [((3.0, 0.4, 0.42), (3.45, 0.85, 0.47)), ((3.0, 0.4, 0.47), (3.45, 0.44, 0.95))] +
                [((3.0 + u, 0.4 + v, 0), (3.04 + u, 0.44 + v, 0.42)) for u in (0, 0.41) for v in (0, 0.41)], walnut)
     room.ball("cushion", (3.22, 0.62, 0.53), 0.2, Material("yellow cloth", (0.65, 0.45, 0.1)), (1, 1, 0.35))

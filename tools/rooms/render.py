@@ -3,7 +3,8 @@
   blender --background --factory-startup --python-exit-code 1 --python tools/rooms/render.py -- kitchen|bedroom OUT
           [--sky FILE.hdr] [--frames N] [--extent WxH] [--samples N] [--truth-every N] [--seed N]
 
-Cycles shares no code with Patina: lamps with an extent, a sky behind a window, four bounces, a gloss that mirrors the room.
+Cycles shares no code with Patina: lamps with an extent, a sky behind a window, four bounces, gloss that mirrors the
+room.
 Every other frame is also in OUT/lighting, at a 64th of the exposure.
 Needs Debian's packages blender, python3-numpy and python3-opencv.
 """
@@ -52,13 +53,14 @@ def parse_arguments():
 def set_up(options):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = options.width, options.height, 100
+    scene.render.resolution_x, scene.render.resolution_y = options.width, options.height
+    scene.render.resolution_percentage = 100
     cycles = scene.cycles
     cycles.use_denoising = cycles.use_adaptive_sampling = False
     cycles.max_bounces = 5
     cycles.diffuse_bounces = cycles.glossy_bounces = 4
     cycles.caustics_reflective = False  # too rare to be sampled: they are single bright pixels
-    cycles.sample_clamp_indirect = 10
+    cycles.sample_clamp_indirect = 4
     cycles.pixel_filter_type = "BOX"
     layer = scene.view_layers[0]
     for name in ("z", "normal", "diffuse_color", "glossy_color", "object_index"):
@@ -131,8 +133,8 @@ def truth_channels(room, shown, data):
     depth = data["depth"] if data["depth"].ndim == 2 else data["depth"][..., 0]
     alpha = numpy.array([0.5] + [material.alpha for _, material in room.things])[label]
     channels = {"alpha": alpha, "label": label, "depth": numpy.where(depth < 50, depth, 0), "valid": label > 0}
-    for name, values, letters in (("kd", shown["kd"], "RGB"), ("ks", shown["ks"], "RGB"), ("rgb", shown["color"], "RGB"),
-                                  ("normal", data["normal"], "XYZ")):
+    for name, values, letters in (("kd", shown["kd"], "RGB"), ("ks", shown["ks"], "RGB"),
+                                  ("rgb", shown["color"], "RGB"), ("normal", data["normal"], "XYZ")):
         for i, letter in enumerate(letters):
             channels[f"{name}.{letter}"] = values[..., i]
     return channels
@@ -147,7 +149,8 @@ def take(scratch, room, pose, exposure, options, index):
     shown["color"] *= exposure
     channels = truth_channels(room, shown, data)
     label = channels["label"]
-    smooth = filtered(shown["color"], shown["kd"] + shown["ks"], numpy.maximum(channels["depth"], 0.1), data["normal"], label)
+    depth = numpy.maximum(channels["depth"], 0.1)
+    smooth = filtered(shown["color"], shown["kd"] + shown["ks"], depth, data["normal"], label)
     return numpy.where(label[..., None] > 0, smooth, shown["color"]), channels
 
 

@@ -1,7 +1,7 @@
 """What the rooms are built of: surfaces whose materials are known exactly, lamps, and an opening to a sky.
 
-Lengths are in metres, z is up. A material is a diffuse albedo kd plus a Beckmann lobe of albedo ks and width alpha, which
-for the alphas used here is close to the Ward lobe that Patina reconstructs.
+Lengths are in metres, z is up. A material is a diffuse albedo kd plus a Beckmann lobe of albedo ks and width alpha,
+which for the alphas used here is close to the Ward lobe that Patina reconstructs.
 """
 import math
 
@@ -99,7 +99,8 @@ class Room:
         return thing
 
     def box(self, name, low, high, material, bevel=0.0, turned=0.0):
-        bpy.ops.mesh.primitive_cube_add(size=1, location=[(a + b) / 2 for a, b in zip(low, high)], rotation=(0, 0, turned))
+        centre = [(a + b) / 2 for a, b in zip(low, high)]
+        bpy.ops.mesh.primitive_cube_add(size=1, location=centre, rotation=(0, 0, turned))
         bpy.context.object.scale = [b - a for a, b in zip(low, high)]
         bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
         return self._add(name, material, bevel)
@@ -127,7 +128,8 @@ class Room:
         return self._add(name, material, smooth=True)
 
     def ring(self, name, centre, radius, thickness, material, rotation=(0, 0, 0)):
-        bpy.ops.mesh.primitive_torus_add(location=centre, major_radius=radius, minor_radius=thickness, rotation=rotation)
+        bpy.ops.mesh.primitive_torus_add(location=centre, major_radius=radius, minor_radius=thickness,
+                                         rotation=rotation)
         return self._add(name, material, smooth=True)
 
     def monkey(self, name, centre, size, material, turned=0.0):
@@ -201,11 +203,12 @@ class Room:
 
     def tube(self, low, high, intensity):
         """Shines downwards; no point lamp of the truth stands for it."""
-        bpy.ops.mesh.primitive_cube_add(size=1, location=[(a + b) / 2 for a, b in zip(low, high)])
+        centre = [(a + b) / 2 for a, b in zip(low, high)]
+        bpy.ops.mesh.primitive_cube_add(size=1, location=centre)
         size = [b - a for a, b in zip(low, high)]
         bpy.context.object.scale = size
         self._shining([value / (size[0] * size[1]) for value in intensity])
-        light = self._light("AREA", [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]], [4 * value for value in intensity])
+        light = self._light("AREA", (*centre[:2], low[2]), [4 * value for value in intensity])
         light.shape, light.size, light.size_y = "RECTANGLE", size[0], size[1]
 
     def sky(self, file, strength, turned):

@@ -30,7 +30,10 @@ def noisy_depth(depth, random):
 def filtered(color, albedo, depth, normal, label, radius=3):
     """A joint bilateral filter of what the albedo is multiplied with, against the noise of path tracing."""
     shading = color / numpy.maximum(albedo, 0.02)
-    capped = numpy.log1p(shading)  # single bright samples count for less
+    around = cv2.medianBlur(shading.astype(numpy.float32), 5)
+    single = shading.mean(2) > 1.5 * around.mean(2) + 0.05  # paths that met a lamp by chance
+    shading = numpy.where(single[..., None], around, shading)
+    level = numpy.log1p(shading)
     total, weights = numpy.zeros_like(shading), numpy.zeros(depth.shape + (1,))
     for dy in range(-radius, radius + 1):
         for dx in range(-radius, radius + 1):
@@ -38,7 +41,7 @@ def filtered(color, albedo, depth, normal, label, radius=3):
                 return numpy.roll(image, (dy, dx), (0, 1))
             weight = ((moved(label) == label) * numpy.exp(-0.5 * ((moved(depth) - depth) / (0.02 * depth)) ** 2) *
                       numpy.clip((moved(normal) * normal).sum(2), 0, 1) ** 32)[..., None]
-            weight = weight * numpy.exp(-((moved(capped) - capped) ** 2).mean(2, keepdims=True) / 0.02)
+            weight = weight * numpy.exp(-((moved(level) - level) ** 2).mean(2, keepdims=True) / 0.02)
             total += weight * moved(shading)
             weights += weight
     return total / weights * numpy.maximum(albedo, 0.02)
