@@ -99,6 +99,7 @@ glm::vec3 usual_light(std::span<const gpu::LightSample> samples) {
 }
 
 glm::vec3 surface_light(std::span<const gpu::LightSample> samples) {
+    samples = samples.first(std::min<size_t>(samples.size(), gpu::kLightSamples));  // the others are highlights'
     glm::vec3 light(0);
     for (int c = 0; c < 3; ++c) {
         std::vector<float> sent;
@@ -140,10 +141,10 @@ std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const Kn
     return glm::vec3(beside_sun ? 0 : *fitted);
 }
 
-glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual, bool beside_sun,
-                              float least) {
-    const auto chosen = choose_unseen_light(surface, known, usual, beside_sun);
-    if (!chosen) return glm::max(surface_light(surface.samples()), kLeastUnseen);
+glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known,
+                              std::span<const gpu::LightSample> drawn, bool beside_sun, float least) {
+    const auto chosen = choose_unseen_light(surface, known, usual_light(drawn), beside_sun);
+    if (!chosen) return glm::max(surface_light(drawn), kLeastUnseen);
     const float radiance = mean_of(*chosen), enough = std::max(least, kLeastUnseen);
     if (radiance >= enough) return *chosen;
     return radiance > 0 ? enough / radiance * *chosen : glm::vec3(enough);
@@ -154,8 +155,7 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
-    const glm::vec3 usual = usual_light(drawn);
-    if (surface.size() == 0 || usual == glm::vec3(0)) return std::nullopt;
+    if (surface.size() == 0 || usual_light(drawn) == glm::vec3(0)) return std::nullopt;
     const std::vector<glm::vec3> received = received_from(pipeline, drawn, lights);
     std::vector<float> sent, all, unknown;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
@@ -164,7 +164,7 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
         unknown.push_back(drawn[i].around.w);
     }
     const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
-    return decide_unseen_light(surface, known, usual, std::ranges::any_of(lights, is_sun),
+    return decide_unseen_light(surface, known, drawn, std::ranges::any_of(lights, is_sun),
                                least_unseen_light(drawn, all));
 }
 

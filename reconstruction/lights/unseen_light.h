@@ -71,9 +71,10 @@ std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const Kn
                                              bool beside_sun);
 
 /// What counts in the end: choose_unseen_light(), but not less than `least` (least_unseen_light()); where nothing
-/// explains the surface, what that sends itself (surface_light()). Above 0: no light at all would count as not known.
-glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual, bool beside_sun,
-                              float least);
+/// explains the surface, what that sends itself (surface_light()). `drawn` as draw_samples returns it, and not black
+/// around. Above 0: no light at all would count as not known.
+glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known,
+                              std::span<const gpu::LightSample> drawn, bool beside_sun, float least);
 
 /// decide_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it.
 /// Empty where nobody looked around: then as much as each record receives from elsewhere is better. At least one lamp,

@@ -179,10 +179,17 @@ TEST(SurfaceLight, IsTheMedianOfWhatTheSurfaceSends) {
     EXPECT_EQ(surface_light(std::vector(7, sends(0, {9, 9, 9}))), glm::vec3(0));
 }
 
+LitRoom looked_around(float noise) {
+    LitRoom room(Balls(kTwoLamps, glm::vec3(0), noise), 0.5f * LitRoom::kWalls);
+    for (uint32_t i = 0; i < gpu::kLightSamples; ++i)
+        room.drawn[i].around = glm::vec4(glm::vec3(LitRoom::kWalls * (1 - room.unknown[i])), room.unknown[i]);
+    return room;
+}
+
 glm::vec3 decided(float noise, float least) {
-    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), noise), 0.5f * LitRoom::kWalls);
+    const LitRoom room = looked_around(noise);
     const LitSurface surface(room.drawn, 1);
-    return decide_unseen_light(surface, room.known_on(surface), glm::vec3(LitRoom::kWalls), false, least);
+    return decide_unseen_light(surface, room.known_on(surface), room.drawn, false, least);
 }
 
 TEST(DecideUnseenLight, IsAtLeastWhatSurfacesAskForWhereItIsExplained) {
@@ -191,8 +198,7 @@ TEST(DecideUnseenLight, IsAtLeastWhatSurfacesAskForWhereItIsExplained) {
 }
 
 TEST(DecideUnseenLight, IsWhatTheSurfaceSendsWhereNothingExplainsIt) {
-    const LitRoom room(Balls(kTwoLamps, glm::vec3(0), 0.5f), 0.5f * LitRoom::kWalls);
-    EXPECT_EQ(decided(0.5f, 1), surface_light(room.drawn));
+    EXPECT_EQ(decided(0.5f, 1), surface_light(looked_around(0.5f).drawn));
 }
 
 gpu::LightSample sample_of(float value, float unknown) {

@@ -89,9 +89,9 @@ def build(room, sky):
     room.box("napkin", (1.62, 1.7, 0.74), (1.8, 1.95, 0.746), Material("linen", (0.5, 0.44, 0.55)))
     room.box("rug", (1.2, 0.25, 0), (3.4, 2.9, 0.012), rug)
     for x, intensity in ((1.95, (1.43, 1.18, 0.88)), (2.65, (1.43, 1.18, 0.88))):
-        room.cylinder(f"shade {x}", (x, 1.65, 1.5), 0.16, 0.17, shade, 0.07, open_ends=True)
-        room.box(f"cable {x}", (x - 0.004, 1.646, 1.67), (x + 0.004, 1.654, 2.5), black)
-        room.bulb((x, 1.65, 1.56), 0.025, intensity)
+        room.cylinder(f"shade {x}", (x, 1.65, 1.75), 0.16, 0.17, shade, 0.07, open_ends=True)
+        room.box(f"cable {x}", (x - 0.004, 1.646, 1.92), (x + 0.004, 1.654, 2.5), black)
+        room.bulb((x, 1.65, 1.79), 0.025, intensity)
     room.bulb((3.4, 2.0, 2.38), 0.035, (2.80, 2.31, 1.72))
 
     # The wall towards the viewer: door, radiator, plant.

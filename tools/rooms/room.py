@@ -242,9 +242,11 @@ class Room:
         thing.location = centre
         thing.rotation_euler = mathutils.Vector(direction).to_track_quat("-Z", "Z").to_euler()
 
-    def sun(self, direction, radiance):
+    def sun(self, direction, irradiance):
+        """direction: in which it shines; irradiance: of surface that faces it."""
         light = bpy.data.lights.new("sun", "SUN")
-        light.energy, light.color, light.angle = max(radiance), [value / max(radiance) for value in radiance], 0.009
+        light.energy, light.color = max(irradiance), [value / max(irradiance) for value in irradiance]
+        light.angle = 0.009
         thing = bpy.data.objects.new("sun", light)
         bpy.context.collection.objects.link(thing)
         thing.rotation_euler = mathutils.Vector(direction).to_track_quat("-Z", "Y").to_euler()

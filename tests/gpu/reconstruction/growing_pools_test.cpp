@@ -86,14 +86,22 @@ class GrowingPoolsTest : public GpuTest {
         static const SmallCubes rendered(device(), 12);
         return rendered;
     }
+
+    /// Too small for the first frame.
+    static ReconstructionSettings small_settings() { return settings(64, 64, 64, 3); }
+
+    /// What these grow to, reconstructed once for all tests.
+    const Result& small() const {
+        static const Result grown = reconstruct(small_settings());
+        return grown;
+    }
 };
 
 TEST_F(GrowingPoolsTest, SmallPoolsGrowIntoTheModelOfLargeOnes) {
     const Result large = reconstruct(settings(16384, 32768, 65536));
     ASSERT_GT(large.mesh.positions_m.size(), 1000u);
-    const Result small = reconstruct(settings(64, 64, 64, 3));
-    expect_same(small, large);
-    for (const PoolState& pool : small.pools) {
+    expect_same(small(), large);
+    for (const PoolState& pool : small().pools) {
         EXPECT_GT(pool.growths, 0u) << pool.name;
         EXPECT_EQ(pool.limit, PoolLimit::kNone) << pool.name;
         EXPECT_EQ(pool.refused, 0u) << pool.name << ": the first frame is fused anew, later ones find room";
@@ -104,7 +112,7 @@ TEST_F(GrowingPoolsTest, SmallPoolsGrowIntoTheModelOfLargeOnes) {
 }
 
 TEST_F(GrowingPoolsTest, EveryRunGrowsAlike) {
-    const Result first = reconstruct(settings(128, 128, 256)), again = reconstruct(settings(128, 128, 256));
+    const Result &first = small(), again = reconstruct(small_settings());
     expect_same(first, again);
     for (size_t i = 0; i < first.pools.size(); ++i) {
         EXPECT_EQ(first.pools[i].capacity, again.pools[i].capacity);
@@ -159,11 +167,12 @@ TEST_F(GrowingPoolsTest, MaterialsThatWereEstimatedStayWhenLabelsGrow) {
         return pipeline.counters().pools.back();
     };
     std::vector<SegmentReflectance> segments[2];
+    const auto frames = std::span(cubes().frames).first(6);
     uint32_t labels = 4096;
     for (const size_t grown : {0u, 1u}) {
         Pipeline pipeline(device(), with_labels(labels));
         pipeline.set_lights(cubes().lights);
-        for (const Frame& frame : cubes().frames) {
+        for (const Frame& frame : frames) {
             pipeline.add(patina::to_rgbd(cubes().info, frame));
             if (frame.index > 0) continue;
             ASSERT_EQ(labels_of(pipeline).growths, 0u) << "it is to grow later";
