@@ -13,6 +13,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import sys
 import tempfile
 
@@ -43,9 +44,19 @@ def parse_arguments():
     parser.add_argument("--truth-every", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
-    options.width, options.height = (int(part) for part in options.extent.split("x"))
-    if options.out.exists():
-        parser.error(f"{options.out} exists")
+    extent = re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", options.extent)
+    if not extent:
+        parser.error(f"--extent: '{options.extent}' is not WxH")
+    options.width, options.height = int(extent[1]), int(extent[2])
+    for name in ("frames", "samples", "truth_every"):
+        if getattr(options, name) < 1:
+            parser.error(f"--{name.replace('_', '-')}: {getattr(options, name)} is not above 0")
+    if options.sky and not options.sky.is_file():
+        parser.error(f"--sky: there is no file {options.sky}")
+    options.unfinished = options.out.with_name(options.out.name + ".unfinished")
+    for folder in (options.out, options.unfinished):
+        if folder.exists():
+            parser.error(f"{folder} exists")
     return options
 
 
@@ -166,14 +177,13 @@ def main():
     options = parse_arguments()
     described = importlib.import_module(options.room)
     room = Room()
-    described.build(room, options.sky)
+    described.build(room, options.sky and options.sky.resolve())
     camera = set_up(options)
-    unfinished = options.out.with_name(options.out.name + ".unfinished")
-    truth = unfinished / "truth"
+    truth = options.unfinished / "truth"
     (truth / "frames").mkdir(parents=True)
     (truth / "labels").mkdir()
-    recording = Sequence(unfinished, options.room, camera, 1.0, options.seed)
-    low = Sequence(unfinished / "lighting", options.room, camera, LOW_EXPOSURE, options.seed + 1)
+    recording = Sequence(options.unfinished, options.room, camera, 1.0, options.seed)
+    low = Sequence(options.unfinished / "lighting", options.room, camera, LOW_EXPOSURE, options.seed + 1)
     with tempfile.TemporaryDirectory() as scratch:
         write_passes_to(scratch)
         for index in range(options.frames):
@@ -189,7 +199,7 @@ def main():
     recording.finish()
     low.finish()
     write_truth(truth, room, recording.poses, described.EXPOSURE)
-    unfinished.rename(options.out)
+    options.unfinished.rename(options.out)
 
 
 main()
