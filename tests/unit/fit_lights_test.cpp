@@ -174,7 +174,8 @@ TEST(SurfaceLight, IsTheMedianOfWhatTheSurfaceSends) {
     std::vector<gpu::LightSample> samples(200, sends(5, {0.1f, 0.2f, 0.3f}));
     samples.insert(samples.end(), 50, sends(3, {4, 3, 2}));             // a patch of sun
     samples.insert(samples.end(), 49, sends(3, {0.05f, 0.02f, 0.1f}));  // black tiles
-    samples.insert(samples.end(), 500, sends(0, {9, 9, 9}));            // no samples
+    samples.resize(gpu::kLightSamples, sends(0, {9, 9, 9}));            // no samples
+    samples.resize(2 * gpu::kLightSamples, sends(5, {9, 9, 9}));        // highlights
     EXPECT_EQ(surface_light(samples), glm::vec3(0.1f, 0.2f, 0.3f));
     EXPECT_EQ(surface_light(std::vector(7, sends(0, {9, 9, 9}))), glm::vec3(0));
 }
