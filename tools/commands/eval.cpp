@@ -87,8 +87,8 @@ void evaluate_finished(const EvalArguments& arguments, OutputFolder& out, eval::
     evaluation.relit = measure(truth / "relit", "relit");
 }
 
-void write_files(const eval::Evaluation& evaluation, OutputFolder& out) {
-    out.write("report.html", eval_report_html(evaluation, eval::error_figures(evaluation)));
+void write_files(const eval::Evaluation& evaluation, const std::vector<eval::ErrorFigure>& figures, OutputFolder& out) {
+    out.write("report.html", eval_report_html(evaluation, figures));
     out.write("eval.json", eval::eval_json(evaluation));
     out.commit();
 }
@@ -99,8 +99,10 @@ void run_eval(const EvalArguments& arguments) {
     // Absolute, as what a run was given is looked for in the folder that it was started in.
     OutputFolder out(std::filesystem::absolute(folder), inputs_of(arguments, folder), ResultKind::kEvaluation);
     eval::Evaluation evaluation = evaluate_with_progress(arguments);
+    // Before the folder that the run was started in is entered, where relative paths are others.
+    const std::vector<eval::ErrorFigure> figures = eval::error_figures(evaluation);
     evaluate_finished(arguments, out, evaluation);
-    write_files(evaluation, out);
+    write_files(evaluation, figures, out);
     if (arguments.quiet) return;
     std::fputs(eval::eval_text(evaluation).c_str(), stdout);
     std::printf("\n%s and eval.json\n", printable((folder / "report.html").string()).c_str());
