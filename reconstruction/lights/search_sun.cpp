@@ -17,7 +17,9 @@ constexpr float kBeside_m = 0.6f, kAlongside = 0.95f, kLevel_m = 0.03f;  // samp
 constexpr float kSameTint = 0.08f;                                       // of chromaticity
 constexpr float kDullAlbedo = 0.15f;                                     // darker surfaces show more gloss than albedo
 constexpr size_t kLeastAlike = 12;                   // samples of one chromaticity, below which none is bright
-constexpr float kPatchRatio = 3;                     // times what samples of a chromaticity mostly reflect
+constexpr float kPatchRatio = 3;                     // times what samples of a chromaticity mostly reflect, or
+constexpr float kOneSurface_m = 1.5f;                // what those of the same surface do so near by
+constexpr float kShadedShare = 0.2f;                 // of which so many are darker
 constexpr float kClips = 0.95f, kUnclipped = 1.05f;  // from one to the other pixel values are clipped
 constexpr size_t kLeastAsked = 12;                   // samples that are not
 constexpr size_t kLeastShaded = 5;                   // samples that tell an albedo
@@ -28,7 +30,7 @@ constexpr float kLeastScore = 0.4f;                  // rooms with sun have 0.6 
 constexpr size_t kFirstTried = 256;                  // bright samples, with which directions are chosen
 constexpr uint32_t kDirections = 2048;               // 4.5 degrees apart
 constexpr size_t kFinalists = 64;                    // directions that all samples judge
-constexpr size_t kStarts = 3;                        // of these, from which directions are moved
+constexpr size_t kStarts = 6;                        // of these, from which directions are moved
 constexpr float kWorthMoving = 0.6f;                 // of the best score: moves gain no more
 constexpr float kSameCosine = 0.985f;                // 10 degrees: what is nearer is the same patch
 constexpr float kMostRival = 0.88f;                  // of the best score: rooms with sun have 0.83, half a patch 0.92
@@ -54,9 +56,11 @@ class Patches {
             for (const uint32_t i : members) {
                 ratio_[i] = reflectance(i, kMean) / usual;
                 told_.push_back(i);
-                if (ratio_[i] > kPatchRatio) bright_.push_back(i);
             }
         }
+        compare_with_shade();
+        for (const uint32_t i : told_)
+            if (is_bright(i)) bright_.push_back(i);
     }
 
     const std::vector<uint32_t>& bright() const { return bright_; }
@@ -71,7 +75,7 @@ class Patches {
         uint32_t lit = 0, hits = 0;
         for (const uint32_t i : told_) {
             lit += cosines[i] > 0;
-            hits += cosines[i] > 0 && ratio_[i] > kPatchRatio;
+            hits += cosines[i] > 0 && is_bright(i);
         }
         SunInPatches sun{.direction = direction, .samples = hits};
         if (lit > 0) sun.precision = static_cast<float>(hits) / static_cast<float>(lit);
@@ -99,6 +103,27 @@ class Patches {
   private:
     static constexpr int kMean = 3;  // of the channels
 
+    bool is_bright(uint32_t i) const { return ratio_[i] > kPatchRatio; }
+
+    /// Where the sun lights most of what has a chromaticity, the usual is in it, too: there the darker part of the same
+    /// surface is what a sample is compared with.
+    void compare_with_shade() {
+        std::vector<Tint> tints;
+        for (const uint32_t i : told_) tints.push_back(tint_of(samples_[i].diffuse));
+        std::vector<float> same;
+        for (size_t a = 0; a < told_.size(); ++a) {
+            same.clear();
+            for (size_t b = 0; b < told_.size(); ++b)
+                if (is_near(tints[a], tints[b]) && is_beside(samples_[told_[a]], samples_[told_[b]], kOneSurface_m))
+                    same.push_back(reflectance(told_[b], kMean));
+            if (same.size() < kLeastAlike) continue;
+            const auto shaded = same.begin() + static_cast<ptrdiff_t>(kShadedShare * static_cast<float>(same.size()));
+            std::nth_element(same.begin(), shaded, same.end());
+            float& ratio = ratio_[told_[a]];
+            if (*shaded > 0) ratio = std::max(ratio, reflectance(told_[a], kMean) / *shaded);
+        }
+    }
+
     static float mean(const auto& rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
 
     static bool tells(const gpu::LightSample& sample) {
@@ -110,6 +135,10 @@ class Patches {
     static Tint tint_of(const auto& rgb) {
         const float sum = 3 * mean(rgb);
         return {static_cast<int>(rgb.r / sum / kChromaticityStep), static_cast<int>(rgb.g / sum / kChromaticityStep)};
+    }
+
+    static bool is_near(const Tint& a, const Tint& b) {
+        return std::abs(a[0] - b[0]) <= 1 && std::abs(a[1] - b[1]) <= 1;
     }
 
     /// With what is beside it, as one surface has several under light of several colours.
@@ -133,7 +162,7 @@ class Patches {
         return *at;
     }
 
-    /// A bright sample, and those beside it that the sun does not reach, on the same surface.
+    /// A bright sample, and those beside it on the same surface that are not, and that the sun does not reach.
     struct Border {
         uint32_t lit = 0;
         std::vector<uint32_t> shaded;
@@ -145,16 +174,17 @@ class Patches {
             if (cosines[i] <= 0) continue;
             Border border{i, {}};
             for (const uint32_t k : told_)
-                if (cosines[k] <= 0 && is_beside(samples_[i], samples_[k])) border.shaded.push_back(k);
+                if (cosines[k] <= 0 && !is_bright(k) && is_beside(samples_[i], samples_[k], kBeside_m))
+                    border.shaded.push_back(k);
             if (border.shaded.size() >= kLeastShaded) borders.push_back(std::move(border));
         }
         return borders;
     }
 
-    static bool is_beside(const gpu::LightSample& a, const gpu::LightSample& b) {
+    static bool is_beside(const gpu::LightSample& a, const gpu::LightSample& b, float within_m) {
         const glm::vec3 apart_m(a.point_m - b.point_m), normal(a.normal);
-        return glm::dot(apart_m, apart_m) < kBeside_m * kBeside_m &&
-               glm::dot(normal, glm::vec3(b.normal)) > kAlongside && std::abs(glm::dot(apart_m, normal)) < kLevel_m;
+        return glm::dot(apart_m, apart_m) < within_m * within_m && glm::dot(normal, glm::vec3(b.normal)) > kAlongside &&
+               std::abs(glm::dot(apart_m, normal)) < kLevel_m;
     }
 
     /// Those whose shaded samples have about the tint that the lit one has under a sun.

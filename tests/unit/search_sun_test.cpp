@@ -124,6 +124,17 @@ TEST(SearchSun, IsNoneWhereTooLittleOfThePatchWasSeen) {
     EXPECT_FALSE(found_in(room, room));
 }
 
+/// Most of either floor is lit, so that what its samples mostly reflect is sunlight, too. Only its own shade tells.
+TEST(SearchSun, LightsMostOfASurface) {
+    Room room;
+    room.low = {0.8f, -1};
+    room.high = {4.2f, 5};
+    const auto sun = found_in(room, room);
+    ASSERT_TRUE(sun);
+    EXPECT_GT(glm::dot(sun->direction, room.to_sun), std::cos(0.1f));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sun->irradiance[c], room.sun[c], 0.1 * double{room.sun[c]});
+}
+
 /// What is not observed, or of which nobody looked what is around it, tells nothing.
 TEST(SearchSun, LeavesOutSamplesThatTellNothing) {
     const Room room;
