@@ -291,6 +291,15 @@ Illumination find_lights(vulkan::Device& device, const LightsOptions& options) {
     return low_exposure ? find_at_low_exposure(options, folders, device, offset_m) : fit(options, device, offset_m);
 }
 
+bool tells_surroundings(vulkan::Device& device, const LightsOptions& options) {
+    const Folders folders = folders_of(options);
+    const std::string main = main_of(options, folders);
+    if (main.empty() || options.track) return false;
+    const auto room = cameras::open_sequence(device, main, options.main_format);
+    const auto lighting = cameras::open_sequence(device, folders.lighting);
+    return room->info().indirect_light && room->info().has_poses && lighting->info().has_poses;
+}
+
 void for_each_low_exposure(vulkan::Device& device, const LightsOptions& options, const TakeLowExposure& take) {
     const Folders folders = folders_of(options);
     const std::string main = main_of(options, folders);

@@ -78,6 +78,10 @@ bool has_lighting_sequence(const std::string& sequence);
 /// main one, or a file cannot be read; Interrupted when the caller stops it.
 Illumination find_lights(vulkan::Device& device, const LightsOptions& options);
 
+/// Whether a recorded lighting sequence tells what is around the main sequence: that is known, its surfaces light each
+/// other, and both have poses in the same world. Throws Error when a file cannot be read.
+bool tells_surroundings(vulkan::Device& device, const LightsOptions& options);
+
 /// Calls take(frame, radiance_scale) for every frame of a recorded lighting sequence that has a pose in the main
 /// sequence's world; the scale is the main sequence's exposure over the frame's. For none where that world is another,
 /// or the main sequence is not known. Throws Error when a file cannot be read; Interrupted when the caller stops it.

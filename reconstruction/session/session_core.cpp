@@ -165,13 +165,13 @@ void SessionCore::take_light(SessionLight light) {
     illumination_ = std::move(light.illumination);
     shortfalls_ = std::move(light.shortfalls);
     no_light_because_ = std::move(light.none_because);
-    if (!no_light_because_.empty()) {
-        materials_missing_ = "no materials, only geometry and colours: " + no_light_because_;
-    } else if (illumination_.lights.empty()) {
-        materials_missing_ =
-            "materials hold a diffuse albedo, and gloss of mirrors at most: no lamp is known to show other gloss; " +
-            give_lights(options_);
-    }
+}
+
+std::string SessionCore::materials_missing() const {
+    if (!no_light_because_.empty()) return "no materials, only geometry and colours: " + no_light_because_;
+    if (!illumination_.lights.empty()) return "";
+    return "materials hold a diffuse albedo, and gloss of mirrors at most: no lamp is known to show other gloss; " +
+           give_lights(options_);
 }
 
 bool SessionCore::step() {
@@ -288,11 +288,11 @@ void SessionCore::fuse(Frame frame) {
     if (measures_lamps() && is_unseen_light_due()) look_for_unseen_light();
 }
 
-/// Whether lamps are known from a lighting sequence, and other light is not: it is too dark in one.
+/// Whether a lighting sequence told the lamps that it shows, if any, and other light is not known: it is too dark in
+/// one.
 bool SessionCore::measures_lamps() const {
     const ReflectanceStage* reflectance = pipeline_->reflectance();
-    return reflectance && reflectance->gathers() && illumination_.found_by == "lighting sequence" &&
-           !illumination_.lights.empty();
+    return reflectance && reflectance->gathers() && illumination_.found_by == "lighting sequence";
 }
 
 /// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.

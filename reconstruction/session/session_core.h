@@ -101,7 +101,7 @@ class SessionCore {
     const Illumination& illumination() const { return illumination_; }  ///< the lights, and how they were found
     Lighting lighting() const;                                          ///< the same, in the scene's world
     /// Why materials are not all that they could be, and what to give; empty where nothing is missing.
-    const std::string& materials_missing() const { return materials_missing_; }
+    std::string materials_missing() const;
     /// What the search for lights, or what was asked of materials without any, fell short of.
     const std::vector<std::string>& shortfalls() const { return shortfalls_; }
     /// What is implausible about the frames that were read (sensor::inspect), and what the settings leave out of them.
@@ -169,7 +169,6 @@ class SessionCore {
     glm::dvec3 world_offset_m_{0};
     Illumination illumination_;
     std::string no_light_because_;
-    std::string materials_missing_;
     std::vector<std::string> shortfalls_;
     std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene
     std::optional<Pipeline> pipeline_;

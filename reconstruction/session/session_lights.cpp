@@ -100,6 +100,19 @@ SessionLight given_light(const SessionOptions& options, glm::dvec3 world_offset_
     return light;
 }
 
+/// Of a lighting sequence that shows no lamp, but what else shines: windows, and shades of lamps that it does not look
+/// into. From where nothing is seen, light begins as that of a recording without a lighting sequence. Empty where it
+/// does not tell what is around.
+std::optional<Illumination> light_without_lamps(vulkan::Device& device, const SessionOptions& options,
+                                                glm::dvec3 world_offset_m) {
+    if (synthetic_scene(options) || !tells_surroundings(device, search_of(options, world_offset_m, false)))
+        return std::nullopt;
+    Illumination light = light_of_surroundings(device, options, world_offset_m);
+    if (!shines(light)) return std::nullopt;
+    light.found_by = "lighting sequence";
+    return light;
+}
+
 /// In the lighting sequence, then in the main sequence; what goes wrong becomes a shortfall.
 std::optional<Illumination> searched(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m,
                                      SessionLight& light) {
@@ -107,9 +120,12 @@ std::optional<Illumination> searched(vulkan::Device& device, const SessionOption
     if (named) check_named(device, named->sequence);
     std::optional<Illumination> found = search(device, search_of(options, world_offset_m, false), light);
     if (found || options.sequence.empty()) return found;
-    if (light.shortfalls.empty())
+    if (light.shortfalls.empty()) {
+        found = light_without_lamps(device, options, world_offset_m);
+        if (found) return found;
         light.shortfalls.push_back(
             text("no lamp was found in the lighting sequence", named ? text(" '", named->sequence, "'") : ""));
+    }
     light.shortfalls.back() += text("; lights were looked for in what they light in '", options.sequence, "'");
     const size_t before = light.shortfalls.size();
     found = search(device, search_of(options, world_offset_m, true), light);

@@ -159,7 +159,20 @@ TEST_F(Endings, AmbientLightFromAFileIsLight) {
     EXPECT_THAT(run(sequence(), {"--lights", beside("dark.json")}).out, HasSubstr("holds no light"));
 }
 
-TEST_F(Endings, ALightingSequenceWithoutALampCostsTheLampsAlone) {
+TEST_F(Endings, ALightingSequenceWithoutALampTellsWhatIsAround) {
+    const Outcome outcome = run(sequence(), {"--lighting", sequence()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(fs::exists(out() / "materials.json"));
+    const nlohmann::json around = summary_of(out());
+    EXPECT_EQ(around["lights"]["found_by"], "lighting sequence");
+    EXPECT_EQ(around["shortfalls"].size(), 0) << around["shortfalls"];
+    ASSERT_EQ(run(sequence()).exit_code, 0);
+    EXPECT_NE(summary_of(out())["lights"]["ambient"], around["lights"]["ambient"])
+        << "what unknown directions send was looked for";
+}
+
+TEST_F(Endings, ALightingSequenceWithoutALampCostsTheLampsAloneWhereSurfacesLightNoOther) {
+    edit_sequence([](nlohmann::json& json) { json["indirect_light"] = false; });
     expect_short(run(sequence(), {"--lighting", sequence()}), "no lamp was found in the lighting sequence");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
 }
