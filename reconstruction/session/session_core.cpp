@@ -1,6 +1,7 @@
 #include "reconstruction/session/session_core.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -28,7 +29,8 @@ namespace patina {
 
 namespace {
 
-constexpr size_t kFirstUnseenFrames = 8;  // after which light is looked for that no lamp gives
+constexpr size_t kFirstLampFrames =
+    8;  // after which lamps and a sun are looked for that no picture of low exposure shows
 
 std::string sequence_name(const SessionOptions& options, const SequenceInfo& info) {
     return options.sequence.empty() ? info.name : options.sequence;
@@ -285,7 +287,12 @@ void SessionCore::fuse(Frame frame) {
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
-    if (measures_lamps() && is_unseen_light_due()) look_for_unseen_light();
+    if (!measures_lamps() || !is_unseen_light_due()) return;
+    if (used_.size() < kFirstLampFrames) {
+        look_for_ambient_light();
+    } else {
+        look_for_unseen_light();
+    }
 }
 
 /// Whether a lighting sequence told the lamps that it shows, if any, and other light is not known: it is too dark in
@@ -296,18 +303,22 @@ bool SessionCore::measures_lamps() const {
 }
 
 /// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.
-bool SessionCore::is_unseen_light_due() const {
-    size_t frames = kFirstUnseenFrames;
-    while (frames < used_.size()) frames *= 2;
-    return frames == used_.size();
+bool SessionCore::is_unseen_light_due() const { return std::has_single_bit(used_.size()); }
+
+/// What arrives from unseen surroundings under the lights that are known so far.
+void SessionCore::look_for_ambient_light() {
+    const auto unseen = find_unseen_light(*pipeline_, draw_samples(*pipeline_), lights_of(illumination_));
+    if (!unseen) return;
+    illumination_.ambient = glm::dvec3(*unseen);
+    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }
 
 /// Light that no picture of low exposure tells: lamps that it clips or does not show, a sun in its patches, and what
 /// arrives from unseen surroundings.
 void SessionCore::look_for_unseen_light() {
     std::vector<FoundLight>& lights = illumination_.lights;
-    lights = as_measured(std::move(lights));
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    lights = as_measured(std::move(lights));
     ToldLamps told =
         find_unmeasured_lamps(*pipeline_, drawn, lights, illumination_.candidates_m, options_.white_albedo);
     lights = std::move(told.lamps);

@@ -145,6 +145,7 @@ class SessionCore {
     void fuse(Frame frame);
     bool measures_lamps() const;
     bool is_unseen_light_due() const;
+    void look_for_ambient_light();
     void look_for_unseen_light();
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
