@@ -77,8 +77,8 @@ glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known
                               std::span<const gpu::LightSample> drawn, bool beside_sun, float least);
 
 /// decide_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it.
-/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. At least one lamp,
-/// at most gpu::kMaxPointLights lights. Waits for the device.
+/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. At most
+/// gpu::kMaxPointLights lights. Waits for the device.
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                            std::span<const Light> lights);
 

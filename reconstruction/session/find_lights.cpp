@@ -251,6 +251,11 @@ Illumination find_at_low_exposure(const LightsOptions& options, const Folders& f
     return found;
 }
 
+/// Whether a reconstruction with these settings gathers light, where the recording's surfaces light each other.
+bool gathers(const ReconstructionSettings& settings) {
+    return settings.fusion.color && (!settings.reflectance || settings.reflectance->refine.gathered_rays > 0);
+}
+
 }  // namespace
 
 bool shines(const Illumination& illumination) {
@@ -292,9 +297,10 @@ Illumination find_lights(vulkan::Device& device, const LightsOptions& options) {
 }
 
 bool tells_surroundings(vulkan::Device& device, const LightsOptions& options) {
+    if (options.track || !gathers(options.reconstruction) || scenes::scene_name(options.sequence)) return false;
     const Folders folders = folders_of(options);
     const std::string main = main_of(options, folders);
-    if (main.empty() || options.track) return false;
+    if (main.empty()) return false;
     const auto room = cameras::open_sequence(device, main, options.main_format);
     const auto lighting = cameras::open_sequence(device, folders.lighting);
     return room->info().indirect_light && room->info().has_poses && lighting->info().has_poses;

@@ -79,7 +79,8 @@ bool has_lighting_sequence(const std::string& sequence);
 Illumination find_lights(vulkan::Device& device, const LightsOptions& options);
 
 /// Whether a recorded lighting sequence tells what is around the main sequence: that is known, its surfaces light each
-/// other, and both have poses in the same world. Throws Error when a file cannot be read.
+/// other and the reconstruction gathers that light, and both have poses in the same world. Throws Error when a file
+/// cannot be read.
 bool tells_surroundings(vulkan::Device& device, const LightsOptions& options);
 
 /// Calls take(frame, radiance_scale) for every frame of a recorded lighting sequence that has a pose in the main

@@ -29,6 +29,7 @@ namespace patina {
 
 namespace {
 
+constexpr size_t kFirstUnseenFrames = gpu::kLeastForSample;  // after which what unknown directions send is looked for
 constexpr size_t kFirstLampFrames =
     8;  // after which lamps and a sun are looked for that no picture of low exposure shows
 
@@ -172,8 +173,10 @@ void SessionCore::take_light(SessionLight light) {
 std::string SessionCore::materials_missing() const {
     if (!no_light_because_.empty()) return "no materials, only geometry and colours: " + no_light_because_;
     if (!illumination_.lights.empty()) return "";
-    return "materials hold a diffuse albedo, and gloss of mirrors at most: no lamp is known to show other gloss; " +
-           give_lights(options_);
+    const std::string without_lamps = "materials hold a diffuse albedo, and gloss of mirrors at most: ";
+    if (measures_lamps())
+        return without_lamps + "the lighting sequence shows no lamp, and what it would light tells of none";
+    return without_lamps + "no lamp is known to show other gloss; " + give_lights(options_);
 }
 
 bool SessionCore::step() {
@@ -303,7 +306,9 @@ bool SessionCore::measures_lamps() const {
 }
 
 /// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.
-bool SessionCore::is_unseen_light_due() const { return std::has_single_bit(used_.size()); }
+bool SessionCore::is_unseen_light_due() const {
+    return used_.size() >= kFirstUnseenFrames && std::has_single_bit(used_.size());
+}
 
 /// What arrives from unseen surroundings under the lights that are known so far.
 void SessionCore::look_for_ambient_light() {
@@ -329,7 +334,8 @@ void SessionCore::look_for_unseen_light() {
             room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
         lights.push_back(*sun);
     const auto unseen = find_unseen_light(*pipeline_, drawn, lights_of(illumination_));
-    illumination_.ambient = glm::dvec3(unseen.value_or(glm::vec3(0)));
+    // Where nothing is told and no lamp is known, what was assumed at first is the only light.
+    if (unseen || !lights.empty()) illumination_.ambient = glm::dvec3(unseen.value_or(glm::vec3(0)));
     if (unseen && lights.size() > lamps.size()) measure_sun(*pipeline_, drawn, lights.back(), lamps, *unseen);
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }

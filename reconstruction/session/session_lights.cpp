@@ -113,7 +113,7 @@ std::optional<Illumination> light_without_lamps(vulkan::Device& device, const Se
     return light;
 }
 
-/// In the lighting sequence, then in the main sequence; what goes wrong becomes a shortfall.
+/// In the lighting sequence, then, where that tells nothing, in the main sequence; what goes wrong becomes a shortfall.
 std::optional<Illumination> searched(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m,
                                      SessionLight& light) {
     const auto* named = std::get_if<LightsFromSequence>(&options.lighting);

@@ -39,9 +39,10 @@ LightsSource lights_source(const SessionOptions& options);
 
 /// The lights of a session: those that the options hold, or found where they say, or in the lighting sequence that the
 /// main sequence has. Without that, the light of the surroundings (surroundings.h). Where a lighting sequence shows no
-/// lamp, lights are looked for in what they light in the main sequence; where there is no lamp either, the ambient
-/// light stands alone. A search that fails costs the light, not the run. Throws Error when the file that is given
-/// cannot be read, or the sequence that is named cannot be opened; Interrupted when the user stops it.
+/// lamp, what else it shows is the light (tells_surroundings()), beside which a session looks for more; where it does
+/// not tell that, lights are looked for in what they light in the main sequence, and where there is no lamp either, the
+/// ambient light stands alone. A search that fails costs the light, not the run. Throws Error when the file that is
+/// given cannot be read, or the sequence that is named cannot be opened; Interrupted when the user stops it.
 SessionLight light_of(vulkan::Device& device, const SessionOptions& options, glm::dvec3 world_offset_m);
 
 /// Shows a pipeline what the session's lighting sequence shows, where that is where its lights come from

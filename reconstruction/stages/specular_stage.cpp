@@ -67,7 +67,7 @@ void SpecularStage::add(graph::FrameGraph& graph, ReflectanceStage& reflectance,
                          frame_index + 1, settings_.memory},
                         chosen.all, fits_, ids.fits, ids.materials);
     }
-    if (network_) {
+    if (network_ && !reflectance.lights().point_lights().empty()) {  // it tells nothing without a lamp
         // Of the network the fit takes a prior, which hardly matters where observations tell enough.
         const SegmentBatch& batch = settings_.fit ? chosen.doubtful : chosen.all;
         const HemiImages hemi = add_hemi_images(graph, inputs.map, inputs.records, segmentation.samples(), samples,

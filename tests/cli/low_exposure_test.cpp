@@ -59,6 +59,36 @@ TEST_F(LowExposure, FramesWithoutAPoseAreLeftOut) {
     EXPECT_EQ(run_to(out())["frames"]["used"], 3);
 }
 
+// Frames of low exposure look down at the cubes, too.
+TEST_F(LowExposure, WithoutALampItIsLightAllTheSame) {
+    nlohmann::json dark = nlohmann::json::parse(std::ifstream(PATINA_SOURCE_DIR "/assets/scenes/cubes.json"));
+    dark["lighting"] = {{"path", dark["path"]}, {"frames", 6}};
+    dark["recording"]["bounces"] = 2;
+    write_text(beside("dark.json"), dark.dump());
+    const Outcome synth = patina({"synth", beside("dark.json"), "--frames", "6", "--extent", "96x80", "--samples", "2",
+                                  "--truth-every", "5", "--out", scene(), "--quiet"});
+    ASSERT_EQ(synth.exit_code, 0) << synth.err;
+    const auto run = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"run",          scene(),
+                                           "--out",        out(),
+                                           "--texture",    "off",
+                                           "--dump-every", "5",
+                                           "--set",        "map.voxel_m=0.02",
+                                           "--set",        "fusion.truncation_m=0.06"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return patina(arguments);
+    };
+    const Outcome outcome = run({});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json around = summary_of(out());
+    EXPECT_EQ(around["lights"]["found_by"], "lighting sequence");
+    EXPECT_GT(around["lights"]["ambient"][0], 0);
+    EXPECT_EQ(patina({"eval", scene(), out(), "--finished", "--quiet"}).exit_code, 0) << "its map can be resumed";
+    const Outcome alone = run({"--set", "reflectance.gathered_rays=0"});
+    EXPECT_THAT(alone.out, HasSubstr("no lamp was found in the lighting sequence")) << "nothing gathers that light";
+    EXPECT_EQ(summary_of(out())["lights"]["found_by"], "main sequence");
+}
+
 // Frames look down at the floor, and the sky is black at low exposure.
 TEST_F(LowExposure, LightThatNoFrameShowsIsTold) {
     record("bunnies-sky", 8, "128x106");
