@@ -37,12 +37,14 @@ endif()
 set(PATINA_WHOLE_SUITES "^(DragLamp|GrowingPoolsTest|Localise|PipelineTest|ReconstructionApiTest|Relocalisation|SegmentationStageTest|SessionExtendTest|SessionMapTest|SessionTest|StreamingTest|SynthTest|TrackingTest|WarmUp|All/BuiltinScenesOnGpu)$")
 set(PATINA_WHOLE_TESTS Golden.CubesBeyondFourMetresGiveTheStoredNumbers:Golden.RecordedAndLiveSceneGiveTheSameScene:Golden.SceneIsValidGltf:Golden.TwoRunsGiveTheSameBytes:Golden.TwoTrackedRunsGiveTheSameBytes:Golden.ValidationHasNothingToSayAndTheGraphIsDumped)
 
-# TESTs that take 5 to 20 s, beside others of the same code: these run with PATINA_TEST_FULL alone.
-set(PATINA_LONG_TESTS FindVisibilityTest.KdOfAGlossySceneWithShadowsIsFoundThroughTheWholePipeline:FindVisibilityTest.WhatLiesOutsideTheBallThrowsNoShadow:FindVisibilityTest.WithoutShadowsEveryLightReachesEveryRecord:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.RaysAddUpToASlidingMean:LightFitting.TheirIntensityFollowsFromWhiteAndTooLargeAMisfitMeansNone:PipelineTest.ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo:SessionUndoTest.KeepingAModelChangesNothing:StreamingTest.CellsAreTogetherTheWholeSurface:StreamingTest.ViewsBetweenFramesMakeNoDifference)
+# TESTs that take 5 to 30 s, beside others of the same code: these run with PATINA_TEST_FULL alone.
+set(PATINA_LONG_TESTS FindVisibilityTest.KdOfAGlossySceneWithShadowsIsFoundThroughTheWholePipeline:FindVisibilityTest.WhatLiesOutsideTheBallThrowsNoShadow:FindVisibilityTest.WithoutShadowsEveryLightReachesEveryRecord:FitWardTest.HighlightsOfBentSurfacesAreTakenForBlurred:FitWardTest.TheWholeSegmentsAlbedoIsThatOfItsVoxelsWithoutTheirHighlights:GatherIrradianceTest.RaysAddUpToASlidingMean:LightFitting.TheirIntensityFollowsFromWhiteAndTooLargeAMisfitMeansNone:MarkRegions.RaysFindTheSameAsWhereEveryRegionIsLookedAt:PipelineTest.ObservationsOfThingsThatWentAreGivenBackInFramesThatAreHeldOutToo:RelightTest.EachTurnWithRaysIsABounce:SessionUndoTest.KeepingAModelChangesNothing:StreamingTest.CellsAreTogetherTheWholeSurface:StreamingTest.ViewsBetweenFramesMakeNoDifference)
 
 # No shader uses subgroup operations, so that the width of vectors changes nothing but how the driver compiles a pass. Without
-# PATINA_TEST_FULL the narrower lavapipe runs the TESTs that compare a pass with its CPU reference, and these folders as a whole.
+# PATINA_TEST_FULL the narrower lavapipe runs the TESTs that compare a pass with its CPU reference, but for the longest ones, and
+# these folders as a whole.
 set(PATINA_LAVAPIPE128_TESTS "*Reference*")
+set(PATINA_LAVAPIPE128_LONG_TESTS FindVisibilityTest.BitsAgreeWithTheReferenceOnEverySurface:IntegrateTest.OneFrameAndSeveralAgreeWithTheReference:RunNetwork.HalvesAgreeWithTheReferenceOnAwkwardShapes)
 set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|input|photometry|surface|texture|viewer)$")
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
@@ -82,6 +84,7 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
         string(APPEND TESTS_LEFT_OUT ":${PATINA_SWIFTSHADER_LONG_TESTS}")
     elseif(LABEL STREQUAL lavapipe128 AND NOT PATINA_TEST_FULL)
         set(TESTS_TAKEN "${PATINA_LAVAPIPE128_TESTS}")
+        string(APPEND TESTS_LEFT_OUT ":${PATINA_LAVAPIPE128_LONG_TESTS}")
         set(WHOLE_FOLDERS "${PATINA_LAVAPIPE128_WHOLE_FOLDERS}")
     endif()
     set(DISCOVERY_FILE ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_${LABEL}_suites.cmake)

@@ -64,7 +64,7 @@ TEST_F(LowExposure, WithoutALampItIsLightAllTheSame) {
     nlohmann::json dark = nlohmann::json::parse(std::ifstream(PATINA_SOURCE_DIR "/assets/scenes/cubes.json"));
     dark["lighting"] = {{"path", dark["path"]}, {"frames", 6}};
     dark["recording"]["bounces"] = 2;
-    write_text(beside("dark.json"), dark.dump());
+    std::ofstream(beside("dark.json")) << dark.dump();
     const Outcome synth = patina({"synth", beside("dark.json"), "--frames", "6", "--extent", "96x80", "--samples", "2",
                                   "--truth-every", "5", "--out", scene(), "--quiet"});
     ASSERT_EQ(synth.exit_code, 0) << synth.err;
@@ -85,7 +85,8 @@ TEST_F(LowExposure, WithoutALampItIsLightAllTheSame) {
     EXPECT_GT(around["lights"]["ambient"][0], 0);
     EXPECT_EQ(patina({"eval", scene(), out(), "--finished", "--quiet"}).exit_code, 0) << "its map can be resumed";
     const Outcome alone = run({"--set", "reflectance.gathered_rays=0"});
-    EXPECT_THAT(alone.out, HasSubstr("no lamp was found in the lighting sequence")) << "nothing gathers that light";
+    EXPECT_THAT(alone.out, ::testing::HasSubstr("no lamp was found in the lighting sequence"))
+        << "nothing gathers that light";
     EXPECT_EQ(summary_of(out())["lights"]["found_by"], "main sequence");
 }
 
