@@ -26,7 +26,7 @@ constexpr size_t kLeastShaded = 5;                   // samples that tell an alb
 constexpr int kColorSteps = 5;                       // after which the sun's colour hardly changes
 constexpr float kPalest = 0.6f, kStrongest = 1.5f;   // of the mean of the sun's channels: a low sun's red and blue
 constexpr uint32_t kLeastPatch = 24;                 // samples, fewer are highlights and lamps' rims
-constexpr float kLeastScore = 0.4f;                  // rooms with sun have 0.6 and more
+constexpr float kLeastScore = 0.4f;                  // rooms with sun have 0.48 to 0.66
 constexpr size_t kFirstTried = 256;                  // bright samples, with which directions are chosen
 constexpr uint32_t kDirections = 2048;               // 4.5 degrees apart
 constexpr size_t kFinalists = 64;                    // directions that all samples judge

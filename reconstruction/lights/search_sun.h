@@ -29,8 +29,8 @@ using TrySuns =
 /// Finds the direction that lights the samples that are bright, and not the others. Bright is what reflects more than
 /// three times what samples of its chromaticity mostly reflect of the light that is known, or what a fifth of those
 /// within 1.5 m on the same surface do not exceed: a sun may light most of a bed. `known` is the irradiance over pi by
-/// sample. Directions all around are tried, and the best is moved by ever smaller angles. Empty where too
-/// few samples are bright, or no direction lights most of them and few others.
+/// sample. Directions all around are tried, and the best is moved by ever smaller angles. Empty where too few samples
+/// are bright, or no direction lights most of them and few others.
 std::optional<SunInPatches> search_sun(std::span<const gpu::LightSample> samples, std::span<const glm::vec3> known,
                                        const TrySuns& try_suns);
 

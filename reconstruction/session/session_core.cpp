@@ -29,9 +29,8 @@ namespace patina {
 
 namespace {
 
-constexpr size_t kFirstUnseenFrames = gpu::kLeastForSample;  // after which what unknown directions send is looked for
-constexpr size_t kFirstLampFrames =
-    8;  // after which lamps and a sun are looked for that no picture of low exposure shows
+constexpr size_t kFirstAmbientFrames = gpu::kLeastForSample;  // then what unknown directions send is looked for,
+constexpr size_t kFirstUnseenFrames = 8;  // and then lamps and a sun that low exposure does not show
 
 std::string sequence_name(const SessionOptions& options, const SequenceInfo& info) {
     return options.sequence.empty() ? info.name : options.sequence;
@@ -291,7 +290,7 @@ void SessionCore::fuse(Frame frame) {
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
     if (!measures_lamps() || !is_unseen_light_due()) return;
-    if (used_.size() < kFirstLampFrames) {
+    if (used_.size() < kFirstUnseenFrames) {
         look_for_ambient_light();
     } else {
         look_for_unseen_light();
@@ -305,9 +304,10 @@ bool SessionCore::measures_lamps() const {
     return reflectance && reflectance->gathers() && illumination_.found_by == "lighting sequence";
 }
 
-/// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.
+/// Whenever there are twice as many frames, a power of two: what is unknown becomes less, and so does what comes from
+/// there.
 bool SessionCore::is_unseen_light_due() const {
-    return used_.size() >= kFirstUnseenFrames && std::has_single_bit(used_.size());
+    return used_.size() >= kFirstAmbientFrames && std::has_single_bit(used_.size());
 }
 
 /// What arrives from unseen surroundings under the lights that are known so far.
