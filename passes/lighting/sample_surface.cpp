@@ -20,20 +20,20 @@ struct TriedSamples {
     uint32_t count = 0;  // of them that are tried
 };
 
-graph::BufferId add_trials(graph::FrameGraph& frame, graph::PassBuilder& pass, const VoxelMap& map,
-                           const VoxelMapIds& voxels, const TriedSamples& tried, std::span<const glm::vec3> lights,
-                           glm::vec4 ball_m) {
+graph::BufferId add_trials(graph::FrameGraph& frame, graph::PassBuilder& pass, const TrialMap& model,
+                           const TriedSamples& tried, std::span<const glm::vec3> lights, glm::vec4 ball_m) {
     if (lights.empty() || lights.size() > gpu::kTrialLights)
         throw Error("1 to ", gpu::kTrialLights, " lights are tried at once, not ", lights.size());
     const auto trials = static_cast<uint32_t>(lights.size());
     std::vector<glm::vec4> padded;
     for (const glm::vec3& light : lights) padded.emplace_back(light, 0);
     pass.read("Samples", tried.samples).read("Trials", frame.upload<glm::vec4>("lighting.trials", padded));
-    pass.read("Keys", voxels.keys).read("Blocks", voxels.blocks).read("Tsdf", voxels.tsdf);
-    pass.specialise("kVoxelChunks", map.chunks());
-    pass.push(gpu::TrialParams{map.grid(), ball_m});
+    pass.read("Keys", model.voxels.keys).read("Blocks", model.voxels.blocks).read("Tsdf", model.voxels.tsdf);
+    pass.read("Surroundings", model.surroundings);
+    pass.specialise("kVoxelChunks", model.map.chunks());
+    pass.push(gpu::TrialParams{model.map.grid(), ball_m, trials, 0, 0, 0});
     const graph::BufferId received = pass.create("Received", uint64_t{trials} * gpu::kLightSamples * sizeof(float));
-    pass.dispatch(tried.count / gpu::kRecordGroup, trials);
+    pass.dispatch((trials + gpu::kTrialGroup - 1) / gpu::kTrialGroup, tried.count / gpu::kTrialSamples);
     return received;
 }
 
@@ -58,18 +58,16 @@ graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMa
     return samples;
 }
 
-graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                               graph::BufferId samples, std::span<const glm::vec3> places_m, uint32_t count) {
+graph::BufferId add_try_lights(graph::FrameGraph& frame, const TrialMap& model, graph::BufferId samples,
+                               std::span<const glm::vec3> places_m, uint32_t count) {
     auto pass = frame.compute("lighting.try_lights", spirv::try_lights);
-    return add_trials(frame, pass, map, voxels, {samples, count}, places_m, glm::vec4(0));
+    return add_trials(frame, pass, model, {samples, count}, places_m, glm::vec4(0));
 }
 
-graph::BufferId add_try_suns(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                             graph::BufferId surroundings, graph::BufferId samples,
+graph::BufferId add_try_suns(graph::FrameGraph& frame, const TrialMap& model, graph::BufferId samples,
                              std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
     auto pass = frame.compute("lighting.try_suns", spirv::try_suns);
-    pass.read("Surroundings", surroundings);
-    return add_trials(frame, pass, map, voxels, {samples, count}, directions, ball_m);
+    return add_trials(frame, pass, model, {samples, count}, directions, ball_m);
 }
 
 }  // namespace patina

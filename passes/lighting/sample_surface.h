@@ -19,18 +19,23 @@ namespace patina {
 graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMap& map,
                                    const ObservationMapIds& records, graph::BufferId status, uint32_t seed);
 
+/// What rays to trial lights are marched through.
+struct TrialMap {
+    const VoxelMap& map;
+    const VoxelMapIds& voxels;
+    graph::BufferId surroundings;  ///< ReflectanceStateIds; add_mark_regions() has marked the voxels' regions
+};
+
 /// What lamps of intensity 1 at these places (world, m; at most gpu::kTrialLights) give the first `count` samples, a
-/// multiple of gpu::kRecordGroup: cos / (pi r^2), 0 where the model stands in the way. Space that was never seen is
+/// multiple of gpu::kTrialSamples: cos / (pi r^2), 0 where the model stands in the way. Space that was never seen is
 /// open. Returns float[trial][gpu::kLightSamples].
-graph::BufferId add_try_lights(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                               graph::BufferId samples, std::span<const glm::vec3> places_m,
-                               uint32_t count = gpu::kLightSamples);
+graph::BufferId add_try_lights(graph::FrameGraph& frame, const TrialMap& model, graph::BufferId samples,
+                               std::span<const glm::vec3> places_m, uint32_t count = gpu::kLightSamples);
 
 /// Likewise the cosines to the directions of suns (unit length), 0 where they do not shine in: where the model stands
-/// in the way, or no opening in which `surroundings` (ReflectanceStateIds) show the sky lies on it. What lies outside
-/// `ball_m` (world, radius) throws no shadow.
-graph::BufferId add_try_suns(graph::FrameGraph& frame, const VoxelMap& map, const VoxelMapIds& voxels,
-                             graph::BufferId surroundings, graph::BufferId samples,
+/// in the way, or no opening in which the surroundings show the sky lies on it. What lies outside `ball_m` (world,
+/// radius) throws no shadow.
+graph::BufferId add_try_suns(graph::FrameGraph& frame, const TrialMap& model, graph::BufferId samples,
                              std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m);
 
 }  // namespace patina

@@ -5,6 +5,7 @@
 #include "engine/core/error.h"
 #include "engine/core/seed.h"
 #include "passes/lighting/sample_surface.h"
+#include "passes/reflectance/mark_regions.h"
 
 namespace patina {
 
@@ -24,11 +25,17 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
 
 namespace {
 
-/// `add` adds the trials to a frame; it takes the samples.
+/// `add` adds the trials to a frame; it takes what rays are marched through, and the samples.
 std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSample> samples, const auto& add) {
     graph::FrameGraph frame = pipeline.runner().begin();
     const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
-    const graph::Readback received = frame.read_back(add(frame, uploaded));
+    const VoxelMap& map = pipeline.map();
+    const VoxelMapIds voxels = map.import(frame);
+    ReflectanceStateIds around;
+    around.surroundings = pipeline.reflectance()->import_surroundings(frame);
+    add_mark_regions(frame, around, map, voxels);
+    frame.keep(around.surroundings);
+    const graph::Readback received = frame.read_back(add(frame, TrialMap{map, voxels, around.surroundings}, uploaded));
     pipeline.runner().submit(std::move(frame));
     pipeline.wait();
     return received.as<float>();
@@ -38,19 +45,18 @@ std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSamp
 
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                              std::span<const glm::vec3> places_m, uint32_t count) {
-    const VoxelMap& map = pipeline.map();
-    return run_trials(pipeline, samples, [&](graph::FrameGraph& frame, graph::BufferId uploaded) {
-        return add_try_lights(frame, map, map.import(frame), uploaded, places_m, count);
-    });
+    return run_trials(pipeline, samples,
+                      [&](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded) {
+                          return add_try_lights(frame, model, uploaded, places_m, count);
+                      });
 }
 
 std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                             std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
-    const VoxelMap& map = pipeline.map();
-    return run_trials(pipeline, samples, [&](graph::FrameGraph& frame, graph::BufferId uploaded) {
-        const graph::BufferId around = pipeline.reflectance()->import_surroundings(frame);
-        return add_try_suns(frame, map, map.import(frame), around, uploaded, directions, count, ball_m);
-    });
+    return run_trials(pipeline, samples,
+                      [&](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded) {
+                          return add_try_suns(frame, model, uploaded, directions, count, ball_m);
+                      });
 }
 
 glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {

@@ -4,22 +4,28 @@
 // where the model stands in the way.
 #include "lib/math/pi.glsl"
 #include "shared/lighting/fit_lights.h"
-layout(local_size_x = kRecordGroup) in;
+#include "shared/reflectance/far_field.h"
+#include "shared/reflectance/surroundings.h"
+
+layout(local_size_x = kTrialGroup, local_size_y = kTrialSamples) in;
 layout(std430, binding = 0) readonly buffer Samples { LightSample samples[]; };
 layout(std430, binding = 1) readonly buffer Trials { vec4 trials_m[]; };
 layout(std430, binding = 2) writeonly buffer Received { float received[]; };
-layout(std430, binding = 3) readonly buffer Keys { uvec4 buckets[]; };
-layout(std430, binding = 4) readonly buffer Blocks { uint blocks[]; };
-layout(std430, binding = 5) readonly buffer Tsdf { uint voxels[]; }
+layout(std430, binding = 3) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
+layout(std430, binding = 4) readonly buffer Keys { uvec4 buckets[]; };
+layout(std430, binding = 5) readonly buffer Blocks { uint blocks[]; };
+layout(std430, binding = 6) readonly buffer Tsdf { uint voxels[]; }
 tsdf[kMaxVoxelChunks];
 layout(push_constant) uniform Push { TrialParams params; };
 #define KEYS(bucket) buckets[bucket]
 #define BLOCK(slot) blocks[slot]
 #define VOXEL(C, i) tsdf[C].voxels[i]
+#define MAP_REGIONS(i) map_regions[i]
 #include "lighting/trial_way.glsl"
 
 void main() {
-    const uint item = gl_GlobalInvocationID.x, trial = gl_WorkGroupID.y;
+    const uint trial = gl_GlobalInvocationID.x, item = gl_GlobalInvocationID.y;
+    if (trial >= params.trials) return;
     const LightSample lit = samples[item];
     grid = params.grid;
     const vec3 offset_m = trials_m[trial].xyz - lit.point_m.xyz;

@@ -6,7 +6,7 @@
 #include "shared/lighting/fit_lights.h"
 #include "shared/reflectance/far_field.h"
 #include "shared/reflectance/surroundings.h"
-layout(local_size_x = kRecordGroup) in;
+layout(local_size_x = kTrialGroup, local_size_y = kTrialSamples) in;
 layout(std430, binding = 0) readonly buffer Samples { LightSample samples[]; };
 layout(std430, binding = 1) readonly buffer Trials { vec4 directions[]; };
 layout(std430, binding = 2) writeonly buffer Received { float received[]; };
@@ -24,7 +24,8 @@ layout(push_constant) uniform Push { TrialParams params; };
 #include "lighting/trial_way.glsl"
 
 void main() {
-    const uint item = gl_GlobalInvocationID.x, trial = gl_WorkGroupID.y;
+    const uint trial = gl_GlobalInvocationID.x, item = gl_GlobalInvocationID.y;
+    if (trial >= params.trials) return;
     const LightSample lit = samples[item];
     const vec3 direction = directions[trial].xyz;
     grid = params.grid;

@@ -6,6 +6,8 @@ INTEROP_BEGIN
 
 INTEROP_CONST uint kLightSamples = 4096u;       // of the surface, a power of two; and as many of its highlights
 INTEROP_CONST uint kTrialLights = 64u;          // tried at once
+INTEROP_CONST uint kTrialGroup = 8u;            // of them, side by side: their ways from a sample are much alike
+INTEROP_CONST uint kTrialSamples = 8u;          // of a workgroup
 INTEROP_CONST uint kLeastForSample = 4u;        // observations that a sampled voxel has
 INTEROP_CONST float kHighlightFloor = 0.1f;     // a highlight is brighter than the rest by this pixel value
 INTEROP_CONST float kHighlightShare = 0.3f;     // and by this share of it
@@ -34,6 +36,10 @@ struct SampleParams {
 struct TrialParams {
     VoxelGrid grid;  // of the voxel map
     vec4 ball_m;     // world, radius: beyond it nothing stands in the way of a sun
+    uint trials;     // how many lights are tried
+    uint pad0;
+    uint pad1;
+    uint pad2;
 };
 
 INTEROP_END

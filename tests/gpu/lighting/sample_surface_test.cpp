@@ -194,7 +194,12 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween)
     graph::FrameGraph frame = runner().begin();
     const VoxelMap& map = rig->fusion().map();
     const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
-    const graph::Readback read = frame.read_back(add_try_lights(frame, map, map.import(frame), samples, places_m));
+    ReflectanceStateIds around;
+    around.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
+    const VoxelMapIds voxels = map.import(frame);
+    add_mark_regions(frame, around, map, voxels);
+    const graph::Readback read =
+        frame.read_back(add_try_lights(frame, {map, voxels, around.surroundings}, samples, places_m));
     run(std::move(frame));
     const auto received = read.as<float>();
     const reference::Volume volume = rig->fusion().volume();
@@ -232,8 +237,9 @@ TEST_F(SampleSurface, SunsGiveCosinesWhereTheSkyIsOnTheWayAndTheModelIsNotBetwee
         const VoxelMapIds voxels = map.import(frame);
         add_mark_regions(frame, around, map, voxels);
         const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
-        const graph::Readback read = frame.read_back(add_try_suns(
-            frame, map, voxels, around.surroundings, samples, directions, gpu::kLightSamples, glm::vec4(0, 0, 0, 10)));
+        const graph::Readback read =
+            frame.read_back(add_try_suns(frame, {map, voxels, around.surroundings}, samples, directions,
+                                         gpu::kLightSamples, glm::vec4(0, 0, 0, 10)));
         run(std::move(frame));
         const auto received = read.as<float>();
         Decided decided;
