@@ -14,13 +14,12 @@ namespace patina {
 namespace {
 
 constexpr double kMostUnexplained = 0.125;  // a room whose lamps were found had 0.09 to 0.12, one with a sun 0.25
-constexpr float kDarkWhite = 0.75f, kBrightWhite = 1.125f;  // of the albedo of white surfaces
-constexpr double kBrightest = 0.1;                          // the share of the surface that is
-constexpr double kLeastKnownShare = 0.05;                   // of all light, to tell how bright the rest is
-constexpr double kOwnTint = 0.5;                            // of what the surface tells; the rest is other lamps'
-constexpr double kLeastScale = 0.05;                        // of what was fitted
-constexpr float kExpectedGain = 0.06f;                      // LightSearchSettings
-constexpr double kKnownAround = 0.35, kHardlyKnown = 0.55;  // share of light that comes from unknown directions
+constexpr float kBrightWhite = 1.125f;      // of the albedo of white surfaces
+constexpr double kLeastKnownShare = 0.05;   // of all light, to tell how bright the rest is
+constexpr double kOwnTint = 0.5;            // of what the surface tells; the rest is other lamps'
+constexpr double kLeastScale = 0.05;        // of what was fitted
+constexpr float kExpectedGain = 0.06f;      // LightSearchSettings
+constexpr double kKnownAround = 0.35;       // share of light that comes from unknown directions
 
 /// Whether the median of its sightings is a lower bound.
 bool is_clipped(const FoundLight& lamp) {
@@ -123,8 +122,9 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
         return std::max<double>(scale.value_or(1), kLeastScale);
     };
     const float white = measured.white_albedo;
+    const double sure_of_scale = measured.low_exposure ? sure : 0;
     const double plausible = fitted.has_scale
-                                 ? std::pow(std::min(scale_of(kDarkWhite * white, kBrightest), 1.0), 1 - sure)
+                                 ? std::pow(std::min(scale_of(kDarkWhite * white, kBrightest), 1.0), 1 - sure_of_scale)
                                  : scale_of(white, kBrightest);
     const double scale = std::max(scale_of(kBrightWhite * white, kBrighterShare), plausible);
     std::vector<glm::dvec3> intensities(lamps.size());
@@ -153,7 +153,11 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     std::vector<Light> sure, clipped;
     for (const FoundLight& lamp : lamps) (is_clipped(lamp) ? clipped : sure).push_back(lamp.light);
 
-    MeasuredLight measured{.known = received_from(pipeline, drawn, sure), .unknown = {}, .white_albedo = white_albedo};
+    const std::vector<gpu::Camera>& low_exposure = pipeline.reflectance()->low_exposure_cameras();
+    MeasuredLight measured{.known = received_from(pipeline, drawn, sure),
+                           .unknown = {},
+                           .white_albedo = white_albedo,
+                           .low_exposure = !low_exposure.empty()};
     std::vector<float> brightness;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
         measured.known[i] += glm::vec3(drawn[i].around);
@@ -169,7 +173,7 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     if (mean_of(together) > 0) measured.tint = together / mean_of(together);
 
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
-    const RuledOutPlaces ruled_out(pipeline, pipeline.reflectance()->low_exposure_cameras());
+    const RuledOutPlaces ruled_out(pipeline, low_exposure);
     const TryLampsInVolume try_known(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);
     std::vector<glm::vec3> places_m;
     for (const Light& lamp : clipped) places_m.emplace_back(lamp.position_m);

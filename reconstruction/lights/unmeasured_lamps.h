@@ -17,6 +17,7 @@ struct MeasuredLight {
     glm::vec3 usual{0};            ///< radiance of known directions, on average
     glm::vec3 tint{1};             ///< of the lamps; its mean is 1
     float white_albedo = 0.8f;     ///< of the brightest tenth of the surface, so far as light does not tell it
+    bool low_exposure = true;      ///< else pictures clip what is bright, so that known light is too dark
 };
 
 struct UnmeasuredLamps {
@@ -29,9 +30,10 @@ struct UnmeasuredLamps {
 /// show, which are searched for. They are fitted beside measured light, which tells how bright they are: not only up to
 /// one factor, as where no light is known. While much of what is around is not known this is not sure, and lamps come
 /// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps three quarters of
-/// `white_albedo` or more. Where hardly any light is known, it begins at `white_albedo`. Never has more than a fifth of
-/// the surface an albedo an eighth above that. `clipped` is what these lamps give the surface at an intensity of 1. A
-/// lamp that no picture shows, which may be flat, is believed where a search before, of fewer frames, found it, too
+/// `white_albedo` or more; that tenth does without low exposure, too. Where hardly any light is known, it begins at
+/// `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` is what these
+/// lamps give the surface at an intensity of 1. A lamp that no picture shows, which may be flat, is believed where a
+/// search before, of fewer frames, found it, too
 /// (`before_m`), or once most of what is around is known. At most `most_added` are searched for. Nothing is told where
 /// the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -23,10 +24,22 @@ constexpr uint32_t kHalvings = 3;                  // of the step between shares
 constexpr double kDarker = 0.05, kBrighter = 0.5;  // how unlikely it is that unknown directions are
 constexpr double kNoMisfit = 0.005;                // surface that is explained well has more
 constexpr float kLeastUnseen = 1e-4f;
-constexpr float kBrightestAlbedo = 0.9f;  // of white paint; few things have more
-constexpr float kLeastReach = 0.02f;      // share of directions, below which unseen light is no explanation
+constexpr float kBrightestAlbedo = 0.9f;   // of white paint; few things have more
+constexpr ptrdiff_t kLeastSamples = 1024;  // rooms have 2400 after 4 frames, a table has 960, a shelf 320 in the end
+constexpr float kLeastReach = 0.02f;       // share of directions, below which unseen light is no explanation
 
 float mean_of(const auto& rgb) { return (rgb.r + rgb.g + rgb.b) / 3; }
+
+/// Without those of highlights, which follow.
+std::span<const gpu::LightSample> of_surface(std::span<const gpu::LightSample> drawn) {
+    return drawn.first(std::min<size_t>(drawn.size(), gpu::kLightSamples));
+}
+
+/// Of which it was looked what is around them.
+auto looked_around(std::span<const gpu::LightSample> samples) {
+    return of_surface(samples) |
+           std::views::filter([](const gpu::LightSample& s) { return s.point_m.w > 0 && s.around.w >= 0; });
+}
 
 /// What light leaves that is known, as what `ambient` gives the samples (null: the same everywhere).
 std::optional<float> left_over(const LitSurface& surface, const ReceivedLight& known, const ReceivedLight& ambient) {
@@ -98,8 +111,23 @@ glm::vec3 usual_light(std::span<const gpu::LightSample> samples) {
     return known > 0 ? glm::vec3(sum / known) : glm::vec3(0);
 }
 
+double unknown_share(std::span<const gpu::LightSample> samples) {
+    double sum = 0, count = 0;
+    for (const gpu::LightSample& sample : looked_around(samples)) {
+        sum += double{sample.around.w};
+        count += 1;
+    }
+    return count > 0 ? sum / count : 1;
+}
+
+bool is_enough_surface(std::span<const gpu::LightSample> samples) {
+    return std::ranges::distance(looked_around(samples)) >= kLeastSamples;
+}
+
+bool is_enough_around(std::span<const gpu::LightSample> samples) { return unknown_share(samples) < kHardlyKnown; }
+
 glm::vec3 surface_light(std::span<const gpu::LightSample> samples) {
-    samples = samples.first(std::min<size_t>(samples.size(), gpu::kLightSamples));  // the others are highlights'
+    samples = of_surface(samples);
     glm::vec3 light(0);
     for (int c = 0; c < 3; ++c) {
         std::vector<float> sent;
@@ -125,10 +153,21 @@ std::optional<float> least_strength(std::span<const gpu::LightSample> samples, s
 }
 
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received) {
+    samples = of_surface(samples);
     std::vector<float> reached;
     for (const gpu::LightSample& sample : samples)
         reached.push_back(sample.point_m.w > 0 && sample.around.w >= kLeastReach ? sample.around.w : 0);
     return std::max(least_strength(samples, received, reached, kBrightestAlbedo, kBrighterShare).value_or(0), 0.0f);
+}
+
+float most_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received,
+                        float white_albedo) {
+    samples = of_surface(samples);
+    std::vector<float> reached;
+    for (const gpu::LightSample& sample : samples)
+        reached.push_back(sample.point_m.w > 0 ? std::max(sample.around.w, 0.0f) : 0);
+    const auto strength = least_strength(samples, received, reached, kDarkWhite * white_albedo, kBrightest);
+    return std::max(strength.value_or(std::numeric_limits<float>::infinity()), 0.0f);
 }
 
 std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual,
@@ -141,17 +180,17 @@ std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const Kn
     return glm::vec3(beside_sun ? 0 : *fitted);
 }
 
-glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known,
-                              std::span<const gpu::LightSample> drawn, bool beside_sun, float least) {
-    const auto chosen = choose_unseen_light(surface, known, usual_light(drawn), beside_sun);
-    if (!chosen) return glm::max(surface_light(drawn), kLeastUnseen);
-    const float radiance = mean_of(*chosen), enough = std::max(least, kLeastUnseen);
-    if (radiance >= enough) return *chosen;
-    return radiance > 0 ? enough / radiance * *chosen : glm::vec3(enough);
+glm::vec3 decide_unseen_light(const std::optional<glm::vec3>& chosen, std::span<const gpu::LightSample> drawn,
+                              UnseenLightBounds bounds) {
+    const glm::vec3 light = chosen ? *chosen : surface_light(drawn);
+    const float radiance = mean_of(light), least = chosen ? bounds.least : 0;
+    const float bounded = std::max({std::min(radiance, bounds.most), least, kLeastUnseen});
+    if (bounded == radiance) return light;
+    return radiance > 0 ? bounded / radiance * light : glm::vec3(bounded);
 }
 
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                           std::span<const Light> lights) {
+                                           std::span<const Light> lights, float white_albedo) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
@@ -164,8 +203,12 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
         unknown.push_back(drawn[i].around.w);
     }
     const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
-    return decide_unseen_light(surface, known, drawn, std::ranges::any_of(lights, is_sun),
-                               least_unseen_light(drawn, all));
+    const bool low_exposure = !pipeline.reflectance()->low_exposure_cameras().empty();
+    const auto chosen = choose_unseen_light(surface, known, usual_light(drawn), std::ranges::any_of(lights, is_sun));
+    if (!chosen && lights.empty() && !low_exposure) return std::nullopt;
+    UnseenLightBounds bounds{.least = least_unseen_light(drawn, all)};
+    if (!low_exposure) bounds.most = most_unseen_light(drawn, all, white_albedo);
+    return decide_unseen_light(chosen, drawn, bounds);
 }
 
 }  // namespace patina

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -43,20 +44,38 @@ std::optional<float> fit_unseen_light(const LitSurface& surface, const KnownLigh
 /// Radiance that known directions send on average over all samples that have some; linear pixel value.
 glm::vec3 usual_light(std::span<const gpu::LightSample> samples);
 
+/// unknown_share() from which on hardly anything is known of what is around; of a table it is 0.8 to 0.93.
+inline constexpr double kHardlyKnown = 0.55;
+
+/// Share of all directions, by cosine, of which nothing is known, on average over all samples of which it was looked;
+/// 1 where there are none.
+double unknown_share(std::span<const gpu::LightSample> samples);
+
+/// Whether light can be told by what it lights, where no lamp was measured: that takes enough of a surface. A few
+/// things on a table tell less of it than how bright they look.
+bool is_enough_surface(std::span<const gpu::LightSample> samples);
+
+/// The same of what unknown directions send, where no lamp is known: from a table the room around is hardly seen.
+bool is_enough_around(std::span<const gpu::LightSample> samples);
+
 /// Radiance that the surface itself sends, by channel the median over all samples; linear pixel value, 0 where there
 /// are none. Unlike usual_light() windows and lamps' surroundings do not count: they are few, and what is hidden is
 /// mostly more of the same walls.
 glm::vec3 surface_light(std::span<const gpu::LightSample> samples);
 
 /// How strong light has to be that gives the samples `reached` at a strength of 1, for no more than `share` of these to
-/// have an albedo above `albedo`, beside the light that they receive. Both are irradiance over pi by sample, mean of
-/// the channels. What light does not reach (0) does not count. Below 0 where they receive more than enough; empty where
-/// it reaches none.
+/// have an albedo above `albedo`, beside the light that they receive. Both are irradiance over pi of each sample, mean
+/// of the channels. What light does not reach (0) does not count. Below 0 where they receive more than enough; empty
+/// where it reaches none.
 std::optional<float> least_strength(std::span<const gpu::LightSample> samples, std::span<const float> received,
                                     std::span<const float> reached, float albedo, double share);
 
 /// Of a surface, which may be brighter than paint: highlights, patches of sun, light that was gathered too dark.
 inline constexpr double kBrighterShare = 0.2;
+
+/// Of a surface, which is white; and how dark that may be found, of its albedo.
+inline constexpr double kBrightest = 0.1;
+inline constexpr float kDarkWhite = 0.75f;
 
 /// The least such light under which surfaces are as dark as surfaces are: a lamp that no picture of low exposure shows
 /// would make albedos of 1 and more. A fifth of the samples that it can reach may stay brighter than an albedo of 0.9,
@@ -64,22 +83,33 @@ inline constexpr double kBrighterShare = 0.2;
 /// that is known. 0 where nothing is missing.
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received);
 
+/// The most such light, of a recording without low exposure: pictures clip what is bright, so that nothing else says
+/// how bright light is. With more, less than a tenth of the samples would keep three quarters of `white_albedo`. 0
+/// where there is too much light without it.
+float most_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received, float white_albedo);
+
 /// Which of the two counts. Where known light explains the surface well, it is what fit_unseen_light() says, white as
 /// its colour is too uncertain, or none beside a sun; else what is likely, of the tint of `usual` (usual_light(), not
 /// black). Empty where no such light explains the surface.
 std::optional<glm::vec3> choose_unseen_light(const LitSurface& surface, const KnownLight& known, glm::vec3 usual,
                                              bool beside_sun);
 
-/// What counts in the end: choose_unseen_light(), but not less than `least` (least_unseen_light()); where nothing
-/// explains the surface, what that sends itself (surface_light()). `drawn` as draw_samples returns it, and not black
-/// around. Above 0: no light at all would count as not known.
-glm::vec3 decide_unseen_light(const LitSurface& surface, const KnownLight& known,
-                              std::span<const gpu::LightSample> drawn, bool beside_sun, float least);
+struct UnseenLightBounds {
+    float least = 0;  ///< least_unseen_light()
+    float most = std::numeric_limits<float>::infinity();
+};
+
+/// What counts in the end: `chosen` (choose_unseen_light()) within these bounds; where nothing explains the surface,
+/// what that sends itself (surface_light()), no more than the bounds say. `drawn` as draw_samples returns it. Above 0:
+/// no light at all would count as not known.
+glm::vec3 decide_unseen_light(const std::optional<glm::vec3>& chosen, std::span<const gpu::LightSample> drawn,
+                              UnseenLightBounds bounds);
 
 /// decide_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it.
-/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. At most
+/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. Empty, too, where
+/// nothing explains the surface and neither lamps nor low exposure tell how bright light is. At most
 /// gpu::kMaxPointLights lights. Waits for the device.
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                           std::span<const Light> lights);
+                                           std::span<const Light> lights, float white_albedo);
 
 }  // namespace patina

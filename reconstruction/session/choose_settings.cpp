@@ -69,12 +69,11 @@ ReconstructionSettings choose_settings(const SessionOptions& options, const Sequ
     choose_labels(settings, options.labels);
     choose_poses(settings, options.poses, info);
     set_specular(settings, options, std::move(network));
-    const bool may_find_lamps = light.found_by == "lighting sequence";  // SessionCore::look_for_unseen_light
-    if (light.lights.empty() && !may_find_lamps && options.materials == Materials::kAuto) {
+    if (light.lights.empty() && options.materials == Materials::kAuto) {
         // A mirror is told by the room that it shows. Other gloss needs lamps.
         const bool gathers = settings.reflectance && settings.reflectance->refine.gathered_rays > 0;
         if (!gathers) settings.specular.reset();
-        settings.network.reset();
+        if (!gathers || !may_lack_lamps(light)) settings.network.reset();
     }
     return settings;
 }

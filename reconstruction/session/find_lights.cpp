@@ -258,6 +258,10 @@ bool gathers(const ReconstructionSettings& settings) {
 
 }  // namespace
 
+bool may_lack_lamps(const Illumination& illumination) {
+    return illumination.found_by == "lighting sequence" || illumination.found_by == "surroundings";
+}
+
 bool shines(const Illumination& illumination) {
     return !illumination.lights.empty() || illumination.ambient != glm::dvec3(0);
 }

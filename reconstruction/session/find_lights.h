@@ -54,7 +54,12 @@ struct Illumination {
     float misfit = 0;       ///< of the main sequence's surface: FittedLights
     float unexplained = 0;
     std::vector<glm::vec3> candidates_m{};  ///< where searches found lamps that no picture shows
+    glm::dvec3 assumed{0};                  ///< `ambient` before anything told it, where no lamp is known at first
 };
+
+/// Whether there may be other lamps than these: a lighting sequence tells those that it shows, if any; without one
+/// nothing told any.
+bool may_lack_lamps(const Illumination& illumination);
 
 /// Whether anything receives light.
 bool shines(const Illumination& illumination);

@@ -108,6 +108,8 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
         fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
+    if (!earlier && options_.sequence.empty() && illumination_.found_by == "surroundings")
+        seen_.emplace(options_.white_albedo);
     start_pipeline(std::move(network));
     if (!earlier) add_low_exposure(device_, *pipeline_, options_, world_offset_m_);
     if (options_.resume) {
@@ -173,9 +175,10 @@ std::string SessionCore::materials_missing() const {
     if (!no_light_because_.empty()) return "no materials, only geometry and colours: " + no_light_because_;
     if (!illumination_.lights.empty()) return "";
     const std::string without_lamps = "materials hold a diffuse albedo, and gloss of mirrors at most: ";
-    if (measures_lamps())
+    if (!looks_for_light()) return without_lamps + "no lamp is known to show other gloss; " + give_lights(options_);
+    if (illumination_.found_by == "lighting sequence")
         return without_lamps + "the lighting sequence shows no lamp, and what it would light tells of none";
-    return without_lamps + "no lamp is known to show other gloss; " + give_lights(options_);
+    return without_lamps + "what lamps would light tells of none; " + give_lights(options_);
 }
 
 bool SessionCore::step() {
@@ -230,7 +233,7 @@ void SessionCore::end() {
     pipeline_->wait();
     if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
     expect_frames();
-    if (!measures_lamps()) return;
+    if (!looks_for_light()) return;
     pipeline_->refine_all();  // nothing knows more of what is around
     look_for_unseen_light();
 }
@@ -283,13 +286,17 @@ void SessionCore::fuse(Frame frame) {
     }
     if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
     rgbd.only_track = is_held_out(frame.index, options_.hold_out);
+    if (const auto ambient = seen_ ? seen_->add(frame.color) : std::nullopt) {
+        illumination_.ambient = illumination_.assumed = glm::dvec3(*ambient);
+        pipeline_->set_lights({}, illumination_.ambient);
+    }
     if (!add(rgbd, frame)) return;
     last_ = FrameResult{.fused = true, .reason = "", .world_from_depth = *frame.world_from_camera};
     ledger_.use(frame.index);
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
-    if (!measures_lamps() || !is_unseen_light_due()) return;
+    if (!looks_for_light() || !is_unseen_light_due()) return;
     if (used_.size() < kFirstUnseenFrames) {
         look_for_ambient_light();
     } else {
@@ -297,11 +304,9 @@ void SessionCore::fuse(Frame frame) {
     }
 }
 
-/// Whether a lighting sequence told the lamps that it shows, if any, and other light is not known: it is too dark in
-/// one.
-bool SessionCore::measures_lamps() const {
+bool SessionCore::looks_for_light() const {
     const ReflectanceStage* reflectance = pipeline_->reflectance();
-    return reflectance && reflectance->gathers() && illumination_.found_by == "lighting sequence";
+    return reflectance && reflectance->gathers() && may_lack_lamps(illumination_);
 }
 
 /// Whenever there are twice as many frames, a power of two: what is unknown becomes less, and so does what comes from
@@ -312,32 +317,43 @@ bool SessionCore::is_unseen_light_due() const {
 
 /// What arrives from unseen surroundings under the lights that are known so far.
 void SessionCore::look_for_ambient_light() {
-    const auto unseen = find_unseen_light(*pipeline_, draw_samples(*pipeline_), lights_of(illumination_));
-    if (!unseen) return;
-    illumination_.ambient = glm::dvec3(*unseen);
-    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
+    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    if (illumination_.lights.empty() && !is_enough_surface(drawn)) return;
+    if (take_ambient_light(drawn)) pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
 }
 
-/// Light that no picture of low exposure tells: lamps that it clips or does not show, a sun in its patches, and what
-/// arrives from unseen surroundings.
+/// Light that no picture tells: lamps that low exposure clips or does not show, a sun in its patches, and what arrives
+/// from unseen surroundings.
 void SessionCore::look_for_unseen_light() {
-    std::vector<FoundLight>& lights = illumination_.lights;
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
-    lights = as_measured(std::move(lights));
+    const std::vector<FoundLight> measured = as_measured(illumination_.lights);
+    if (measured.empty() && !is_enough_surface(drawn)) return;
     ToldLamps told =
-        find_unmeasured_lamps(*pipeline_, drawn, lights, illumination_.candidates_m, options_.white_albedo);
-    lights = std::move(told.lamps);
+        find_unmeasured_lamps(*pipeline_, drawn, measured, illumination_.candidates_m, options_.white_albedo);
+    std::vector<FoundLight>& lights = illumination_.lights = std::move(told.lamps);
     illumination_.candidates_m = std::move(told.places_m);
     const std::vector<Light> lamps = lights_of(illumination_);
     const bool room_for_one = lamps.size() < gpu::kMaxPointLights;
     if (const auto sun =
             room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
         lights.push_back(*sun);
-    const auto unseen = find_unseen_light(*pipeline_, drawn, lights_of(illumination_));
-    // Where nothing is told and no lamp is known, what was assumed at first is the only light.
-    if (unseen || !lights.empty()) illumination_.ambient = glm::dvec3(unseen.value_or(glm::vec3(0)));
-    if (unseen && lights.size() > lamps.size()) measure_sun(*pipeline_, drawn, lights.back(), lamps, *unseen);
+    const bool told_ambient = take_ambient_light(drawn);
+    if (told_ambient && lights.size() > lamps.size())
+        measure_sun(*pipeline_, drawn, lights.back(), lamps, glm::vec3(illumination_.ambient));
     pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
+}
+
+/// What unknown directions send under the lights that are known so far, and whether anything tells it. Where nothing
+/// does and no lamp is known, what was assumed at first is the only light.
+bool SessionCore::take_ambient_light(const std::vector<gpu::LightSample>& drawn) {
+    const std::vector<Light> lights = lights_of(illumination_);
+    const bool measured = !lights.empty() || illumination_.found_by == "lighting sequence";  // lamps, or windows
+    const bool may_tell = measured || is_enough_around(drawn);
+    const auto unseen = may_tell ? find_unseen_light(*pipeline_, drawn, lights, options_.white_albedo) : std::nullopt;
+    const glm::dvec3 otherwise = lights.empty() ? illumination_.assumed : glm::dvec3(0);
+    illumination_.ambient = unseen ? glm::dvec3(*unseen) : otherwise;
+    if (unseen || !lights.empty()) seen_.reset();
+    return unseen.has_value();
 }
 
 /// Sets the frame's pose where it is tracked.

@@ -14,6 +14,7 @@
 #include "reconstruction/session/detail.h"
 #include "reconstruction/session/find_lights.h"
 #include "reconstruction/session/sequence_truth.h"
+#include "reconstruction/session/surroundings.h"
 #include "reconstruction/session/tracked_frame.h"
 #include "reconstruction/store/map_file.h"
 #include "reconstruction/store/state_files.h"
@@ -143,9 +144,10 @@ class SessionCore {
     void take_light(SessionLight light);
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
-    bool measures_lamps() const;
+    bool looks_for_light() const;
     bool is_unseen_light_due() const;
     void look_for_ambient_light();
+    bool take_ambient_light(const std::vector<gpu::LightSample>& drawn);
     void look_for_unseen_light();
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);
@@ -169,6 +171,7 @@ class SessionCore {
     SequenceInfo info_;
     glm::dvec3 world_offset_m_{0};
     Illumination illumination_;
+    std::optional<SurroundingsSeen> seen_;  ///< of a camera, while nothing else tells what is around
     std::string no_light_because_;
     std::vector<std::string> shortfalls_;
     std::optional<sensor::Inspector> inspector_;  ///< empty for a synthetic scene

@@ -81,8 +81,7 @@ LightsSource lights_source(const SessionOptions& options) {
     const bool there_is_one = std::holds_alternative<LightsFromSequence>(choice) ||
                               (!options.sequence.empty() && has_lighting_sequence(options.sequence));
     if (there_is_one) return LightsSource::kLightingSequence;
-    const bool recorded = !options.sequence.empty() && !synthetic_scene(options);
-    return recorded ? LightsSource::kSurroundings : LightsSource::kNone;
+    return synthetic_scene(options) ? LightsSource::kNone : LightsSource::kSurroundings;
 }
 
 namespace {

@@ -24,7 +24,7 @@ namespace patina {
 /// throw Error, naming the file, where it cannot be read or written.
 class MapFile {
   public:
-    static constexpr int kSchema = 12;
+    static constexpr int kSchema = 13;
     static constexpr uint64_t kPieceBytes = uint64_t{1} << 20;  ///< of an array, but for the last piece
 
     /// Opens a map, or begins one. Throws Error where the file is something else, or of another schema.

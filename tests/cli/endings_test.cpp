@@ -61,12 +61,12 @@ class Endings : public RunFolderTest {
 TEST_F(Endings, WithoutLightsTheSummarySaysWhatToGive) {
     const Outcome outcome = run(sequence());
     EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("no lamp is known to show"), HasSubstr("(--lights FILE, ")));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("what lamps would light tells of none"), HasSubstr("(--lights FILE, ")));
     const nlohmann::json summary = summary_of(out());
     EXPECT_THAT(summary.value("materials_missing", ""), HasSubstr("--lighting self"));
     EXPECT_EQ(summary["lights"]["found_by"], "surroundings");
     EXPECT_TRUE(fs::exists(out() / "materials.json"));
-    EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("no lamp is known to show"));
+    EXPECT_THAT(read_text(out() / "report.html"), HasSubstr("what lamps would light tells of none"));
     const double usual = summary["lights"]["ambient"][0];
     ASSERT_EQ(run(sequence(), {"--white", "0.4"}).exit_code, 0);
     EXPECT_NEAR(summary_of(out())["lights"]["ambient"][0], 2 * usual, 1e-6 * usual);

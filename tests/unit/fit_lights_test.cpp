@@ -164,6 +164,34 @@ TEST(UsualLight, IsWhatKnownDirectionsSend) {
     EXPECT_EQ(usual_light({}), glm::vec3(0));
 }
 
+std::vector<gpu::LightSample> with_unknown_share(size_t count, float share) {
+    gpu::LightSample sample{};
+    sample.point_m.w = 5;
+    sample.around.w = share;
+    return std::vector(count, sample);
+}
+
+TEST(UnknownShare, IsThatOfSamplesOfWhichItWasLooked) {
+    std::vector<gpu::LightSample> samples = with_unknown_share(3, 0.2f);
+    const auto add = [&](const std::vector<gpu::LightSample>& more) {
+        samples.insert(samples.end(), more.begin(), more.end());
+    };
+    add(with_unknown_share(1, 1));
+    add(with_unknown_share(9, -1));      // nobody looked
+    samples.resize(gpu::kLightSamples);  // no samples
+    add(with_unknown_share(9, 0));       // highlights
+    EXPECT_NEAR(unknown_share(samples), 0.4, 1e-6);
+    EXPECT_EQ(unknown_share({}), 1);
+    EXPECT_TRUE(is_enough_around(samples));
+    EXPECT_FALSE(is_enough_around(with_unknown_share(9, 0.8f))) << "a table";
+}
+
+TEST(EnoughSurface, IsAQuarterOfAllPlacesOfSamples) {
+    EXPECT_TRUE(is_enough_surface(with_unknown_share(gpu::kLightSamples / 4, 0.2f)));
+    EXPECT_FALSE(is_enough_surface(with_unknown_share(gpu::kLightSamples / 4 - 1, 0.2f)));
+    EXPECT_FALSE(is_enough_surface(with_unknown_share(gpu::kLightSamples, -1))) << "nobody looked around";
+}
+
 TEST(SurfaceLight, IsTheMedianOfWhatTheSurfaceSends) {
     const auto sends = [](float observations, glm::vec3 light) {
         gpu::LightSample sample{};
@@ -187,19 +215,26 @@ LitRoom looked_around(float noise) {
     return room;
 }
 
-glm::vec3 decided(float noise, float least) {
+glm::vec3 decided(float noise, UnseenLightBounds bounds) {
     const LitRoom room = looked_around(noise);
     const LitSurface surface(room.drawn, 1);
-    return decide_unseen_light(surface, room.known_on(surface), room.drawn, false, least);
+    const auto chosen = choose_unseen_light(surface, room.known_on(surface), usual_light(room.drawn), false);
+    return decide_unseen_light(chosen, room.drawn, bounds);
 }
 
 TEST(DecideUnseenLight, IsAtLeastWhatSurfacesAskForWhereItIsExplained) {
-    EXPECT_NEAR(decided(0.02f, 0).g, 0.5f * LitRoom::kWalls, 0.01f);
-    EXPECT_NEAR(decided(0.02f, 1).g, 1, 1e-6f);
+    EXPECT_NEAR(decided(0.02f, {}).g, 0.5f * LitRoom::kWalls, 0.01f);
+    EXPECT_NEAR(decided(0.02f, {.least = 1}).g, 1, 1e-6f);
+}
+
+TEST(DecideUnseenLight, IsAtMostWhatLeavesWhiteSurfacesWhite) {
+    EXPECT_NEAR(decided(0.02f, {.most = 0.05f}).g, 0.05f, 1e-6f);
+    EXPECT_NEAR(decided(0.5f, {.most = 0.05f}).g, 0.05f, 0.05f) << "also where nothing explains the surface";
+    EXPECT_GT(decided(0.02f, {.most = 0}).g, 0) << "no light at all would count as not known";
 }
 
 TEST(DecideUnseenLight, IsWhatTheSurfaceSendsWhereNothingExplainsIt) {
-    EXPECT_EQ(decided(0.5f, 1), surface_light(looked_around(0.5f).drawn));
+    EXPECT_EQ(decided(0.5f, {.least = 1}), surface_light(looked_around(0.5f).drawn));
 }
 
 gpu::LightSample sample_of(float value, float unknown) {
@@ -226,6 +261,23 @@ TEST(LeastUnseenLight, MakesNoAlbedoBrighterThanPaint) {
         EXPECT_NEAR(least_unseen_light(samples, received), expected, 1e-5f) << unseen;
     }
     EXPECT_EQ(least_unseen_light({}, {}), 0) << "nothing asks for any";
+    std::vector<gpu::LightSample> drawn(gpu::kLightSamples, sample_of(0.3f, 0.5f));
+    drawn.resize(2 * gpu::kLightSamples, sample_of(9, 0.5f));
+    EXPECT_EQ(least_unseen_light(drawn, std::vector(gpu::kLightSamples, 1.0f)), 0) << "highlights are no samples";
+}
+
+// 80 samples of albedo 0.4 and 20 of 0.7, half of whose directions are unknown.
+TEST(MostUnseenLight, LeavesATenthOfTheSurfaceNearlyWhite) {
+    constexpr float kLamps = 0.6f, kUnseen = 0.2f;
+    std::vector<gpu::LightSample> samples;
+    for (int i = 0; i < 100; ++i)
+        samples.push_back(sample_of((i < 80 ? 0.4f : 0.7f) * (kLamps + 0.5f * kUnseen), 0.5f));
+    samples.push_back(sample_of(1e6f, -1));  // nobody looked around
+    const std::vector<float> received(samples.size(), kLamps);
+    const float most = most_unseen_light(samples, received, 0.8f);
+    EXPECT_NEAR(0.7f * (kLamps + 0.5f * kUnseen) / (kLamps + 0.5f * most), 0.6f, 1e-4f);
+    EXPECT_EQ(most_unseen_light(samples, std::vector(samples.size(), 9.0f), 0.8f), 0) << "lamps alone are too much";
+    EXPECT_GT(most_unseen_light({}, {}, 0.8f), 1e6f) << "nothing tells it";
 }
 
 TEST(FitIntensities, RatiosOfLampsAndAmbientLightWhereAlbedoIsUnknown) {

@@ -15,7 +15,7 @@ std::string words_of(const FoundLight& found) {
     const LightEvidence& evidence = found.evidence;
     if (is_sun(found.light)) return fmt::format("a sun, in {} samples of its patches", evidence.sightings);
     const char* flat = is_flat(found.light) ? ", flat" : "";
-    if (evidence.unseen) return fmt::format("no picture shows it, found in what it lights{}", flat);
+    if (evidence.unseen) return fmt::format("found in what it lights{}", flat);
     std::string words = fmt::format("radius {:.3f} m  spread {:.1f} mm  {} sightings", found.light.radius_m,
                                     1000 * evidence.spread_m, evidence.sightings);
     words += flat;
