@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
+
+#include <opencv2/core/utility.hpp>
 
 #include "patina/lighting.h"
 
@@ -18,6 +21,7 @@ constexpr float kFirstMoveM = 0.3f, kLastMoveM = 0.03f, kShorter = 0.6f;
 constexpr double kFewHighlights = 200;  // they count half
 constexpr double kLeastLight = 0.01;    // of the mean irradiance
 constexpr double kLeastCost = 0.05;     // what the best explanation leaves: lamps that gain little beside it are none
+constexpr double kNoLamp = 1e9;         // a cost
 constexpr double kWorthwhile = 0.998;   // of the cost before: moves stay as long as they are
 constexpr float kSamePlace = 0.35f;     // of a lamp's distance from the middle of the surface
 
@@ -53,6 +57,15 @@ std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const 
             for (float x = spacing_m / 2; x < size.x; x += spacing_m) places.push_back(low + glm::vec3(x, y, z));
     places.insert(places.end(), seen_m.begin(), seen_m.end());
     return places;
+}
+
+/// value(0), value(1) ...; each may be computed beside the others.
+std::vector<double> in_parallel(size_t count, const std::function<double(size_t)>& value) {
+    std::vector<double> values(count);
+    cv::parallel_for_(cv::Range(0, static_cast<int>(count)), [&](const cv::Range& range) {
+        for (auto i = static_cast<size_t>(range.start); i < static_cast<size_t>(range.end); ++i) values[i] = value(i);
+    });
+    return values;
 }
 
 bool is_flat(const TrialLamp& lamp) { return lamp.axis != glm::vec3(0); }
@@ -129,22 +142,18 @@ class Search {
     /// `flat`: among flat lamps that face the middle of the surface, else among those that shine all around.
     TrialLamp best_addition(const std::vector<TrialLamp>& places, bool flat) const {
         const size_t count = surface_.samples_before(kCoarsePlaces);
-        std::vector<TrialLamp> trial = lamps_;
-        trial.emplace_back();
         const glm::vec3 middle_m = middle_of(surface_);
-        TrialLamp best = places.front();
-        double least = 1e9;
-        const auto consider = [&](const TrialLamp& lamp) {
-            trial.back() = lamp;
-            const double value = handicapped(trial, kCoarseSteps, count);
-            if (value < least) best = lamp, least = value;
+        const auto lamp_at = [&](const TrialLamp& place) {
+            return flat ? as_flat(surface_, place, glm::normalize(middle_m - place.place_m)) : place;
         };
-        for (const TrialLamp& place : places) {
-            if (!flat)
-                consider(place);
-            else if (place.place_m != middle_m)
-                consider(as_flat(surface_, place, glm::normalize(middle_m - place.place_m)));
-        }
+        const std::vector<double> costs = in_parallel(places.size(), [&](size_t i) {
+            if (flat && places[i].place_m == middle_m) return kNoLamp;
+            std::vector<TrialLamp> trial = lamps_;
+            trial.push_back(lamp_at(places[i]));
+            return handicapped(trial, kCoarseSteps, count);
+        });
+        const auto least = static_cast<size_t>(std::ranges::min_element(costs) - costs.begin());
+        const TrialLamp best = lamp_at(places[least]);
         const TrialLamp all_around = try_(std::span(&best.place_m, 1), gpu::kLightSamples).front();
         return is_flat(best) ? as_flat(surface_, all_around, best.axis) : all_around;
     }
@@ -173,23 +182,31 @@ class Search {
     /// The best of these places for a lamp, whose own is the first one; there the best of axes near its own, or none,
     /// if it is flat.
     void move(size_t lamp, std::span<const TrialLamp> places, float turn, double& now) {
-        std::vector<TrialLamp> trial = lamps_;
-        const auto is_better = [&](TrialLamp changed) {
-            trial[lamp] = std::move(changed);
-            const double value = handicapped(trial);
-            if (!(value < now)) return false;
-            lamps_[lamp] = trial[lamp];
-            now = value;
-            return true;
-        };
-        const TrialLamp* at = &places.front();
-        for (const TrialLamp& place : places.subspan(1))
-            if (is_better(is_flat(lamps_[lamp]) ? as_flat(surface_, place, lamps_[lamp].axis) : place)) at = &place;
-        if (!is_flat(lamps_[lamp])) return;
+        const bool flat = is_flat(lamps_[lamp]);
         const glm::vec3 axis = lamps_[lamp].axis;
+        std::vector<TrialLamp> changed;
+        for (const TrialLamp& place : places) changed.push_back(flat ? as_flat(surface_, place, axis) : place);
+        const TrialLamp& at = places[take_best(lamp, changed, now)];
+        if (!flat) return;
+        changed.assign(1, lamps_[lamp]);
         for (const glm::vec3& direction : directions())
-            is_better(as_flat(surface_, *at, glm::normalize(axis + turn * direction)));
-        is_better(*at);
+            changed.push_back(as_flat(surface_, at, glm::normalize(axis + turn * direction)));
+        changed.push_back(at);
+        take_best(lamp, changed, now);
+    }
+
+    /// Changes a lamp, the first of these, to the one that explains most, if that is more than `now`. Which it is.
+    size_t take_best(size_t lamp, std::span<const TrialLamp> changed, double& now) {
+        const std::vector<double> costs = in_parallel(changed.size(), [&](size_t i) {
+            if (i == 0) return now;
+            std::vector<TrialLamp> trial = lamps_;
+            trial[lamp] = changed[i];
+            return handicapped(trial);
+        });
+        const auto best = static_cast<size_t>(std::ranges::min_element(costs) - costs.begin());
+        if (best != 0) lamps_[lamp] = changed[best];
+        now = costs[best];
+        return best;
     }
 
     /// Whether the cost without a lamp exceeds `now`, the cost with it, by enough.

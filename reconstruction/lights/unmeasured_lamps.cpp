@@ -147,17 +147,16 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
 
 ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                 std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m,
-                                float white_albedo) {
+                                float white_albedo, bool low_exposure) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     std::vector<Light> sure, clipped;
     for (const FoundLight& lamp : lamps) (is_clipped(lamp) ? clipped : sure).push_back(lamp.light);
 
-    const std::vector<gpu::Camera>& low_exposure = pipeline.reflectance()->low_exposure_cameras();
     MeasuredLight measured{.known = received_from(pipeline, drawn, sure),
                            .unknown = {},
                            .white_albedo = white_albedo,
-                           .low_exposure = !low_exposure.empty()};
+                           .low_exposure = low_exposure};
     std::vector<float> brightness;
     for (size_t i = 0; i < gpu::kLightSamples; ++i) {
         measured.known[i] += glm::vec3(drawn[i].around);
@@ -173,7 +172,7 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     if (mean_of(together) > 0) measured.tint = together / mean_of(together);
 
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
-    const RuledOutPlaces ruled_out(pipeline, low_exposure);
+    const RuledOutPlaces ruled_out(pipeline, pipeline.reflectance()->low_exposure_cameras());
     const TryLampsInVolume try_known(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);
     std::vector<glm::vec3> places_m;
     for (const Light& lamp : clipped) places_m.emplace_back(lamp.position_m);

@@ -30,10 +30,10 @@ struct UnmeasuredLamps {
 /// show, which are searched for. They are fitted beside measured light, which tells how bright they are: not only up to
 /// one factor, as where no light is known. While much of what is around is not known this is not sure, and lamps come
 /// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps three quarters of
-/// `white_albedo` or more; that tenth does without low exposure, too. Where hardly any light is known, it begins at
-/// `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` is what these
-/// lamps give the surface at an intensity of 1. A lamp that no picture shows, which may be flat, is believed where a
-/// search before, of fewer frames, found it, too
+/// `white_albedo` or more; without low exposure it does so however much is known. Where hardly any light is known, it
+/// begins at `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` is
+/// what these lamps give the surface at an intensity of 1. A lamp that no picture shows, which may be flat, is believed
+/// where a search before, of fewer frames, found it, too
 /// (`before_m`), or once most of what is around is known. At most `most_added` are searched for. Nothing is told where
 /// the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
@@ -50,7 +50,7 @@ struct ToldLamps {
 /// than a fifth of the surface has an albedo above 0.9. Waits for the device.
 ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
                                 std::span<const FoundLight> lamps, std::span<const glm::vec3> before_m,
-                                float white_albedo);
+                                float white_albedo, bool low_exposure);
 
 /// Lamps as the pictures of low exposure show them: without suns, and without what find_unmeasured_lamps() told.
 std::vector<FoundLight> as_measured(std::vector<FoundLight> lamps);

@@ -190,7 +190,7 @@ glm::vec3 decide_unseen_light(const std::optional<glm::vec3>& chosen, std::span<
 }
 
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                           std::span<const Light> lights, float white_albedo) {
+                                           std::span<const Light> lights, std::optional<float> white_albedo) {
     for (gpu::LightSample& sample : drawn)
         if (sample.around.w < 0) sample.point_m.w = 0;  // nobody looked what is around it
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
@@ -203,11 +203,10 @@ std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::
         unknown.push_back(drawn[i].around.w);
     }
     const KnownLight known{surface.received(sent), surface.received(all), surface.received(unknown)};
-    const bool low_exposure = !pipeline.reflectance()->low_exposure_cameras().empty();
     const auto chosen = choose_unseen_light(surface, known, usual_light(drawn), std::ranges::any_of(lights, is_sun));
-    if (!chosen && lights.empty() && !low_exposure) return std::nullopt;
+    if (!chosen && lights.empty() && white_albedo) return std::nullopt;
     UnseenLightBounds bounds{.least = least_unseen_light(drawn, all)};
-    if (!low_exposure) bounds.most = most_unseen_light(drawn, all, white_albedo);
+    if (white_albedo) bounds.most = most_unseen_light(drawn, all, *white_albedo);
     return decide_unseen_light(chosen, drawn, bounds);
 }
 

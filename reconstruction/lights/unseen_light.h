@@ -106,10 +106,10 @@ glm::vec3 decide_unseen_light(const std::optional<glm::vec3>& chosen, std::span<
                               UnseenLightBounds bounds);
 
 /// decide_unseen_light() of what the pipeline has observed, under these lights; `drawn` as draw_samples returns it.
-/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. Empty, too, where
-/// nothing explains the surface and neither lamps nor low exposure tell how bright light is. At most
-/// gpu::kMaxPointLights lights. Waits for the device.
+/// Empty where nobody looked around: then as much as each record receives from elsewhere is better. `white_albedo`
+/// bounds it (most_unseen_light()) where no picture of low exposure tells how bright light is; then it is empty, too,
+/// where nothing explains the surface and no lamp is known. At most gpu::kMaxPointLights lights. Waits for the device.
 std::optional<glm::vec3> find_unseen_light(Pipeline& pipeline, std::vector<gpu::LightSample> drawn,
-                                           std::span<const Light> lights, float white_albedo);
+                                           std::span<const Light> lights, std::optional<float> white_albedo);
 
 }  // namespace patina

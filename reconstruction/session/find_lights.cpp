@@ -259,6 +259,7 @@ bool gathers(const ReconstructionSettings& settings) {
 }  // namespace
 
 bool may_lack_lamps(const Illumination& illumination) {
+    if (illumination.given) return false;
     return illumination.found_by == "lighting sequence" || illumination.found_by == "surroundings";
 }
 

@@ -55,6 +55,7 @@ struct Illumination {
     float unexplained = 0;
     std::vector<glm::vec3> candidates_m{};  ///< where searches found lamps that no picture shows
     glm::dvec3 assumed{0};                  ///< `ambient` before anything told it, where no lamp is known at first
+    bool given = false;                     ///< by the caller, who knows all lamps, however they were found
 };
 
 /// Whether there may be other lamps than these: a lighting sequence tells those that it shows, if any; without one

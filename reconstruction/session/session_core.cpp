@@ -1,16 +1,11 @@
 #include "reconstruction/session/session_core.h"
 
 #include <algorithm>
-#include <bit>
 
 #include <fmt/format.h>
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
-#include "reconstruction/lights/find_sun.h"
-#include "reconstruction/lights/surface_samples.h"
-#include "reconstruction/lights/unmeasured_lamps.h"
-#include "reconstruction/lights/unseen_light.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
 #include "reconstruction/session/preflight.h"
@@ -28,9 +23,6 @@
 namespace patina {
 
 namespace {
-
-constexpr size_t kFirstAmbientFrames = gpu::kLeastForSample;  // then what unknown directions send is looked for,
-constexpr size_t kFirstUnseenFrames = 8;  // and then lamps and a sun that low exposure does not show
 
 std::string sequence_name(const SessionOptions& options, const SequenceInfo& info) {
     return options.sequence.empty() ? info.name : options.sequence;
@@ -108,7 +100,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
         fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
-    if (!earlier && options_.sequence.empty() && illumination_.found_by == "surroundings")
+    if (!earlier && lights_source(options_) == LightsSource::kSurroundings && options_.sequence.empty())
         seen_.emplace(options_.white_albedo);
     start_pipeline(std::move(network));
     if (!earlier) add_low_exposure(device_, *pipeline_, options_, world_offset_m_);
@@ -286,74 +278,14 @@ void SessionCore::fuse(Frame frame) {
     }
     if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
     rgbd.only_track = is_held_out(frame.index, options_.hold_out);
-    if (const auto ambient = seen_ ? seen_->add(frame.color) : std::nullopt) {
-        illumination_.ambient = illumination_.assumed = glm::dvec3(*ambient);
-        pipeline_->set_lights({}, illumination_.ambient);
-    }
+    if (!rgbd.only_track) assume_light(frame.color);
     if (!add(rgbd, frame)) return;
     last_ = FrameResult{.fused = true, .reason = "", .world_from_depth = *frame.world_from_camera};
     ledger_.use(frame.index);
     used_.push_back(frame.index);
     poses_.push_back({frame.timestamp_s, *frame.world_from_camera});
     fused_ = std::move(frame);
-    if (!looks_for_light() || !is_unseen_light_due()) return;
-    if (used_.size() < kFirstUnseenFrames) {
-        look_for_ambient_light();
-    } else {
-        look_for_unseen_light();
-    }
-}
-
-bool SessionCore::looks_for_light() const {
-    const ReflectanceStage* reflectance = pipeline_->reflectance();
-    return reflectance && reflectance->gathers() && may_lack_lamps(illumination_);
-}
-
-/// Whenever there are twice as many frames, a power of two: what is unknown becomes less, and so does what comes from
-/// there.
-bool SessionCore::is_unseen_light_due() const {
-    return used_.size() >= kFirstAmbientFrames && std::has_single_bit(used_.size());
-}
-
-/// What arrives from unseen surroundings under the lights that are known so far.
-void SessionCore::look_for_ambient_light() {
-    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
-    if (illumination_.lights.empty() && !is_enough_surface(drawn)) return;
-    if (take_ambient_light(drawn)) pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
-}
-
-/// Light that no picture tells: lamps that low exposure clips or does not show, a sun in its patches, and what arrives
-/// from unseen surroundings.
-void SessionCore::look_for_unseen_light() {
-    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
-    const std::vector<FoundLight> measured = as_measured(illumination_.lights);
-    if (measured.empty() && !is_enough_surface(drawn)) return;
-    ToldLamps told =
-        find_unmeasured_lamps(*pipeline_, drawn, measured, illumination_.candidates_m, options_.white_albedo);
-    std::vector<FoundLight>& lights = illumination_.lights = std::move(told.lamps);
-    illumination_.candidates_m = std::move(told.places_m);
-    const std::vector<Light> lamps = lights_of(illumination_);
-    const bool room_for_one = lamps.size() < gpu::kMaxPointLights;
-    if (const auto sun =
-            room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
-        lights.push_back(*sun);
-    const bool told_ambient = take_ambient_light(drawn);
-    if (told_ambient && lights.size() > lamps.size())
-        measure_sun(*pipeline_, drawn, lights.back(), lamps, glm::vec3(illumination_.ambient));
-    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
-}
-
-/// What unknown directions send under the lights that are known so far, and whether anything tells it. Where nothing
-/// does and no lamp is known, what was assumed at first is the only light.
-bool SessionCore::take_ambient_light(const std::vector<gpu::LightSample>& drawn) {
-    const std::vector<Light> lights = lights_of(illumination_);
-    const bool measured = !lights.empty() || illumination_.found_by == "lighting sequence";  // lamps, or windows
-    const bool may_tell = measured || is_enough_around(drawn);
-    const auto unseen = may_tell ? find_unseen_light(*pipeline_, drawn, lights, options_.white_albedo) : std::nullopt;
-    const glm::dvec3 otherwise = lights.empty() ? illumination_.assumed : glm::dvec3(0);
-    illumination_.ambient = unseen ? glm::dvec3(*unseen) : otherwise;
-    if (unseen || !lights.empty()) seen_.reset();
-    return unseen.has_value();
+    look_for_light();
 }
 
 /// Sets the frame's pose where it is tracked.

@@ -145,9 +145,12 @@ class SessionCore {
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
     bool looks_for_light() const;
+    void assume_light(const ColorImage& color);
+    void look_for_light();
     bool is_unseen_light_due() const;
     void look_for_ambient_light();
-    bool take_ambient_light(const std::vector<gpu::LightSample>& drawn);
+    bool knows_brightness() const;
+    std::optional<glm::dvec3> ambient_told_by(const std::vector<gpu::LightSample>& drawn);
     void look_for_unseen_light();
     void hold_out(Frame frame);
     bool add(RgbdFrame& rgbd, Frame& frame);

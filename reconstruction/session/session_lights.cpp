@@ -58,6 +58,7 @@ std::optional<Illumination> search(vulkan::Device& device, const LightsOptions& 
 
 Illumination illumination_of(const Lighting& lighting, glm::dvec3 world_offset_m) {
     Illumination given;
+    given.given = true;
     given.found_by = lighting.found_by;
     given.world_offset_m = world_offset_m;
     for (Light light : lighting.lights) {

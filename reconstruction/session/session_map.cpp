@@ -159,7 +159,7 @@ void SessionCore::checkpoint_if_due(const MoreState& more) {
     if (options_.map.empty() || options_.checkpoint_every == 0 || ledger_.used() == 0) return;
     if (!ended_ && ledger_.read() % options_.checkpoint_every != 0) return;
     try {
-        if (ended_ && kept_after_ == ledger_.read()) {
+        if (ended_ && kept_after_ == ledger_.read() && !looks_for_light()) {  // end() looked once more
             mark_ended();
         } else {
             checkpoint(more);
@@ -177,6 +177,8 @@ void SessionCore::keep_model(MapFile& map) {
     Transaction change(map.database());
     StateWriter writer(device_, map);
     pipeline_->visit(writer);
+    SessionLight light{illumination_, no_light_because_, shortfalls_};
+    patina::visit(writer, light);
     FramesInModel frames{static_cast<uint32_t>(used_.size()), static_cast<uint32_t>(held_out_indices_.size())};
     writer.value(kFramesInModel, frames);
     writer.finish();
@@ -189,7 +191,10 @@ void SessionCore::go_back(MapFile& map) {
     FramesInModel frames;
     reader.value(kFramesInModel, frames);
     pipeline_->visit(reader);
+    SessionLight light;
+    patina::visit(reader, light);
     reader.finish();
+    illumination_ = std::move(light.illumination);  // as the pipeline's
     if (pipeline_->keyframes()) pipeline_->begin_recording();
     for (auto [indices, count] : {std::pair(&used_, frames.used), {&held_out_indices_, frames.held_out}}) {
         const auto first = indices->begin() + count;

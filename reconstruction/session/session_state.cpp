@@ -96,6 +96,7 @@ void visit(graph::StateVisitor& visitor, SessionLight& light) {
     visitor.value("light.world_offset_m", found.world_offset_m);
     visitor.value("light.ambient", found.ambient);
     visitor.value("light.assumed", found.assumed);
+    visitor.value("light.given", found.given);
     visitor.value("light.misfit", found.misfit);
     visitor.value("light.unexplained", found.unexplained);
     visitor.text("light.none_because", light.none_because);

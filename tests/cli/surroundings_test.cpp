@@ -13,7 +13,6 @@
 namespace patina::testing::surroundings_test {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// One wall of a box, or its floor or ceiling.

@@ -5,6 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include "reconstruction/session/session_lights.h"
+#include "reconstruction/session/surroundings.h"
+
 namespace patina::tools::bright_surfaces_test {
 namespace {
 
@@ -67,6 +70,35 @@ TEST(BrightSurfaces, IsTheQuantileOfAllFramesWithinABin) {
     const float quantile = all[static_cast<size_t>(0.9 * static_cast<double>(all.size() - 1))];
     EXPECT_NEAR(bright.ambient(kUsualAlbedo).g * kUsualAlbedo, quantile, quantile / 128);
     EXPECT_EQ(bright.ambient(kUsualAlbedo).r, bright.ambient(kUsualAlbedo).b);
+}
+
+TEST(SurroundingsSeen, TellTheLightWheneverThereAreTwiceAsManyFrames) {
+    SurroundingsSeen seen(kUsualAlbedo);
+    std::vector<int> told;
+    for (int frame = 1; frame <= 1000; ++frame) {
+        const auto ambient = seen.add(picture_of(std::vector<float>(3, 0.4f)));
+        if (!ambient) continue;
+        told.push_back(frame);
+        EXPECT_FLOAT_EQ(ambient->g, 0.5f);
+    }
+    EXPECT_THAT(told, ::testing::ElementsAre(1, 2, 4, 8, 16, 32, 64, 128));
+}
+
+TEST(SurroundingsSeen, BlackPicturesTellNothing) {
+    SurroundingsSeen seen(kUsualAlbedo);
+    EXPECT_FALSE(seen.add(picture_of(std::vector<float>(30, 0))));
+    EXPECT_TRUE(seen.add(picture_of(std::vector<float>(30, 0.4f))));
+}
+
+TEST(MayLackLamps, NotWhereTheCallerGaveThemHoweverTheyWereFound) {
+    for (const char* found_by : {"surroundings", "lighting sequence"}) {
+        Lighting earlier;
+        earlier.found_by = found_by;
+        Illumination light = illumination_of(earlier, glm::dvec3(0));
+        EXPECT_FALSE(may_lack_lamps(light));
+        light.given = false;
+        EXPECT_TRUE(may_lack_lamps(light));
+    }
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#include <bit>
+
+#include "reconstruction/lights/find_sun.h"
+#include "reconstruction/lights/surface_samples.h"
+#include "reconstruction/lights/unmeasured_lamps.h"
+#include "reconstruction/lights/unseen_light.h"
+#include "reconstruction/session/session_core.h"
+
+// The light that a session looks for while it goes on.
+
+namespace patina {
+namespace {
+
+constexpr size_t kFirstAmbientFrames = gpu::kLeastForSample;  // then what unknown directions send is looked for,
+constexpr size_t kFirstUnseenFrames = 8;                      // and then lamps and a sun that no picture tells;
+constexpr size_t kFirstUnseenFramesOfCamera = 64;             // a camera of which no lamp is known does not wait for it
+
+}  // namespace
+
+bool SessionCore::looks_for_light() const {
+    const ReflectanceStage* reflectance = pipeline_->reflectance();
+    return reflectance && reflectance->gathers() && may_lack_lamps(illumination_);
+}
+
+/// Of a camera, while nothing else tells what is around: how bright its pictures are.
+void SessionCore::assume_light(const ColorImage& color) {
+    const auto ambient = seen_ ? seen_->add(color) : std::nullopt;
+    if (!ambient) return;
+    illumination_.ambient = illumination_.assumed = glm::dvec3(*ambient);
+    pipeline_->set_lights({}, illumination_.ambient);
+}
+
+/// After a frame.
+void SessionCore::look_for_light() {
+    if (!looks_for_light() || !is_unseen_light_due()) return;
+    const bool waits = info_.frames || illumination_.found_by != "surroundings";
+    if (used_.size() < (waits ? kFirstUnseenFrames : kFirstUnseenFramesOfCamera)) {
+        look_for_ambient_light();
+    } else {
+        look_for_unseen_light();
+    }
+}
+
+/// Whenever there are twice as many frames, a power of two: what is unknown becomes less, and so does what comes from
+/// there.
+bool SessionCore::is_unseen_light_due() const {
+    return used_.size() >= kFirstAmbientFrames && std::has_single_bit(used_.size());
+}
+
+/// What arrives from unseen surroundings under the lights that are known so far.
+void SessionCore::look_for_ambient_light() {
+    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    if (illumination_.lights.empty() && !knows_brightness() && !is_enough_surface(drawn)) return;
+    const auto told = ambient_told_by(drawn);
+    if (!told) return;
+    illumination_.ambient = *told;
+    seen_.reset();
+    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
+}
+
+/// Light that no picture tells: lamps that low exposure clips or does not show, a sun in its patches, and what arrives
+/// from unseen surroundings.
+void SessionCore::look_for_unseen_light() {
+    const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    const std::vector<FoundLight> measured = as_measured(illumination_.lights);
+    if (measured.empty() && !knows_brightness() && !is_enough_surface(drawn)) return;
+    ToldLamps told = find_unmeasured_lamps(*pipeline_, drawn, measured, illumination_.candidates_m,
+                                           options_.white_albedo, knows_brightness());
+    std::vector<FoundLight>& lights = illumination_.lights = std::move(told.lamps);
+    illumination_.candidates_m = std::move(told.places_m);
+    const std::vector<Light> lamps = lights_of(illumination_);
+    const bool room_for_one = lamps.size() < gpu::kMaxPointLights;
+    if (const auto sun =
+            room_for_one ? find_sun(*pipeline_, drawn, lamps, glm::vec3(illumination_.ambient)) : std::nullopt)
+        lights.push_back(*sun);
+    const auto ambient = ambient_told_by(drawn);
+    // Where nothing tells it and no lamp is known, what was assumed at first is the only light.
+    illumination_.ambient = ambient.value_or(lights.empty() ? illumination_.assumed : glm::dvec3(0));
+    if (ambient || !lights.empty()) seen_.reset();
+    if (ambient && lights.size() > lamps.size())
+        measure_sun(*pipeline_, drawn, lights.back(), lamps, glm::vec3(illumination_.ambient));
+    pipeline_->set_lights(lights_of(illumination_), illumination_.ambient);
+}
+
+/// Whether pictures of low exposure tell how bright lamps or windows are.
+bool SessionCore::knows_brightness() const { return illumination_.found_by == "lighting sequence"; }
+
+/// What unknown directions send under the lights that are known so far, if anything tells it.
+std::optional<glm::dvec3> SessionCore::ambient_told_by(const std::vector<gpu::LightSample>& drawn) {
+    const std::vector<Light> lights = lights_of(illumination_);
+    if (lights.empty() && !knows_brightness() && !is_enough_around(drawn)) return std::nullopt;
+    const auto unknown_white = knows_brightness() ? std::nullopt : std::optional(options_.white_albedo);
+    const auto unseen = find_unseen_light(*pipeline_, drawn, lights, unknown_white);
+    return unseen ? std::optional(glm::dvec3(*unseen)) : std::nullopt;
+}
+
+}  // namespace patina
