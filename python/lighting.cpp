@@ -39,7 +39,8 @@ void bind_lamps(py::module_& m) {
 }
 
 void bind_choices(py::module_& m) {
-    py::class_<LightsBeside>(m, "LightsBeside", "Lights of the sequence's own lighting/, where it has one.")
+    py::class_<LightsBeside>(m, "LightsBeside",
+                             "Lights of the sequence's own lighting/; without one, looked for in what they light.")
         .def(py::init<>());
     py::class_<NoLights>(m, "NoLights", "No light: geometry and colours alone.").def(py::init<>());
     py::class_<LightsFromFile>(m, "LightsFromFile", "The lights of a lights.json, whatever its name.")

@@ -21,7 +21,8 @@
 
 namespace patina {
 
-/// Lights are looked for in the lighting sequence that the main sequence has (lighting/), if it has one.
+/// Lights are looked for in the lighting sequence that the main sequence has (lighting/). Without one, what arrives
+/// from around is gathered, and lamps and a sun are looked for in what they light while the session goes on.
 struct LightsBeside {};
 /// No light: geometry and colours alone.
 struct NoLights {};

@@ -33,9 +33,8 @@ struct UnmeasuredLamps {
 /// `white_albedo` or more; without low exposure it does so however much is known. Where hardly any light is known, it
 /// begins at `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` is
 /// what these lamps give the surface at an intensity of 1. A lamp that no picture shows, which may be flat, is believed
-/// where a search before, of fewer frames, found it, too
-/// (`before_m`), or once most of what is around is known. At most `most_added` are searched for. Nothing is told where
-/// the surface stays unexplained.
+/// where a search before, of fewer frames, found it, too (`before_m`), or once most of what is around is known. At most
+/// `most_added` are searched for. Nothing is told where the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
                                      std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
                                      const TryLamps& try_lamps, uint32_t most_added = LightSearchSettings().most_lamps);

@@ -6,6 +6,7 @@
 
 #include "cameras/open_sequence.h"
 #include "reconstruction/api/access.h"
+#include "reconstruction/lights/surface_samples.h"
 #include "reconstruction/session/choices.h"
 #include "reconstruction/session/choose_settings.h"
 #include "reconstruction/session/preflight.h"
@@ -225,7 +226,7 @@ void SessionCore::end() {
     pipeline_->wait();
     if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
     expect_frames();
-    if (!looks_for_light()) return;
+    if (!looks_for_light() || !shows_enough(draw_samples(*pipeline_))) return;
     pipeline_->refine_all();  // nothing knows more of what is around
     look_for_unseen_light();
 }

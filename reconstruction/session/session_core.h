@@ -150,6 +150,7 @@ class SessionCore {
     bool is_unseen_light_due() const;
     void look_for_ambient_light();
     bool knows_brightness() const;
+    bool shows_enough(const std::vector<gpu::LightSample>& drawn) const;
     std::optional<glm::dvec3> ambient_told_by(const std::vector<gpu::LightSample>& drawn);
     void look_for_unseen_light();
     void hold_out(Frame frame);

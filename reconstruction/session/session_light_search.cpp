@@ -50,7 +50,7 @@ bool SessionCore::is_unseen_light_due() const {
 /// What arrives from unseen surroundings under the lights that are known so far.
 void SessionCore::look_for_ambient_light() {
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
-    if (illumination_.lights.empty() && !knows_brightness() && !is_enough_surface(drawn)) return;
+    if (!shows_enough(drawn)) return;
     const auto told = ambient_told_by(drawn);
     if (!told) return;
     illumination_.ambient = *told;
@@ -62,8 +62,8 @@ void SessionCore::look_for_ambient_light() {
 /// from unseen surroundings.
 void SessionCore::look_for_unseen_light() {
     const std::vector<gpu::LightSample> drawn = draw_samples(*pipeline_);
+    if (!shows_enough(drawn)) return;
     const std::vector<FoundLight> measured = as_measured(illumination_.lights);
-    if (measured.empty() && !knows_brightness() && !is_enough_surface(drawn)) return;
     ToldLamps told = find_unmeasured_lamps(*pipeline_, drawn, measured, illumination_.candidates_m,
                                            options_.white_albedo, knows_brightness());
     std::vector<FoundLight>& lights = illumination_.lights = std::move(told.lamps);
@@ -84,6 +84,11 @@ void SessionCore::look_for_unseen_light() {
 
 /// Whether pictures of low exposure tell how bright lamps or windows are.
 bool SessionCore::knows_brightness() const { return illumination_.found_by == "lighting sequence"; }
+
+/// Whether there is something to tell light by.
+bool SessionCore::shows_enough(const std::vector<gpu::LightSample>& drawn) const {
+    return knows_brightness() || is_enough_surface(drawn);
+}
 
 /// What unknown directions send under the lights that are known so far, if anything tells it.
 std::optional<glm::dvec3> SessionCore::ambient_told_by(const std::vector<gpu::LightSample>& drawn) {

@@ -30,7 +30,8 @@ enum class LightsSource {
     kGiven,             ///< the options hold them, or name their file
     kLightingSequence,  ///< the sequence that the user names, or the one that the main sequence has
     kMainSequence,      ///< what they light there
-    kSurroundings       ///< no lamp is known: what surfaces send each other, and the recording's brightness
+    kSurroundings       ///< no lamp is known at first: what surfaces send each other, and how bright pictures are; the
+                        ///< session looks for lamps (SessionCore::look_for_light)
 };
 
 /// Where the options and the sequence say that lights come from; no light has been looked for. Throws Error where a

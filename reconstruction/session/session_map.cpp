@@ -159,7 +159,7 @@ void SessionCore::checkpoint_if_due(const MoreState& more) {
     if (options_.map.empty() || options_.checkpoint_every == 0 || ledger_.used() == 0) return;
     if (!ended_ && ledger_.read() % options_.checkpoint_every != 0) return;
     try {
-        if (ended_ && kept_after_ == ledger_.read() && !looks_for_light()) {  // end() looked once more
+        if (ended_ && kept_after_ == ledger_.read()) {
             mark_ended();
         } else {
             checkpoint(more);

@@ -105,6 +105,13 @@ TEST(UnmeasuredLamps, WhereLittleIsKnownOfTheRoomItsBrightestSurfaceIsNotDark) {
     EXPECT_LT(intensity.g, 0.6f * truth.g);
     EXPECT_NEAR(intensity.r / intensity.g, 1.2f, 1e-3f);
     EXPECT_NEAR(intensity.b / intensity.g, 0.8f, 1e-3f);
+
+    MeasuredLight clipped = first_lamp(balls, 0.1f);
+    clipped.low_exposure = false;
+    const UnmeasuredLamps without =
+        fit_unmeasured_lamps(surface, clipped, {}, std::span(&kBefore_m, 1), balls.try_lamps(surface));
+    ASSERT_EQ(without.added.size(), 1u);
+    EXPECT_LT(without.added[0].intensity.g, 0.6 * truth.g) << "pictures clip what is around, however much they know";
 }
 
 // Then the brightest surface, the floor with a mean of 0.323, has the albedo of white.
