@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <future>
+#include <thread>
 #include <utility>
-
-#include <opencv2/core/utility.hpp>
 
 #include "patina/lighting.h"
 
@@ -62,9 +62,14 @@ std::vector<glm::vec3> places_around(const LitSurface& surface, std::span<const 
 /// value(0), value(1) ...; each may be computed beside the others.
 std::vector<double> in_parallel(size_t count, const std::function<double(size_t)>& value) {
     std::vector<double> values(count);
-    cv::parallel_for_(cv::Range(0, static_cast<int>(count)), [&](const cv::Range& range) {
-        for (auto i = static_cast<size_t>(range.start); i < static_cast<size_t>(range.end); ++i) values[i] = value(i);
-    });
+    const size_t workers = std::clamp<size_t>(std::thread::hardware_concurrency(), 1, std::max<size_t>(count, 1));
+    const auto work = [&](size_t first) {
+        for (size_t i = first; i < count; i += workers) values[i] = value(i);
+    };
+    std::vector<std::future<void>> others;
+    for (size_t w = 1; w < workers; ++w) others.push_back(std::async(std::launch::async, work, w));
+    work(0);
+    for (std::future<void>& other : others) other.get();
     return values;
 }
 
