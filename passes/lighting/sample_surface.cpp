@@ -24,6 +24,9 @@ graph::BufferId add_trials(graph::FrameGraph& frame, graph::PassBuilder& pass, c
                            const TriedSamples& tried, std::span<const glm::vec3> lights, glm::vec4 ball_m) {
     if (lights.empty() || lights.size() > gpu::kTrialLights)
         throw Error("1 to ", gpu::kTrialLights, " lights are tried at once, not ", lights.size());
+    if (tried.count > gpu::kLightSamples || tried.count % gpu::kTrialSamples != 0)
+        throw Error("lights are tried with whole groups of ", gpu::kTrialSamples, " of ", gpu::kLightSamples,
+                    " samples, not with ", tried.count);
     const auto trials = static_cast<uint32_t>(lights.size());
     std::vector<glm::vec4> padded;
     for (const glm::vec3& light : lights) padded.emplace_back(light, 0);

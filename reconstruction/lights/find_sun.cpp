@@ -21,7 +21,7 @@ class TrySunsInVolume {
     std::vector<float> operator()(std::span<const gpu::LightSample> samples,
                                   std::span<const glm::vec3> directions) const {
         std::vector<gpu::LightSample> padded(samples.begin(), samples.end());
-        padded.resize((samples.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+        padded.resize((samples.size() + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
         std::vector<float> rows;
         rows.reserve(samples.size() * directions.size());
         while (!directions.empty()) {

@@ -43,7 +43,7 @@ RuledOutPlaces::RuledOutPlaces(Pipeline& pipeline, std::span<const gpu::Camera> 
         cameras_.push_back(cameras[i * cameras.size() / count]);
         views_.push_back(view_of(cameras_.back()));
     }
-    views_.resize((count + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+    views_.resize((count + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
 }
 
 std::vector<bool> RuledOutPlaces::operator()(std::span<const glm::vec3> places_m) const {

@@ -10,7 +10,7 @@ namespace {
 /// The highlights as samples of a pass, which takes whole groups.
 std::vector<gpu::LightSample> in_groups(const std::vector<gpu::LightSample>& highlights) {
     std::vector<gpu::LightSample> padded = highlights;
-    padded.resize((highlights.size() + gpu::kRecordGroup - 1) / gpu::kRecordGroup * gpu::kRecordGroup);
+    padded.resize((highlights.size() + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
     return padded;
 }
 

@@ -41,6 +41,14 @@ auto looked_around(std::span<const gpu::LightSample> samples) {
            std::views::filter([](const gpu::LightSample& s) { return s.point_m.w > 0 && s.around.w >= 0; });
 }
 
+/// What light of 1 from unknown directions gives each sample; 0 where that is less than `least`, or nobody looked.
+std::vector<float> reached_by_unseen(std::span<const gpu::LightSample> samples, float least) {
+    std::vector<float> reached;
+    for (const gpu::LightSample& sample : samples)
+        reached.push_back(sample.point_m.w > 0 && sample.around.w >= least ? sample.around.w : 0);
+    return reached;
+}
+
 /// What light leaves that is known, as what `ambient` gives the samples (null: the same everywhere).
 std::optional<float> left_over(const LitSurface& surface, const ReceivedLight& known, const ReceivedLight& ambient) {
     const FittedIntensities fitted =
@@ -154,18 +162,14 @@ std::optional<float> least_strength(std::span<const gpu::LightSample> samples, s
 
 float least_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received) {
     samples = of_surface(samples);
-    std::vector<float> reached;
-    for (const gpu::LightSample& sample : samples)
-        reached.push_back(sample.point_m.w > 0 && sample.around.w >= kLeastReach ? sample.around.w : 0);
+    const std::vector<float> reached = reached_by_unseen(samples, kLeastReach);
     return std::max(least_strength(samples, received, reached, kBrightestAlbedo, kBrighterShare).value_or(0), 0.0f);
 }
 
 float most_unseen_light(std::span<const gpu::LightSample> samples, std::span<const float> received,
                         float white_albedo) {
     samples = of_surface(samples);
-    std::vector<float> reached;
-    for (const gpu::LightSample& sample : samples)
-        reached.push_back(sample.point_m.w > 0 ? std::max(sample.around.w, 0.0f) : 0);
+    const std::vector<float> reached = reached_by_unseen(samples, 0);
     const auto strength = least_strength(samples, received, reached, kDarkWhite * white_albedo, kBrightest);
     return std::max(strength.value_or(std::numeric_limits<float>::infinity()), 0.0f);
 }

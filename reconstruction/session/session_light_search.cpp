@@ -33,7 +33,7 @@ void SessionCore::assume_light(const ColorImage& color) {
 /// After a frame.
 void SessionCore::look_for_light() {
     if (!looks_for_light() || !is_unseen_light_due()) return;
-    const bool waits = info_.frames || illumination_.found_by != "surroundings";
+    const bool waits = info_.frames || knows_brightness();
     if (used_.size() < (waits ? kFirstUnseenFrames : kFirstUnseenFramesOfCamera)) {
         look_for_ambient_light();
     } else {
@@ -41,8 +41,7 @@ void SessionCore::look_for_light() {
     }
 }
 
-/// Whenever there are twice as many frames, a power of two: what is unknown becomes less, and so does what comes from
-/// there.
+/// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.
 bool SessionCore::is_unseen_light_due() const {
     return used_.size() >= kFirstAmbientFrames && std::has_single_bit(used_.size());
 }
