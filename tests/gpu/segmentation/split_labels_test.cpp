@@ -364,13 +364,18 @@ TEST_F(SplitLabels, RecordsHaveTheLabelOfTheVoxelAtTheirSurface) {
     std::iota(roots.begin(), roots.end(), 0u);
     roots[4] = 0;  // there is none
     const reference::LabelVolume volume = rig_.volume();
-    // Records round their point and normal: close to a border between voxels either side may answer.
+    // Records round their point and normal: close to a border between voxels either side may answer. Rounding moves the
+    // point, those before and behind it with it, and these two by the normal's rounding against each other.
     const auto clear_answer = [&](const FilledRecord& record) -> std::optional<uint32_t> {
         std::set<uint32_t> answers;
         for (int corner = 0; corner < 8; ++corner) {
             const glm::dvec3 beside(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
             const glm::dvec3 point_m = glm::dvec3(kept_point_m(map_, record)) + beside * (1e-3 * kVoxelM);
-            answers.insert(reference::sampled_label(volume, roots, point_m, glm::dvec3(record.normal)));
+            for (int i = 0; i < 27; ++i) {
+                const glm::dvec3 turned(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+                const glm::dvec3 normal = glm::dvec3(record.normal) + turned * 5e-3;
+                answers.insert(reference::sampled_label(volume, roots, point_m, normal));
+            }
         }
         return answers.size() == 1 ? std::optional(*answers.begin()) : std::nullopt;
     };
