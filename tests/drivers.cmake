@@ -43,14 +43,15 @@ set(PATINA_LONG_TESTS FindVisibilityTest.KdOfAGlossySceneWithShadowsIsFoundThrou
 # No shader uses subgroup operations, so that the width of vectors changes nothing but how the driver compiles a pass. Without
 # PATINA_TEST_FULL the narrower lavapipe runs the TESTs that compare a pass with its CPU reference, but for the longest ones, and
 # these folders as a whole.
-set(PATINA_LAVAPIPE128_TESTS "*Reference*")
+set(PATINA_COMPARING_TESTS "*Reference*")  # by their names
 set(PATINA_LAVAPIPE128_LONG_TESTS FindVisibilityTest.BitsAgreeWithTheReferenceOnEverySurface:IntegrateTest.OneFrameAndSeveralAgreeWithTheReference:RunNetwork.HalvesAgreeWithTheReferenceOnAwkwardShapes)
 set(PATINA_LAVAPIPE128_WHOLE_FOLDERS "^(engine|input|photometry|surface|texture|viewer)$")
 
 # SwiftShader is three times slower than lavapipe: without PATINA_TEST_FULL it runs the folders of which each pass is a
-# kind of its own, and leaves out those that go through many scenes.
+# kind of its own, and of the two longest of these what compares a pass with its CPU reference.
 set(PATINA_SWIFTSHADER_FOLDERS "^(engine|input|kinect2|photometry|shading)$")
-set(PATINA_SWIFTSHADER_LONG_TESTS ReflectSurroundings.AGlossyWallMirrorsTheRoom:PredictRadiance.AWallOfOneKdUnderALampIsEquation6:PredictRadiance.GlossThatIsApartIsWhatThePictureLacks:PredictRadiance.ManyLightsEachReachWhatTheyReach:ReflectSurroundings.ItsMeanIsThatOfTheReference:ReflectSurroundings.WithHardlyAnyGlossTheGatheredLightIsEnough)
+set(PATINA_SWIFTSHADER_WHOLE_FOLDERS "^(engine|input|photometry)$")
+set(PATINA_SWIFTSHADER_LONG_TESTS ReflectSurroundings.ItsMeanIsThatOfTheReference)
 
 # Registers the suites of a GoogleTest program, each as "PREFIX.Suite", with a label and what follows it as environment. Where
 # there is one, the program needs a driver: to open a device and to build pipelines takes a process seconds, so that the
@@ -81,9 +82,11 @@ function(patina_test_suites TARGET NAME PREFIX LABEL)
     endif()
     if(LABEL STREQUAL swiftshader AND NOT PATINA_TEST_FULL)
         set(FOLDERS "${PATINA_SWIFTSHADER_FOLDERS}")
+        set(WHOLE_FOLDERS "${PATINA_SWIFTSHADER_WHOLE_FOLDERS}")
+        set(TESTS_TAKEN "${PATINA_COMPARING_TESTS}")
         string(APPEND TESTS_LEFT_OUT ":${PATINA_SWIFTSHADER_LONG_TESTS}")
     elseif(LABEL STREQUAL lavapipe128 AND NOT PATINA_TEST_FULL)
-        set(TESTS_TAKEN "${PATINA_LAVAPIPE128_TESTS}")
+        set(TESTS_TAKEN "${PATINA_COMPARING_TESTS}")
         string(APPEND TESTS_LEFT_OUT ":${PATINA_LAVAPIPE128_LONG_TESTS}")
         set(WHOLE_FOLDERS "${PATINA_LAVAPIPE128_WHOLE_FOLDERS}")
     endif()

@@ -45,6 +45,7 @@ std::vector<std::string> Session::shortfalls() { return shortfalls_of(state_->co
 
 Scene Session::finish() {
     state_->core.expect_frames();
+    state_->core.look_for_last_light();
     return state_->core.scene();
 }
 

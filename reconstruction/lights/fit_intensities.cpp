@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace patina {
 namespace {
@@ -102,7 +103,8 @@ class IntensityFit {
   public:
     IntensityFit(std::span<const gpu::LightSample> samples, std::span<const uint32_t> group, uint32_t groups,
                  std::span<const ReceivedLight> lamps, const ReceivedLight& ambient, size_t count, LightChannel channel)
-        : members_(groups),
+        : begin_(groups + 1),
+          members_(count),
           groups_(kAlbedos * groups),
           part_(count),
           count_(count),
@@ -117,8 +119,8 @@ class IntensityFit {
             if (ambient) given_[i * unknowns_ + lamps.size()] = ambient->by_sample[i];
             for (size_t l = 0; l < unknowns_; ++l) mean_[l] += given(i, l) / static_cast<double>(count);
             bright_[i] = brightness(samples[i], channel);
-            members_[group[i]].push_back(static_cast<uint32_t>(i));
         }
+        sort_members(group.first(count));
         spread_evenly();
     }
 
@@ -131,9 +133,10 @@ class IntensityFit {
         }
         fitted_.albedo.assign(groups_, 0);
         fitted_.misfit = 0;
-        for (uint32_t g = 0; g < members_.size(); ++g) {
-            split(members_[g], kAlbedos * g);
-            weigh_group(members_[g], kAlbedos * g);
+        for (uint32_t g = 0; g + 1 < begin_.size(); ++g) {
+            const auto members = std::span(members_).subspan(begin_[g], begin_[g + 1] - begin_[g]);
+            split(members, kAlbedos * g);
+            weigh_group(members, kAlbedos * g);
         }
     }
 
@@ -160,6 +163,14 @@ class IntensityFit {
 
   private:
     float given(size_t sample, size_t lamp) const { return given_[sample * unknowns_ + lamp]; }
+
+    /// Samples by group, each group's in their order.
+    void sort_members(std::span<const uint32_t> group) {
+        for (const uint32_t g : group) ++begin_[g + 1];
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
+        for (uint32_t i = 0; i < group.size(); ++i) members_[next[group[i]]++] = i;
+    }
 
     /// Gives each sample the albedo that explains it better, the first being the more frequent one, the second 0 where
     /// one will do.
@@ -216,8 +227,9 @@ class IntensityFit {
 
     /// Albedos that few samples are darker and few are brighter than.
     std::pair<float, float> extremes(std::span<const uint32_t> members) {
-        ratios_.clear();
-        for (const uint32_t i : members) ratios_.push_back(bright_[i] / (lit_[i] + static_cast<float>(kLeastLit)));
+        ratios_.resize(members.size());
+        for (size_t k = 0; k < members.size(); ++k)
+            ratios_[k] = bright_[members[k]] / (lit_[members[k]] + static_cast<float>(kLeastLit));
         const auto quantile = [&](size_t percent) {
             const auto at = ratios_.begin() + static_cast<ptrdiff_t>(percent * (ratios_.size() - 1) / 100);
             std::nth_element(ratios_.begin(), at, ratios_.end());
@@ -235,10 +247,10 @@ class IntensityFit {
             fitted_.intensities.push_back(mean > 0 ? 1 / (mean * static_cast<double>(reaching)) : 0);
     }
 
-    std::vector<std::vector<uint32_t>> members_;  // samples by group
-    size_t groups_;                               // all groups' albedos
-    std::vector<uint32_t> part_;                  // which of these a sample has
-    size_t count_, unknowns_;                     // the last unknown: ambient light
+    std::vector<uint32_t> begin_, members_;  // of each group the first of its members, and the end; samples by group
+    size_t groups_;                          // all groups' albedos
+    std::vector<uint32_t> part_;             // which of these a sample has
+    size_t count_, unknowns_;                // the last unknown: ambient light
     std::vector<float> given_, lit_, bright_, weight_, ratios_;
     std::vector<double> mean_;
     FittedIntensities fitted_;

@@ -101,7 +101,7 @@ SessionCore::SessionCore(vulkan::Device& device, const SessionOptions& options, 
         fail_without_lights(options_);
     std::optional<NetworkDescription> network = read_network(options_);
     take_light(earlier ? light_in(device_, *earlier) : light_of(device_, options_, world_offset_m_));
-    if (!earlier && lights_source(options_) == LightsSource::kSurroundings && options_.sequence.empty())
+    if (options_.extends.empty() && lights_source(options_) == LightsSource::kSurroundings && is_light_assumed())
         seen_.emplace(options_.white_albedo);
     start_pipeline(std::move(network));
     if (!earlier) add_low_exposure(device_, *pipeline_, options_, world_offset_m_);
@@ -226,9 +226,7 @@ void SessionCore::end() {
     pipeline_->wait();
     if (const auto discrepancy = ledger_.discrepancy(info_)) throw Error(*discrepancy);
     expect_frames();
-    if (!looks_for_light() || !shows_enough(draw_samples(*pipeline_))) return;
-    pipeline_->refine_all();  // nothing knows more of what is around
-    look_for_unseen_light();
+    look_for_last_light();
 }
 
 void SessionCore::expect_frames() const {
@@ -279,7 +277,7 @@ void SessionCore::fuse(Frame frame) {
     }
     if (!poses_.empty()) rgbd.shutter_share = shutter_share(info_, frame, poses_.back().timestamp_s);
     rgbd.only_track = is_held_out(frame.index, options_.hold_out);
-    if (!rgbd.only_track) assume_light(frame.color);
+    if (const auto ambient = see_brightness(frame)) assume_light(*ambient);
     if (!add(rgbd, frame)) return;
     last_ = FrameResult{.fused = true, .reason = "", .world_from_depth = *frame.world_from_camera};
     ledger_.use(frame.index);

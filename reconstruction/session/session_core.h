@@ -81,6 +81,9 @@ class SessionCore {
     /// Throws Error where no frame could be used so far.
     void expect_frames() const;
 
+    /// Looks for light in all that the source showed; where it has ended, and once. A part of end().
+    void look_for_last_light();
+
     /// The frame that the last step() fused, with its pose; null where it fused none.
     const Frame* fused() const { return fused_ ? &*fused_ : nullptr; }
     const std::optional<FrameResult>& last() const { return last_; }
@@ -145,7 +148,9 @@ class SessionCore {
     void start_pipeline(std::optional<NetworkDescription> network);
     void fuse(Frame frame);
     bool looks_for_light() const;
-    void assume_light(const ColorImage& color);
+    bool is_light_assumed() const;
+    std::optional<glm::dvec3> see_brightness(const Frame& frame);
+    void assume_light(glm::dvec3 ambient);
     void look_for_light();
     bool is_unseen_light_due() const;
     void look_for_ambient_light();
@@ -169,7 +174,8 @@ class SessionCore {
     bool made_map_ = false;                     ///< there was no file
     std::optional<uint32_t> kept_after_;  ///< frames read when the state in it was; empty: it is another session's
     std::string checkpoint_problem_;
-    bool ended_ = false;  ///< the source has
+    bool ended_ = false;        ///< the source has
+    bool looked_last_ = false;  ///< look_for_last_light() has
     DetailChoice detail_;
     std::optional<SequenceTruth> truth_;
     SequenceInfo info_;

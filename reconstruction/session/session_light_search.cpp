@@ -1,4 +1,5 @@
 #include <bit>
+#include <utility>
 
 #include "reconstruction/lights/find_sun.h"
 #include "reconstruction/lights/surface_samples.h"
@@ -22,12 +23,21 @@ bool SessionCore::looks_for_light() const {
     return reflectance && reflectance->gathers() && may_lack_lamps(illumination_);
 }
 
-/// Of a camera, while nothing else tells what is around: how bright its pictures are.
-void SessionCore::assume_light(const ColorImage& color) {
-    const auto ambient = seen_ ? seen_->add(color) : std::nullopt;
-    if (!ambient) return;
-    illumination_.ambient = illumination_.assumed = glm::dvec3(*ambient);
-    pipeline_->set_lights({}, illumination_.ambient);
+/// Of a camera, while nothing else tells what is around: what arrives from there, by how bright its pictures are.
+std::optional<glm::dvec3> SessionCore::see_brightness(const Frame& frame) {
+    if (!seen_ || is_held_out(frame.index, options_.hold_out) || !(frame.world_from_camera || tracks())) return {};
+    const auto ambient = seen_->add(frame.color);
+    return ambient ? std::optional(glm::dvec3(*ambient)) : std::nullopt;
+}
+
+void SessionCore::assume_light(glm::dvec3 ambient) {
+    illumination_.ambient = illumination_.assumed = ambient;
+    pipeline_->set_lights({}, ambient);
+}
+
+/// Of a camera, where nothing has told yet what is around.
+bool SessionCore::is_light_assumed() const {
+    return options_.sequence.empty() && illumination_.lights.empty() && illumination_.ambient == illumination_.assumed;
 }
 
 /// After a frame.
@@ -39,6 +49,14 @@ void SessionCore::look_for_light() {
     } else {
         look_for_unseen_light();
     }
+}
+
+/// After the last frame, once: nothing will know more of what is around.
+void SessionCore::look_for_last_light() {
+    if (!ended_ || std::exchange(looked_last_, true)) return;
+    if (!looks_for_light() || !shows_enough(draw_samples(*pipeline_))) return;
+    pipeline_->refine_all();
+    look_for_unseen_light();
 }
 
 /// Whenever there are twice as many frames: what is unknown becomes less, and so does what comes from there.

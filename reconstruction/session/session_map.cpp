@@ -110,6 +110,8 @@ void SessionCore::skip_readings() {
             throw Error("'", options_.map.string(), "' goes on after frame ", ledger_.read(), ", but '", info_.name,
                         "' ends after frame ", index);
         if (inspector_) inspector_->add(*reading);
+        const auto* frame = std::get_if<Frame>(&*reading);
+        if (frame && !std::binary_search(repeated_.begin(), repeated_.end(), index)) see_brightness(*frame);
     }
 }
 

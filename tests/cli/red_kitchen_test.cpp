@@ -18,7 +18,7 @@ constexpr uint32_t kViewEvery = 10;
 
 uint32_t frames_to_use() {
     const char* variable = std::getenv("PATINA_TEST_KITCHEN_FRAMES");
-    return variable ? static_cast<uint32_t>(std::stoul(variable)) : 300;
+    return variable ? static_cast<uint32_t>(std::stoul(variable)) : PATINA_KITCHEN_FRAMES;
 }
 
 vulkan::DeviceOptions device_options() {

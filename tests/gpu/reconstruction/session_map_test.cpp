@@ -27,6 +27,31 @@ using ::testing::ThrowsMessage;
 
 constexpr uint32_t kFrames = 8;
 
+/// A camera before a wall that becomes brighter.
+class BrighterWall : public Source {
+  public:
+    BrighterWall() {
+        info_.name = "wall";
+        info_.depth = info_.color = {{64, 48}, 60, 60, 31.5, 23.5};
+        info_.has_poses = true;
+    }
+    const SequenceInfo& info() const override { return info_; }
+    std::optional<Reading> next() override {
+        if (next_ == kFrames) return std::nullopt;
+        Frame frame;
+        frame.index = next_++;
+        frame.timestamp_s = frame.index / info_.fps;
+        frame.depth = Image<uint16_t>(info_.depth.extent, 1000);
+        frame.color = Image<SrgbPixel>(info_.color.extent, SrgbPixel(static_cast<uint8_t>(100 + 10 * frame.index)));
+        frame.world_from_camera = RigidTransform(1.0);
+        return frame;
+    }
+
+  private:
+    SequenceInfo info_;
+    uint32_t next_ = 0;
+};
+
 class SessionMapTest : public ::testing::Test {
   protected:
     static void SetUpTestSuite() { device_ = std::make_unique<Device>(DeviceChoice{.validation = true}); }
@@ -102,6 +127,27 @@ TEST_F(SessionMapTest, TrackedOnesWithGainsToo) {
     tracked.poses = Poses::kTrack;
     tracked.gains = Gains::kOn;
     EXPECT_TRUE(broken(tracked, 4) == straight(tracked));
+}
+
+TEST_F(SessionMapTest, ACameraGoesOnToTheSameAmbientLight) {
+    SessionOptions camera = options();
+    camera.sequence.clear();
+    camera.frames = 0;
+    camera.lighting = {};
+    const auto last_ambient = [](Session& session) {
+        while (session.step()) continue;
+        return session.lighting().ambient.g;
+    };
+    Session whole(*device_, std::make_unique<BrighterWall>(), camera);
+    {
+        Session first(*device_, std::make_unique<BrighterWall>(), camera);
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(first.step());
+        first.checkpoint();
+        EXPECT_LT(first.lighting().ambient.g, last_ambient(whole)) << "of the first two frames";
+    }
+    camera.resume = true;
+    Session resumed(*device_, std::make_unique<BrighterWall>(), camera);
+    EXPECT_EQ(last_ambient(resumed), whole.lighting().ambient.g);
 }
 
 TEST_F(SessionMapTest, PoolsThatGrewComeBackAsLarge) {
