@@ -5,6 +5,7 @@
 #include "reconstruction/lights/surface_samples.h"
 #include "reconstruction/lights/unmeasured_lamps.h"
 #include "reconstruction/lights/unseen_light.h"
+#include "reconstruction/session/rgbd_frame.h"
 #include "reconstruction/session/session_core.h"
 
 // The light that a session looks for while it goes on.

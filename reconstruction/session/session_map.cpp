@@ -1,5 +1,7 @@
 // How a session's state goes into its map, and comes back.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "reconstruction/session/choices.h"
