@@ -156,7 +156,8 @@ class Session {
     /// used; a sentence each.
     std::vector<std::string> shortfalls();
 
-    /// The scene of what was fused so far; waits. Throws Error where no frame could be used.
+    /// The scene of what was fused so far; waits. Once the source has ended, light that nobody gave is looked for in
+    /// all that it showed. Throws Error where no frame could be used.
     Scene finish();
 
   private:

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 using sensor::testing::read_text;
 
 constexpr const char* kFrames = "12";
+constexpr const char* kCoarseTexels = "8";  // millimetres; most of a run's time goes by their number
 constexpr Extent2D kExtent{256, 212};
 
 /// A run whose numbers are stored in tests/golden/NAME.json.
@@ -92,8 +93,8 @@ std::set<std::string> names(const std::map<std::string, std::string>& files) {
 }
 
 TEST_F(Golden, TwoRunsGiveTheSameBytes) {
-    run(small_cubes(), beside("first"), {"--detail", "coarse"});
-    run(small_cubes(), beside("second"), {"--detail", "coarse"});
+    for (const char* name : {"first", "second"})
+        run(small_cubes(), beside(name), {"--detail", "coarse", "--texture", kCoarseTexels});
     const auto first = files_in(beside("first")), second = files_in(beside("second"));
     ASSERT_EQ(names(first), names(second));
     for (const char* name : {"scene.glb", "trajectory.txt", "report.html", "run.json", "frames/000000.exr",
@@ -200,15 +201,16 @@ TEST_F(Golden, SceneIsValidGltf) {
     if (!fs::exists(fs::path(PATINA_SOURCE_DIR) / "node_modules/gltf-validator")) {
         GTEST_SKIP() << "node_modules/gltf-validator is missing: run npm ci in " << PATINA_SOURCE_DIR;
     }
-    run_quietly(small_cubes(), {"--frames", "2", "--lighting", "none", "--detail", "coarse"});
+    run_quietly(small_cubes(),
+                {"--frames", "2", "--lighting", "none", "--detail", "coarse", "--texture", kCoarseTexels});
     const std::string validator = PATINA_SOURCE_DIR "/tools/validate_gltf.mjs";
     EXPECT_EQ(std::system(("node '" + validator + "' '" + (out() / "scene.glb").string() + "'").c_str()), 0);
 }
 
 TEST_F(Golden, ValidationHasNothingToSayAndTheGraphIsDumped) {
     fs::create_directory(out());
-    run_quietly(small_cubes(),
-                {"--frames", "2", "--detail", "coarse", "--validation", "--dump-graph", out() / "graph"});
+    run_quietly(small_cubes(), {"--frames", "2", "--detail", "coarse", "--texture", kCoarseTexels, "--validation",
+                                "--dump-graph", out() / "graph"});
     EXPECT_THAT(read_text(out() / "graph.dot"), ::testing::StartsWith("digraph"));
     const nlohmann::json graph = nlohmann::json::parse(read_text(out() / "graph.json"), nullptr, false);
     ASSERT_TRUE(graph.is_object());

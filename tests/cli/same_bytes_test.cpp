@@ -70,7 +70,7 @@ TEST_F(SameBytes, TruthBesideTheFramesChangesNothing) {
         }
         const std::vector<std::string> more{
             "--set",     "observe.max_blur_px=0.001", "--set", "observe.smeared_observations=0", "--no-map",
-            "--texture", blurs ? "off" : "auto"};
+            "--texture", blurs ? "off" : "8"};
         const auto with_truth = files_of_run(more);
         fs::rename(recording_ / "truth", beside("truth"));
         const auto without_truth = files_of_run(more);

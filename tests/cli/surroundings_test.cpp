@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "patina/lighting.h"
+#include "patina/session.h"
 #include "tests/cli/run_folder.h"
 
 // A room of which nothing tells the lamps: no file, no lighting sequence. A lamp under the ceiling, that no picture
@@ -69,7 +70,8 @@ class Surroundings : public RunFolderTest {
     std::string room() const { return beside("room"); }
 };
 
-TEST_F(Surroundings, ALampIsFoundInWhatItLights) {
+// All 24 frames tell of it, and not yet the first 16.
+TEST_F(Surroundings, ALampIsFoundInWhatItLightsByTheProgramAndTheLibrary) {
     const json summary =
         run_quietly(room(), {"--texture", "off", "--set", "map.voxel_m=0.02", "--set", "fusion.truncation_m=0.06"});
     EXPECT_EQ(summary["lights"]["found_by"], "surroundings");
@@ -81,6 +83,22 @@ TEST_F(Surroundings, ALampIsFoundInWhatItLights) {
     EXPECT_LT(found.ambient.g, 0.4) << "before it was found, 0.74 was assumed";
     EXPECT_EQ(summary["settings"]["specular"], "both") << "its highlights are looked at";
     EXPECT_FALSE(summary.contains("materials_missing"));
+
+    SessionOptions options;
+    options.sequence = room();
+    for (const auto& [key, value] : {std::pair{"map.voxel_m", "0.02"}, {"fusion.truncation_m", "0.06"}})
+        options.settings.set(key, value);
+    Device device;
+    Session session(device, options);
+    while (session.step()) continue;
+    EXPECT_TRUE(session.lighting().lights.empty());
+    for (const bool again : {false, true}) {
+        const Scene scene = session.finish();
+        ASSERT_EQ(scene.lighting.lights.size(), 1u) << again;
+        const Light& lamp = scene.lighting.lights[0];
+        EXPECT_LT(glm::distance(lamp.position_m, found.lights[0].position_m), 1e-5) << again;  // the file rounds
+        EXPECT_LT(glm::distance(lamp.intensity, found.lights[0].intensity), 1e-5) << again;
+    }
 }
 
 }  // namespace
