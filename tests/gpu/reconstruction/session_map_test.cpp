@@ -13,6 +13,7 @@
 #include "reconstruction/store/map_file.h"
 #include "scenes/files/scene_file.h"
 #include "tests/export/temporary_folder.h"
+#include "tests/gpu/scenes/wall_frame.h"
 #include "tests/scenes/small_cubes.h"
 
 // A session that goes on from a map yields what one without a break does.
@@ -38,13 +39,8 @@ class BrighterWall : public Source {
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override {
         if (next_ == kFrames) return std::nullopt;
-        Frame frame;
-        frame.index = next_++;
-        frame.timestamp_s = frame.index / info_.fps;
-        frame.depth = Image<uint16_t>(info_.depth.extent, 1000);
-        frame.color = Image<SrgbPixel>(info_.color.extent, SrgbPixel(static_cast<uint8_t>(100 + 10 * frame.index)));
-        frame.world_from_camera = RigidTransform(1.0);
-        return frame;
+        const uint32_t index = next_++;
+        return wall_frame(info_, index, SrgbPixel(static_cast<uint8_t>(100 + 10 * index)));
     }
 
   private:

@@ -4,6 +4,7 @@
 
 #include "sensor/pose.h"
 #include "tests/export/temporary_folder.h"
+#include "tests/gpu/scenes/wall_frame.h"
 
 namespace patina::session_test {
 namespace {
@@ -30,14 +31,8 @@ class LiveWall : public Source {
         const uint32_t index = next_++;
         if (index == kFrames) return std::nullopt;
         if (index == 2) return Skipped{index, "a packet was lost"};
-        Frame frame;
-        frame.index = index;
-        frame.timestamp_s = index / info_.fps;
-        frame.depth = Image<uint16_t>(info_.depth.extent, 1000);
-        Image<SrgbPixel> color(info_.color.extent, SrgbPixel(128));
-        if (!still_) color.at(0, 0).r = static_cast<uint8_t>(index);
-        frame.color = std::move(color);
-        frame.world_from_camera = RigidTransform(1.0);
+        Frame frame = wall_frame(info_, index, SrgbPixel(128));
+        if (!still_) std::get<Image<SrgbPixel>>(frame.color).at(0, 0).r = static_cast<uint8_t>(index);
         return frame;
     }
 

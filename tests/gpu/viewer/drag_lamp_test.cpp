@@ -11,6 +11,7 @@
 #include "patina/session.h"
 #include "reconstruction/api/access.h"
 #include "reconstruction/session/session_core.h"
+#include "tests/gpu/scenes/wall_frame.h"
 #include "tools/viewer/display.h"
 #include "tools/viewer/viewer.h"
 
@@ -100,14 +101,9 @@ class Wall : public Source {
     const SequenceInfo& info() const override { return info_; }
     std::optional<Reading> next() override {
         if (next_ == kFrames) return std::nullopt;
-        Frame frame;
-        frame.index = next_++;
-        frame.timestamp_s = frame.index / info_.fps;
-        frame.depth = Image<uint16_t>(info_.depth.extent, 1000);
-        Image<SrgbPixel> color(info_.color.extent, SrgbPixel(128));
-        color.at(0, 0).r = static_cast<uint8_t>(frame.index);
-        frame.color = std::move(color);
-        frame.world_from_camera = RigidTransform(1.0);
+        const uint32_t index = next_++;
+        Frame frame = wall_frame(info_, index, SrgbPixel(128));
+        std::get<Image<SrgbPixel>>(frame.color).at(0, 0).r = static_cast<uint8_t>(index);
         return frame;
     }
 
