@@ -46,6 +46,24 @@ Value suns_array(const std::vector<Light>& suns) {
     return Value(std::move(all));
 }
 
+/// In the root node's frame.
+Value windows_array(const std::vector<AreaLight>& windows, double luminance_per_pixel_value) {
+    Value::Array all;
+    for (const AreaLight& window : windows)
+        all.emplace_back(Value::Object{{"center", array_of(window.center_m)},
+                                       {"half_u", array_of(window.half_u_m)},
+                                       {"half_v", array_of(window.half_v_m)},
+                                       {"luminance", array_of(window.radiance * luminance_per_pixel_value)},
+                                       {"clipped", Value(window.clipped)}});
+    return Value(std::move(all));
+}
+
+/// Lamps and light from afar have one scale.
+double luminance_per_pixel_value(const GlbInfo& info) {
+    return info.lights.empty() && info.environment ? info.environment->luminance_per_pixel_value
+                                                   : info.candela_per_intensity;
+}
+
 Value environment_extras(const GlbEnvironment& environment) {
     const glm::dquat turn = environment.y_up_from_root;
     return Value(Value::Object{
@@ -63,6 +81,7 @@ Value scene_extras(const GlbInfo& info) {
     Value::Object extras;
     if (!info.lights.empty()) extras["photometric"] = photometric(info.candela_per_intensity);
     if (!info.suns.empty()) extras["suns"] = suns_array(info.suns);
+    if (!info.windows.empty()) extras["windows"] = windows_array(info.windows, luminance_per_pixel_value(info));
     if (info.environment) extras["environment"] = environment_extras(*info.environment);
     return extras.empty() ? Value() : Value(std::move(extras));
 }

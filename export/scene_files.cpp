@@ -39,12 +39,19 @@ Lighting rounded(Lighting lighting) {
         light.radius_m = rounded(glm::dvec3(light.radius_m)).x;
         light.axis = rounded(light.axis);
     }
+    for (AreaLight& window : lighting.windows) {
+        window.center_m = rounded(window.center_m);
+        window.half_u_m = rounded(window.half_u_m);
+        window.half_v_m = rounded(window.half_v_m);
+        window.radiance = rounded(window.radiance);
+    }
     return lighting;
 }
 
 Lighting in_recorded_world(const Scene& scene) {
     Lighting lighting = rounded(scene.lighting);
     for (Light& light : lighting.lights) light.position_m += scene.world_offset_m;
+    for (AreaLight& window : lighting.windows) window.center_m += scene.world_offset_m;
     return lighting;
 }
 
@@ -65,6 +72,7 @@ GlbInfo glb_info(const Scene& scene, const SurfaceSurvey& survey, const SceneFil
         .segment_names = names_of_segments(scene.reflectance.segments, scene.segment_names, survey.patches(), upright),
         .lights = lights,
         .suns = from_afar,
+        .windows = rounded(scene.lighting).windows,
         .candela_per_intensity = candela_per_intensity(lights, survey.patches())};
 }
 

@@ -96,6 +96,7 @@ class Reader {
             scene_.pages.push_back({model_.images[i].mimeType, model_.images[i].image});
         const glm::dmat4 to_gltf = transform_of(root);
         if (extras.IsObject() && extras.Has("environment")) take_environment(extras.Get("environment"), to_gltf);
+        if (extras.IsObject() && extras.Has("windows")) take_windows(extras.Get("windows"), to_gltf);
         for (const int child : root.children) {
             const tinygltf::Node& node = arrays_.at(model_.nodes, child, "node");
             if (node.mesh >= 0) add_mesh(node, to_gltf * transform_of(node));
@@ -122,6 +123,25 @@ class Reader {
         scene_.luminance_per_pixel_value = scale;
         scene_.environment_from_gltf =
             glm::quat_cast(glm::dmat3(transform_of(axes)) * glm::transpose(glm::dmat3(to_gltf)));
+    }
+
+    void take_windows(const Value& windows, const glm::dmat4& to_gltf) {
+        for (size_t i = 0; windows.IsArray() && i < windows.ArrayLen(); ++i) {
+            const Value& window = windows.Get(static_cast<int>(i));
+            const auto vector = [&](const char* name) {
+                glm::dvec3 v(0);
+                if (!window.IsObject() || !window.Has(name)) return v;
+                const Value& values = window.Get(name);
+                for (int c = 0; c < 3 && values.IsArray() && values.ArrayLen() == 3; ++c)
+                    v[c] = values.Get(c).GetNumberAsDouble();
+                return v;
+            };
+            const glm::dmat3 turn(to_gltf);
+            scene_.windows.push_back({.center_m = glm::dvec3(to_gltf * glm::dvec4(vector("center"), 1)),
+                                      .half_u_m = turn * vector("half_u"),
+                                      .half_v_m = turn * vector("half_v"),
+                                      .radiance = vector("luminance")});
+        }
     }
 
     void add_mesh(const tinygltf::Node& node, const glm::dmat4& to_gltf) {

@@ -54,7 +54,8 @@ struct SceneParts {
     std::vector<EncodedPicture> pages;  ///< of the texture: base colours, sRGB
     std::vector<Light> lights;          ///< in glTF's axes; intensity in linear pixel values times square metre
     double candela_per_intensity = 1;
-    glm::dvec3 ambient{0};  ///< as Lighting::ambient; no glTF holds it
+    std::vector<AreaLight> windows;  ///< in glTF's axes; radiance is luminance, cd/m^2
+    glm::dvec3 ambient{0};           ///< as Lighting::ambient; no glTF holds it
     /// The picture of light from afar that the file names; empty: it names none. read_environment() reads it.
     std::string environment_file;
     double luminance_per_pixel_value = 1;          ///< of that picture (GlbEnvironment)

@@ -151,6 +151,22 @@ std::string light_text(const Light& light, double candela_per_intensity, size_t 
         turn.x, turn.y, turn.z);
 }
 
+/// A rectangle of USD has its width along x and its height along y, and shines along -z.
+std::string window_text(const AreaLight& window, size_t number) {
+    const double strongest = std::max({window.radiance.r, window.radiance.g, window.radiance.b});
+    const glm::vec3 color = strongest > 0 ? glm::vec3(window.radiance / strongest) : glm::vec3(1);
+    const double width_m = 2 * glm::length(window.half_u_m), height_m = 2 * glm::length(window.half_v_m);
+    const glm::dvec3 back = -normal_of(window), up = glm::normalize(window.half_v_m);
+    const glm::dquat turn = glm::quat_cast(glm::dmat3(glm::cross(up, back), up, back));
+    return fmt::format(
+        "def RectLight \"window_{}\"\n{{\n color3f inputs:color = {}\n float inputs:intensity = {:.6g}\n"
+        " float inputs:width = {:.4f}\n float inputs:height = {:.4f}\n double3 xformOp:translate = ({:.6f}, {:.6f}, "
+        "{:.6f})\n quatf xformOp:orient = ({:.6g}, {:.6g}, {:.6g}, {:.6g})\n"
+        " uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n}}\n",
+        number + 1, tuple(color), strongest, width_m, height_m, window.center_m.x, window.center_m.y, window.center_m.z,
+        turn.w, turn.x, turn.y, turn.z);
+}
+
 }  // namespace
 
 std::string usda_text(const SceneParts& scene, const std::vector<std::string>& pages) {
@@ -160,6 +176,7 @@ std::string usda_text(const SceneParts& scene, const std::vector<std::string>& p
     for (size_t i = 0; i < scene.parts.size(); ++i) text += mesh_text(scene, scene.parts[i], i);
     for (size_t i = 0; i < scene.lights.size(); ++i)
         text += light_text(scene.lights[i], scene.candela_per_intensity, i);
+    for (size_t i = 0; i < scene.windows.size(); ++i) text += window_text(scene.windows[i], i);
     return text + "}\n";
 }
 

@@ -26,14 +26,21 @@ void bind_lamps(py::module_& m) {
         .def_property_readonly("intensity", [](const Light& light) { return to_tuple(light.intensity); })
         .def_readonly("radius", &Light::radius_m)
         .def_property_readonly("axis", [](const Light& light) { return to_tuple(light.axis); });
-    py::class_<Lighting>(m, "Lighting", "What lights a room: lamps, and light that arrives everywhere alike.")
+    py::class_<AreaLight>(m, "AreaLight", "A window as a rectangle that shines to half_u x half_v.")
+        .def_property_readonly("center", [](const AreaLight& window) { return to_tuple(window.center_m); })
+        .def_property_readonly("half_u", [](const AreaLight& window) { return to_tuple(window.half_u_m); })
+        .def_property_readonly("half_v", [](const AreaLight& window) { return to_tuple(window.half_v_m); })
+        .def_property_readonly("radiance", [](const AreaLight& window) { return to_tuple(window.radiance); })
+        .def_readonly("clipped", &AreaLight::clipped);
+    py::class_<Lighting>(m, "Lighting", "What lights a room: lamps, windows, and light that arrives everywhere alike.")
         .def(py::init([](std::vector<Light> lights, std::array<double, 3> ambient) {
                  return Lighting{std::move(lights), to_vector(ambient), "given"};
              }),
              py::arg("lights") = py::tuple(), py::arg("ambient") = std::array<double, 3>{})
         .def_property_readonly("lights", [](const Lighting& lighting) { return lighting.lights; })
         .def_property_readonly("ambient", [](const Lighting& lighting) { return to_tuple(lighting.ambient); })
-        .def_readonly("found_by", &Lighting::found_by);
+        .def_readonly("found_by", &Lighting::found_by)
+        .def_property_readonly("windows", [](const Lighting& lighting) { return lighting.windows; });
     m.def("read_lighting", &read_lighting, py::arg("file"), "Reads a lights.json.");
     m.def("write_lighting", &write_lighting, py::arg("file"), py::arg("lighting"), "Writes a lights.json.");
 }

@@ -11,8 +11,9 @@ glm::vec4 sum_of(const gpu::SurroundingsSums& sums) {
     return {glm::vec3(sums.r, sums.g, sums.b) / gpu::kSurroundingsSteps, sums.samples};
 }
 
-/// The mean radiance; a is 0 where too few pixels looked. What low exposure shows counts where the usual one clips.
-glm::vec4 radiance_of(const gpu::SurroundingsLight& light) {
+}  // namespace
+
+glm::vec4 mean_radiance(const gpu::SurroundingsLight& light) {
     const glm::vec4 usual = sum_of(light.usual), low = sum_of(light.low);
     if (usual.a + low.a < gpu::kLeastSurroundingsSamples) return glm::vec4(0);
     const bool clipped = usual.a == 0 || std::max({usual.r, usual.g, usual.b}) > gpu::kNearlyClipped * usual.a;
@@ -20,11 +21,13 @@ glm::vec4 radiance_of(const gpu::SurroundingsLight& light) {
     return told / told.a;
 }
 
+namespace {
+
 glm::vec4 seen_in_openings(std::span<const gpu::OpeningTexel> openings, glm::uvec2 texel) {
     glm::vec4 sum(0);
     for (uint32_t y = 0; y < kFiner; ++y)
         for (uint32_t x = 0; x < kFiner; ++x)
-            sum += radiance_of(openings[(kFiner * texel.y + y) * gpu::kOpeningEdge + kFiner * texel.x + x].light);
+            sum += mean_radiance(openings[(kFiner * texel.y + y) * gpu::kOpeningEdge + kFiner * texel.x + x].light);
     return sum.a > 0 ? sum / sum.a : sum;
 }
 

@@ -232,6 +232,12 @@ Image<glm::vec4> Pipeline::far_field() {
     return read_far_field(runner_, *stages_.reflectance);
 }
 
+std::vector<AreaLight> Pipeline::windows() {
+    if (!stages_.reflectance || fusion_.frames() == 0) return {};
+    wait();
+    return read_windows(runner_, *stages_.reflectance);
+}
+
 MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     std::vector<SegmentReflectance> known = segments();

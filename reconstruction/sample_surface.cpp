@@ -7,6 +7,7 @@
 #include <span>
 
 #include "reconstruction/far_field.h"
+#include "reconstruction/lights/find_windows.h"
 
 namespace patina {
 namespace {
@@ -108,6 +109,16 @@ Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& m
     runner.submit(std::move(frame));
     runner.wait();
     return far_field_of(sky.as<gpu::FarFieldTexel>(), openings.as<gpu::OpeningTexel>());
+}
+
+std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model) {
+    if (!model.gathers()) return {};
+    graph::FrameGraph frame = runner.begin();
+    const graph::Readback cells = frame.read_back(model.import_surroundings(frame), kSurroundingsCellsAt,
+                                                  gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell));
+    runner.submit(std::move(frame));
+    runner.wait();
+    return find_windows(cells.as<gpu::SurroundingsCell>());
 }
 
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,

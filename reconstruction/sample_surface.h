@@ -18,6 +18,9 @@ std::vector<SegmentReflectance> read_segments(graph::Runner& runner, Reflectance
 /// is gathered.
 Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& model);
 
+/// The windows that pictures showed (find_windows.h); waits for the device. None where no light is gathered.
+std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model);
+
 /// What the vertices of a mesh reflect, without the segments; waits for the device. At most `batch_points` vertices
 /// (above 0) are sampled at once, which changes nothing about the result. Throws Error when memory runs out.
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,

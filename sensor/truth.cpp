@@ -56,7 +56,8 @@ double read_alpha(const JsonValue& value) {
 
 }  // namespace
 
-void write_lights(const std::filesystem::path& file, std::span<const Light> lights, glm::dvec3 ambient) {
+void write_lights(const std::filesystem::path& file, std::span<const Light> lights, glm::dvec3 ambient,
+                  std::span<const AreaLight> windows) {
     Json list = Json::array();
     for (const Light& light : lights) {
         Json entry{{"position", to_json(light.position_m)}, {"intensity", to_json(light.intensity)}};
@@ -66,6 +67,14 @@ void write_lights(const std::filesystem::path& file, std::span<const Light> ligh
     }
     Json all{{"lights", list}};
     if (ambient != glm::dvec3(0)) all["ambient"] = to_json(ambient);
+    for (const AreaLight& window : windows) {
+        Json entry{{"center", to_json(window.center_m)},
+                   {"half_u", to_json(window.half_u_m)},
+                   {"half_v", to_json(window.half_v_m)},
+                   {"radiance", to_json(window.radiance)}};
+        if (window.clipped) entry["clipped"] = true;
+        all["area"].push_back(std::move(entry));
+    }
     write_bytes(file, all.dump(2) + "\n");
 }
 
@@ -101,6 +110,24 @@ glm::dvec3 read_ambient(const std::filesystem::path& file) {
     return ambient ? read_intensity(*ambient) : glm::dvec3(0);
 }
 
+std::vector<AreaLight> read_windows(const std::filesystem::path& file) {
+    const auto area = JsonValue::read(file).find("area");
+    if (!area) return {};
+    const std::vector<JsonValue> elements = area->elements();
+    if (elements.size() > kMostLights)
+        throw Error(file.string(), ": area has ", elements.size(), " elements, at most ", kMostLights, " are read");
+    std::vector<AreaLight> windows;
+    for (const JsonValue& window : elements) {
+        const auto clipped = window.find("clipped");
+        windows.push_back({read_vector(window.at("center")), read_vector(window.at("half_u")),
+                           read_vector(window.at("half_v")), read_intensity(window.at("radiance")),
+                           clipped && clipped->boolean()});
+        if (!(glm::length(glm::cross(windows.back().half_u_m, windows.back().half_v_m)) > 0))
+            window.fail("must have an area: half_u and half_v are 0, or parallel");
+    }
+    return windows;
+}
+
 std::vector<Material> read_materials(const std::filesystem::path& file) {
     std::vector<Material> materials;
     std::set<uint32_t> ids;
@@ -119,11 +146,14 @@ std::vector<Material> read_materials(const std::filesystem::path& file) {
 namespace patina {
 
 Lighting read_lighting(const std::filesystem::path& file) {
-    return {.lights = sensor::read_lights(file), .ambient = sensor::read_ambient(file), .found_by = "file"};
+    return {.lights = sensor::read_lights(file),
+            .ambient = sensor::read_ambient(file),
+            .found_by = "file",
+            .windows = sensor::read_windows(file)};
 }
 
 void write_lighting(const std::filesystem::path& file, const Lighting& lighting) {
-    sensor::write_lights(file, lighting.lights, lighting.ambient);
+    sensor::write_lights(file, lighting.lights, lighting.ambient, lighting.windows);
 }
 
 }  // namespace patina

@@ -39,6 +39,22 @@ inline Light moved(Light light, const glm::dmat4& to_from) {
     return light;
 }
 
+/// A window as a rectangle that shines into the room, as a frosted one would: alike from all of it, and by the cosine
+/// to its normal. It is for other programs: a session takes what pictures show of windows, by direction.
+struct AreaLight {
+    glm::dvec3 center_m{0};               ///< world
+    glm::dvec3 half_u_m{0}, half_v_m{0};  ///< from the centre to the middles of two sides; it shines to half_u x half_v
+    glm::dvec3 radiance{0};               ///< RGB, linear pixel value
+    bool clipped = false;                 ///< pictures show it clipped: its radiance is at least this
+
+    bool operator==(const AreaLight&) const = default;
+};
+
+/// The side that it shines to, unit length.
+inline glm::dvec3 normal_of(const AreaLight& light) {
+    return glm::normalize(glm::cross(light.half_u_m, light.half_v_m));
+}
+
 /// From this far from the origin on a lamp is a sun: its place tells a direction. Recordings that begin farther than 1
 /// km away are moved to the origin, so that their lamps are none. In a reconstruction whose surfaces light each other a
 /// sun shines in through what the sky was seen in, such as windows; what was never seen, such as a ceiling, keeps it
@@ -46,18 +62,20 @@ inline Light moved(Light light, const glm::dmat4& to_from) {
 inline constexpr double kSunsFrom_m = 5000;
 inline bool is_sun(const Light& light) { return glm::length(light.position_m) >= kSunsFrom_m; }
 
-/// What lights a room: lamps, and light that arrives everywhere alike.
+/// What lights a room: lamps, windows, and light that arrives everywhere alike.
 struct Lighting {
     std::vector<Light> lights;  ///< at most 64
     glm::dvec3 ambient{0};      ///< irradiance over pi that every surface receives, linear pixel value
     std::string found_by =
         "given";  ///< "given", "file", "lighting sequence", "main sequence", "surroundings" or "none"
+    std::vector<AreaLight> windows{};  ///< that a session saw; those of its input it leaves aside
 
-    bool empty() const { return lights.empty() && ambient == glm::dvec3(0); }
+    bool empty() const { return lights.empty() && windows.empty() && ambient == glm::dvec3(0); }
 };
 
 /// Reads lights.json of the sequence format. Throws Error when the file is missing or no JSON, a member is missing or
-/// no finite number, an intensity or a radius is below 0, or an axis is 0 0 0 or a sun's.
+/// no finite number, an intensity, a radiance or a radius is below 0, an axis is 0 0 0 or a sun's, or a window
+/// has no area.
 Lighting read_lighting(const std::filesystem::path& file);
 
 /// Writes lights.json of the sequence format. Throws Error when the file cannot be written.

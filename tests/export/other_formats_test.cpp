@@ -202,6 +202,20 @@ TEST(WriteUsdz, AFlatLampIsADiscThatFacesItsAxis) {
     EXPECT_THAT(text, HasSubstr("xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]"));
 }
 
+TEST(WriteUsdz, AWindowIsARectangleThatShinesIntoTheRoom) {
+    SceneParts scene = small_scene();
+    std::string text = usda_text(scene, {"page-1.png"});
+    EXPECT_THAT(text, HasSubstr("def RectLight \"window_1\"\n{\n color3f inputs:color = (0.5, 1, 0.25)\n"
+                                " float inputs:intensity = 400\n float inputs:width = 0.8000\n"
+                                " float inputs:height = 0.6000\n"));
+    EXPECT_THAT(text, HasSubstr("double3 xformOp:translate = (0.500000, 1.000000, -2.000000)\n"
+                                " quatf xformOp:orient = (1, 0, 0, 0)\n"))
+        << "it shines along -z, as one that is not turned";
+    scene.windows[0].half_u_m = {0, 0, -0.4};  // now it shines along +x
+    text = usda_text(scene, {"page-1.png"});
+    EXPECT_THAT(text, HasSubstr("quatf xformOp:orient = (0.707107, 0, -0.707107, 0)\n"));
+}
+
 TEST(LightMap, AddsUpToWhatArrives) {
     const Extent2D extent{256, 128};
     SceneParts scene;

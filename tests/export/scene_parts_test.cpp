@@ -57,6 +57,11 @@ TEST(SceneParts, ReadsBackWhatWasWritten) {
     expect_near(scene.lights[0].intensity, {3, 6, 3}, 1e-9);
     EXPECT_EQ(scene.lights[0].radius_m, 0.05);
     EXPECT_EQ(scene.candela_per_intensity, test::kCandela);
+    ASSERT_EQ(scene.windows.size(), 1u);
+    expect_near(scene.windows[0].center_m, {0.5, 1, -2}, 1e-9);
+    expect_near(scene.windows[0].half_u_m, {-0.4, 0, 0}, 1e-9);
+    expect_near(scene.windows[0].half_v_m, {0, 0.3, 0}, 1e-9);
+    expect_near(scene.windows[0].radiance, {200, 400, 100}, 1e-9);
 }
 
 TEST(SceneParts, AFlatLampReadsBackWithItsAxis) {

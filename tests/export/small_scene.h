@@ -16,10 +16,11 @@ inline Upright lifted() {
 
 inline constexpr double kCandela = 100;
 inline const Light kSmallLamp{{0.5, -2, 1}, {3, 6, 3}, 0.05};
+inline const AreaLight kSmallWindow{{0.5, 0, 2}, {-0.4, 0, 0}, {0, -0.3, 0}, {2, 4, 1}, false};
 
 /// Writes a scene.glb of two segments: 1 is a unit square at z = 1 in the corner of a page whose texels are `texel`, of
 /// gloss that was observed; 2 is a triangle at z = 2, of gloss that was not. A normal map of half the page's size. The
-/// world has y down, its floor at y = 1. One lamp.
+/// world has y down, its floor at y = 1. One lamp and one window.
 inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel = glm::vec3(0.25f, 0.5f, 0.125f),
                             const Light& light = kSmallLamp) {
     TextureLayout layout{0.002, {{64, 64}}, {}, {{0, {0, 0}, {64, 64}, 1}}};
@@ -52,6 +53,7 @@ inline void write_small_glb(const std::filesystem::path& file, glm::vec3 texel =
                    .upright = lifted(),
                    .segment_names = {"", "wall 1", "object \"2\""},
                    .lights = {light},
+                   .windows = {kSmallWindow},
                    .candela_per_intensity = kCandela});
 }
 

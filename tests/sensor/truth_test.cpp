@@ -45,6 +45,12 @@ TEST(Truth, WhatIsWrittenReadsBackTheSame) {
     write_lights(folder / "lights.json", lights, {0.1, 0.2, 0.3});
     EXPECT_EQ(read_ambient(folder / "lights.json"), glm::dvec3(0.1, 0.2, 0.3));
     EXPECT_EQ(read_lights(folder / "lights.json").size(), 2u);
+    EXPECT_TRUE(read_windows(folder / "lights.json").empty());
+    const std::vector<AreaLight> windows{{{1, 2, 3}, {0.5, 0, 0}, {0, 0, 0.25}, {3, 4, 5}, false},
+                                         {{-1, 2, 3}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, true}};
+    write_lights(folder / "lights.json", lights, {0.1, 0.2, 0.3}, windows);
+    EXPECT_EQ(read_windows(folder / "lights.json"), windows);
+    EXPECT_EQ(read_lights(folder / "lights.json").size(), 2u);
     const auto read_back = read_materials(folder / "materials.json");
     ASSERT_EQ(read_back.size(), 2u);
     for (size_t i = 0; i < read_back.size(); ++i) {

@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Ne;
 using ::testing::Not;
+using ::testing::SizeIs;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 using ::testing::Truly;
@@ -80,6 +81,31 @@ TEST_F(ReconstructionApiTest, WithoutLabelsAlbedoIsAllThereIs) {
         }
     }
     EXPECT_GT(known, 5);
+}
+
+TEST_F(ReconstructionApiTest, AWindowIsPartOfTheLighting) {
+    constexpr uint32_t kFrames = 16;  // each looks at a sixteenth of the pixels
+    for (uint32_t y = 0; y < kCamera.extent.height; ++y) {
+        for (uint32_t x = 0; x < kCamera.extent.width; ++x) {
+            const uint32_t pixel = y * kCamera.extent.width + x;
+            if (y >= 40) wall_.depth[pixel] = 500;  // a table before the wall
+            if (y < 14 || y >= 34 || x < 20 || x >= 44) continue;
+            wall_.depth[pixel] = 0;
+            wall_.color[pixel] = glm::u8vec3(255);
+        }
+    }
+    Reconstruction reconstruction(device_, lit());
+    for (uint32_t i = 0; i < kFrames; ++i) ASSERT_TRUE(reconstruction.add(wall_.frame()).fused);
+    const Scene scene = reconstruction.finish();
+    ASSERT_THAT(scene.lighting.windows, SizeIs(1));
+    const AreaLight& window = scene.lighting.windows.front();
+    EXPECT_LT(glm::distance(window.center_m, {0, 0, 1}), 0.05);
+    EXPECT_LT(normal_of(window).z, -0.95) << "towards the table";
+    const double u_m = glm::length(window.half_u_m), v_m = glm::length(window.half_v_m);
+    EXPECT_NEAR(std::max(u_m, v_m), 0.2, 0.035);
+    EXPECT_NEAR(std::min(u_m, v_m), 1.0 / 6, 0.035);
+    EXPECT_NEAR(window.radiance.g, 1, 1e-2);
+    EXPECT_TRUE(window.clipped);
 }
 
 TEST_F(ReconstructionApiTest, WithoutLightThereAreSegmentsButNoMaterials) {
