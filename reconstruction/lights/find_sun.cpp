@@ -1,6 +1,5 @@
 #include "reconstruction/lights/find_sun.h"
 
-#include <algorithm>
 #include <numbers>
 #include <vector>
 
@@ -12,35 +11,12 @@
 namespace patina {
 namespace {
 
-/// Tries suns in the reconstruction's volume, as many at once as a pass takes.
-class TrySunsInVolume {
-  public:
-    TrySunsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> all)
-        : pipeline_(pipeline), ball_m_(ball_around(all)) {}
-
-    std::vector<float> operator()(std::span<const gpu::LightSample> samples,
-                                  std::span<const glm::vec3> directions) const {
-        std::vector<gpu::LightSample> padded(samples.begin(), samples.end());
-        padded.resize((samples.size() + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
-        std::vector<float> rows;
-        rows.reserve(samples.size() * directions.size());
-        while (!directions.empty()) {
-            const auto batch = directions.first(std::min<size_t>(gpu::kTrialLights, directions.size()));
-            directions = directions.subspan(batch.size());
-            const std::vector<float> tried =
-                try_suns(pipeline_, padded, batch, static_cast<uint32_t>(padded.size()), ball_m_);
-            for (size_t i = 0; i < batch.size(); ++i) {
-                const auto row = tried.begin() + static_cast<ptrdiff_t>(i * gpu::kLightSamples);
-                rows.insert(rows.end(), row, row + static_cast<ptrdiff_t>(samples.size()));
-            }
-        }
-        return rows;
-    }
-
-  private:
-    Pipeline& pipeline_;
-    glm::vec4 ball_m_;
-};
+TrySuns try_in_volume(Pipeline& pipeline, std::span<const gpu::LightSample> all) {
+    return [&pipeline, ball_m = ball_around(all)](std::span<const gpu::LightSample> samples,
+                                                  std::span<const glm::vec3> directions) {
+        return try_suns(pipeline, samples, directions, ball_m);
+    };
+}
 
 /// Irradiance over pi from around. Unknown directions send the ambient light, or as much as the others where that is
 /// not known (lib/records/gathered_light.glsl).
@@ -71,8 +47,8 @@ Light sun_of(glm::vec3 direction, glm::dvec3 irradiance) {
 std::optional<FoundLight> find_sun(Pipeline& pipeline, std::span<const gpu::LightSample> drawn,
                                    std::span<const Light> lights, glm::vec3 ambient) {
     const std::span<const gpu::LightSample> samples = drawn.first(gpu::kLightSamples);
-    const TrySunsInVolume try_suns(pipeline, samples);
-    const auto sun = search_sun(samples, known_light(pipeline, samples, lights, ambient), try_suns);
+    const auto sun =
+        search_sun(samples, known_light(pipeline, samples, lights, ambient), try_in_volume(pipeline, samples));
     if (!sun) return std::nullopt;
     return FoundLight{sun_of(sun->direction, sun->irradiance), {.sightings = sun->samples}};
 }
@@ -81,9 +57,8 @@ void measure_sun(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, Fo
                  std::span<const Light> lights, glm::vec3 ambient) {
     const std::span<const gpu::LightSample> samples = drawn.first(gpu::kLightSamples);
     const glm::vec3 direction(glm::normalize(sun.light.position_m));
-    const TrySunsInVolume try_suns(pipeline, samples);
     const auto strength = sun_strength(samples, known_light(pipeline, samples, lights, ambient),
-                                       try_suns(samples, std::span(&direction, 1)));
+                                       try_suns(pipeline, samples, std::span(&direction, 1), ball_around(samples)));
     if (strength) sun.light = sun_of(direction, *strength);
 }
 

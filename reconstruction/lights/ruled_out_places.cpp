@@ -43,26 +43,19 @@ RuledOutPlaces::RuledOutPlaces(Pipeline& pipeline, std::span<const gpu::Camera> 
         cameras_.push_back(cameras[i * cameras.size() / count]);
         views_.push_back(view_of(cameras_.back()));
     }
-    views_.resize((count + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
 }
 
 std::vector<bool> RuledOutPlaces::operator()(std::span<const glm::vec3> places_m) const {
+    const std::vector<float> open = try_lamps(pipeline_, views_, places_m);
     std::vector<bool> ruled_out;
     ruled_out.reserve(places_m.size());
-    while (!places_m.empty()) {
-        const auto batch = places_m.first(std::min<size_t>(gpu::kTrialLights, places_m.size()));
-        places_m = places_m.subspan(batch.size());
-        const std::vector<float> open = views_.empty()
-                                            ? std::vector<float>()
-                                            : try_lamps(pipeline_, views_, batch, static_cast<uint32_t>(views_.size()));
-        for (size_t i = 0; i < batch.size(); ++i) {
-            int views = 0;
-            for (size_t v = 0; v < cameras_.size(); ++v) {
-                const bool shown = open[i * gpu::kLightSamples + v] > 0 && is_in_picture(cameras_[v], batch[i]);
-                views += shown || is_carrier(cameras_[v], batch[i]);
-            }
-            ruled_out.push_back(views >= kLeastViews);
+    for (size_t i = 0; i < places_m.size(); ++i) {
+        int views = 0;
+        for (size_t v = 0; v < cameras_.size(); ++v) {
+            const bool shown = open[i * cameras_.size() + v] > 0 && is_in_picture(cameras_[v], places_m[i]);
+            views += shown || is_carrier(cameras_[v], places_m[i]);
         }
+        ruled_out.push_back(views >= kLeastViews);
     }
     return ruled_out;
 }

@@ -32,7 +32,7 @@ class RuledOutPlaces {
   private:
     Pipeline& pipeline_;
     std::vector<gpu::Camera> cameras_;
-    std::vector<gpu::LightSample> views_;  ///< the cameras, as samples that a lamp may reach; whole groups
+    std::vector<gpu::LightSample> views_;  ///< the cameras, as samples that a lamp may reach
 };
 
 }  // namespace patina

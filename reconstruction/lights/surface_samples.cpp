@@ -1,6 +1,9 @@
 #include "reconstruction/lights/surface_samples.h"
 
+#include <algorithm>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/seed.h"
@@ -25,38 +28,64 @@ std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline) {
 
 namespace {
 
-/// `add` adds the trials to a frame; it takes what rays are marched through, and the samples.
-std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSample> samples, const auto& add) {
-    graph::FrameGraph frame = pipeline.runner().begin();
-    const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", samples);
-    const VoxelMap& map = pipeline.map();
-    const VoxelMapIds voxels = map.import(frame);
-    ReflectanceStateIds around;
-    around.surroundings = pipeline.reflectance()->import_surroundings(frame);
-    add_mark_regions(frame, around, map, voxels);
-    frame.keep(around.surroundings);
-    const graph::Readback received = frame.read_back(add(frame, TrialMap{map, voxels, around.surroundings}, uploaded));
-    pipeline.runner().submit(std::move(frame));
-    pipeline.wait();
-    return received.as<float>();
+/// A pass takes whole groups.
+std::vector<gpu::LightSample> in_groups(std::span<const gpu::LightSample> samples) {
+    std::vector<gpu::LightSample> padded(samples.begin(), samples.end());
+    padded.resize((samples.size() + gpu::kTrialSamples - 1) / gpu::kTrialSamples * gpu::kTrialSamples);
+    return padded;
+}
+
+/// Adds some of the trials to a frame: what rays are marched through, the samples, how many they are, the trials.
+using AddTrials = std::function<graph::BufferId(graph::FrameGraph&, const TrialMap&, graph::BufferId, uint32_t,
+                                                std::span<const glm::vec3>)>;
+
+std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
+                              std::span<const glm::vec3> trials, const AddTrials& add) {
+    std::vector<float> rows;
+    if (samples.empty()) return rows;
+    rows.reserve(samples.size() * trials.size());
+    const std::vector<gpu::LightSample> padded = in_groups(samples);
+    while (!trials.empty()) {
+        const auto batch = trials.first(std::min<size_t>(gpu::kTrialLights, trials.size()));
+        trials = trials.subspan(batch.size());
+        graph::FrameGraph frame = pipeline.runner().begin();
+        const auto uploaded = frame.upload<gpu::LightSample>("lighting.samples", padded);
+        const VoxelMap& map = pipeline.map();
+        const VoxelMapIds voxels = map.import(frame);
+        ReflectanceStateIds around;
+        around.surroundings = pipeline.reflectance()->import_surroundings(frame);
+        add_mark_regions(frame, around, map, voxels);
+        frame.keep(around.surroundings);
+        const TrialMap model{map, voxels, around.surroundings};
+        const graph::Readback received =
+            frame.read_back(add(frame, model, uploaded, static_cast<uint32_t>(padded.size()), batch));
+        pipeline.runner().submit(std::move(frame));
+        pipeline.wait();
+        const auto tried = received.as<float>();
+        for (size_t i = 0; i < batch.size(); ++i) {
+            const auto row = tried.begin() + static_cast<ptrdiff_t>(i * gpu::kLightSamples);
+            rows.insert(rows.end(), row, row + static_cast<ptrdiff_t>(samples.size()));
+        }
+    }
+    return rows;
 }
 
 }  // namespace
 
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                             std::span<const glm::vec3> places_m, uint32_t count) {
-    return run_trials(pipeline, samples,
-                      [&](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded) {
-                          return add_try_lights(frame, model, uploaded, places_m, count);
-                      });
+                             std::span<const glm::vec3> places_m) {
+    return run_trials(
+        pipeline, samples, places_m,
+        [](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded, uint32_t count,
+           std::span<const glm::vec3> batch) { return add_try_lights(frame, model, uploaded, batch, count); });
 }
 
 std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                            std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m) {
-    return run_trials(pipeline, samples,
-                      [&](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded) {
-                          return add_try_suns(frame, model, uploaded, directions, count, ball_m);
-                      });
+                            std::span<const glm::vec3> directions, glm::vec4 ball_m) {
+    return run_trials(
+        pipeline, samples, directions,
+        [&](graph::FrameGraph& frame, const TrialMap& model, graph::BufferId uploaded, uint32_t count,
+            std::span<const glm::vec3> batch) { return add_try_suns(frame, model, uploaded, batch, count, ball_m); });
 }
 
 glm::vec4 ball_around(std::span<const gpu::LightSample> samples) {
@@ -84,17 +113,18 @@ std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::Li
             lamps.push_back(light);
         }
     }
-    std::vector<glm::vec3> received(gpu::kLightSamples, glm::vec3(0));
+    samples = samples.first(gpu::kLightSamples);
+    std::vector<glm::vec3> received(samples.size(), glm::vec3(0));
     const auto add = [&](const std::vector<float>& tried, size_t count, const auto& intensity) {
         for (size_t l = 0; l < count; ++l)
-            for (size_t i = 0; i < gpu::kLightSamples; ++i)
-                received[i] += tried[l * gpu::kLightSamples + i] * intensity(l, glm::dvec3(samples[i].point_m));
+            for (size_t i = 0; i < samples.size(); ++i)
+                received[i] += tried[l * samples.size() + i] * intensity(l, glm::dvec3(samples[i].point_m));
     };
     if (!places_m.empty())
         add(try_lamps(pipeline, samples, places_m), lamps.size(),
             [&](size_t lamp, glm::dvec3 point_m) { return glm::vec3(intensity_towards(lamps[lamp], point_m)); });
     if (!directions.empty())
-        add(try_suns(pipeline, samples, directions, gpu::kLightSamples, ball_around(samples)), of_suns.size(),
+        add(try_suns(pipeline, samples, directions, ball_around(samples)), of_suns.size(),
             [&](size_t sun, glm::dvec3 /*point_m*/) { return of_suns[sun]; });
     return received;
 }

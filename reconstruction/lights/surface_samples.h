@@ -15,14 +15,15 @@ namespace patina {
 /// frames are fused. Throws Error when the reconstruction has no reflectance.
 std::vector<gpu::LightSample> draw_samples(Pipeline& pipeline);
 
-/// What lamps of intensity 1 at these places give the first `count` samples, as add_try_lights returns it: a row of
-/// gpu::kLightSamples for each. At most gpu::kTrialLights places. Waits for the device.
+/// What lamps of intensity 1 at these places give samples of the surface, at most gpu::kLightSamples of them, as
+/// add_try_lights returns it: for each lamp a row of samples.size(). As many are tried at once as a pass takes. Waits
+/// for the device.
 std::vector<float> try_lamps(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                             std::span<const glm::vec3> places_m, uint32_t count = gpu::kLightSamples);
+                             std::span<const glm::vec3> places_m);
 
 /// The same of suns, as add_try_suns returns it.
 std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
-                            std::span<const glm::vec3> directions, uint32_t count, glm::vec4 ball_m);
+                            std::span<const glm::vec3> directions, glm::vec4 ball_m);
 
 /// Centre and radius of what holds all samples, and what stands between them.
 glm::vec4 ball_around(std::span<const gpu::LightSample> samples);

@@ -9,7 +9,7 @@
 
 namespace patina {
 
-/// Tries lamps in the reconstruction's volume, as many at once as a pass takes. A highlight is not explained by a lamp
+/// Tries lamps in the reconstruction's volume. A highlight is not explained by a lamp
 /// that does not reach it. `ruled_out` may be null; a lamp in one of its places gives nothing. Keeps
 /// references to all that it is made with. Waits for the device.
 class TryLampsInVolume {
@@ -24,7 +24,6 @@ class TryLampsInVolume {
     std::span<const gpu::LightSample> drawn_;
     const LitSurface& surface_;
     const RuledOutPlaces* ruled_out_;
-    std::vector<gpu::LightSample> highlights_;
 };
 
 }  // namespace patina
