@@ -1,5 +1,6 @@
 #include "export/glb_extras.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,12 +59,6 @@ Value windows_array(const std::vector<AreaLight>& windows, double luminance_per_
     return Value(std::move(all));
 }
 
-/// Lamps and light from afar have one scale.
-double luminance_per_pixel_value(const GlbInfo& info) {
-    return info.lights.empty() && info.environment ? info.environment->luminance_per_pixel_value
-                                                   : info.candela_per_intensity;
-}
-
 Value environment_extras(const GlbEnvironment& environment) {
     const glm::dquat turn = environment.y_up_from_root;
     return Value(Value::Object{
@@ -75,13 +70,20 @@ Value environment_extras(const GlbEnvironment& environment) {
                                       "luminance_per_pixel_value: linear pixel values of the recording"))}});
 }
 
+/// Lamps and light from afar have one scale; without either there is none.
+std::optional<double> luminance_per_pixel_value(const GlbInfo& info) {
+    if (!info.lights.empty()) return info.candela_per_intensity;
+    return info.environment ? std::optional(info.environment->luminance_per_pixel_value) : std::nullopt;
+}
+
 }  // namespace
 
 Value scene_extras(const GlbInfo& info) {
     Value::Object extras;
     if (!info.lights.empty()) extras["photometric"] = photometric(info.candela_per_intensity);
     if (!info.suns.empty()) extras["suns"] = suns_array(info.suns);
-    if (!info.windows.empty()) extras["windows"] = windows_array(info.windows, luminance_per_pixel_value(info));
+    if (const auto scale = luminance_per_pixel_value(info); scale && !info.windows.empty())
+        extras["windows"] = windows_array(info.windows, *scale);
     if (info.environment) extras["environment"] = environment_extras(*info.environment);
     return extras.empty() ? Value() : Value(std::move(extras));
 }

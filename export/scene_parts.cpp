@@ -1,6 +1,7 @@
 #include "export/scene_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <glm/gtc/quaternion.hpp>
@@ -21,11 +22,10 @@ double number(const Value& object, const char* name, double otherwise) {
     return object.Get(name).GetNumberAsDouble();
 }
 
-glm::vec3 vector(const Value& object, const char* name, glm::vec3 otherwise) {
+glm::dvec3 vector(const Value& object, const char* name, glm::dvec3 otherwise) {
     if (!object.IsObject() || !object.Has(name) || object.Get(name).ArrayLen() != 3) return otherwise;
-    glm::vec3 result;
-    for (int i = 0; i < 3; ++i)
-        result[i] = static_cast<float>(object.Get(name).Get(static_cast<size_t>(i)).GetNumberAsDouble());
+    glm::dvec3 result;
+    for (int i = 0; i < 3; ++i) result[i] = object.Get(name).Get(static_cast<size_t>(i)).GetNumberAsDouble();
     return result;
 }
 
@@ -44,7 +44,7 @@ GltfMaterial gltf_of(const tinygltf::Material& material) {
     gltf.ior = static_cast<float>(number(ior, "ior", 1.5));
     const Value& specular = extension(material.extensions, "KHR_materials_specular");
     gltf.specular = static_cast<float>(number(specular, "specularFactor", ior.IsObject() ? 1 : 0));
-    gltf.specular_color = vector(specular, "specularColorFactor", glm::vec3(1));
+    gltf.specular_color = glm::vec3(vector(specular, "specularColorFactor", glm::dvec3(1)));
     for (glm::length_t i = 0; i < 3 && pbr.baseColorFactor.size() == 4; ++i)
         gltf.base_color[i] = static_cast<float>(pbr.baseColorFactor[static_cast<size_t>(i)]);
     return gltf;
@@ -62,7 +62,8 @@ PartMaterial material_of(const tinygltf::Node& node, const tinygltf::Material& m
     result.gltf.observed = result.observed;
     const Value& values = ward.Has("guess") ? ward.Get("guess") : ward;
     if (values.Has("ks"))
-        result.gloss = WardGloss{vector(values, "ks", glm::vec3(0)), static_cast<float>(number(values, "alpha", 1))};
+        result.gloss =
+            WardGloss{glm::vec3(vector(values, "ks", glm::dvec3(0))), static_cast<float>(number(values, "alpha", 1))};
     return result;
 }
 
@@ -96,12 +97,12 @@ class Reader {
             scene_.pages.push_back({model_.images[i].mimeType, model_.images[i].image});
         const glm::dmat4 to_gltf = transform_of(root);
         if (extras.IsObject() && extras.Has("environment")) take_environment(extras.Get("environment"), to_gltf);
-        if (extras.IsObject() && extras.Has("windows")) take_windows(extras.Get("windows"), to_gltf);
         for (const int child : root.children) {
             const tinygltf::Node& node = arrays_.at(model_.nodes, child, "node");
             if (node.mesh >= 0) add_mesh(node, to_gltf * transform_of(node));
             add_light(node, to_gltf);
         }
+        if (extras.IsObject() && extras.Has("windows")) take_windows(extras.Get("windows"), to_gltf);
         return std::move(scene_);
     }
 
@@ -125,22 +126,20 @@ class Reader {
             glm::quat_cast(glm::dmat3(transform_of(axes)) * glm::transpose(glm::dmat3(to_gltf)));
     }
 
+    /// After the lamps, whose scale theirs is. One that has no area is left out.
     void take_windows(const Value& windows, const glm::dmat4& to_gltf) {
-        for (size_t i = 0; windows.IsArray() && i < windows.ArrayLen(); ++i) {
-            const Value& window = windows.Get(static_cast<int>(i));
-            const auto vector = [&](const char* name) {
-                glm::dvec3 v(0);
-                if (!window.IsObject() || !window.Has(name)) return v;
-                const Value& values = window.Get(name);
-                for (int c = 0; c < 3 && values.IsArray() && values.ArrayLen() == 3; ++c)
-                    v[c] = values.Get(c).GetNumberAsDouble();
-                return v;
-            };
+        const auto count = windows.IsArray() ? static_cast<int>(windows.ArrayLen()) : 0;
+        for (int i = 0; i < count; ++i) {
+            const Value& told = windows.Get(i);
             const glm::dmat3 turn(to_gltf);
-            scene_.windows.push_back({.center_m = glm::dvec3(to_gltf * glm::dvec4(vector("center"), 1)),
-                                      .half_u_m = turn * vector("half_u"),
-                                      .half_v_m = turn * vector("half_v"),
-                                      .radiance = vector("luminance")});
+            AreaLight window{.center_m = glm::dvec3(to_gltf * glm::dvec4(vector(told, "center", glm::dvec3(0)), 1)),
+                             .half_u_m = turn * vector(told, "half_u", glm::dvec3(0)),
+                             .half_v_m = turn * vector(told, "half_v", glm::dvec3(0)),
+                             .radiance = vector(told, "luminance", glm::dvec3(0)) / scene_.luminance_per_radiance()};
+            if (told.IsObject() && told.Has("clipped") && told.Get("clipped").IsBool())
+                window.clipped = told.Get("clipped").Get<bool>();
+            const double area_m2 = glm::length(glm::cross(window.half_u_m, window.half_v_m));
+            if (area_m2 > 0 && std::isfinite(area_m2)) scene_.windows.push_back(window);
         }
     }
 

@@ -54,7 +54,7 @@ struct SceneParts {
     std::vector<EncodedPicture> pages;  ///< of the texture: base colours, sRGB
     std::vector<Light> lights;          ///< in glTF's axes; intensity in linear pixel values times square metre
     double candela_per_intensity = 1;
-    std::vector<AreaLight> windows;  ///< in glTF's axes; radiance is luminance, cd/m^2
+    std::vector<AreaLight> windows;  ///< in glTF's axes
     glm::dvec3 ambient{0};           ///< as Lighting::ambient; no glTF holds it
     /// The picture of light from afar that the file names; empty: it names none. read_environment() reads it.
     std::string environment_file;
@@ -62,6 +62,8 @@ struct SceneParts {
     glm::dquat environment_from_gltf{1, 0, 0, 0};  ///< the picture's axes from glTF's
     Image<glm::vec3> environment;                  ///< radiance, linear pixel values; empty: not read, or none
 
+    /// cd/m^2 of the linear pixel value 1, of windows: lamps and light from afar have one scale.
+    double luminance_per_radiance() const { return lights.empty() ? luminance_per_pixel_value : candela_per_intensity; }
     uint64_t triangles() const;
     uint64_t vertices() const;
 };

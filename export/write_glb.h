@@ -34,7 +34,7 @@ struct GlbInfo {
     std::vector<Light> lights{};
     /// Told in the scene's extras alone: viewers would let them in through walls that were never seen.
     std::vector<Light> suns{};
-    std::vector<AreaLight> windows{};             ///< told in the scene's extras alone, as suns
+    std::vector<AreaLight> windows{};             ///< told in the scene's extras alone, beside lamps or an environment
     double candela_per_intensity = 1;             ///< of the lights, see candela_per_intensity()
     std::optional<GlbEnvironment> environment{};  ///< that stands beside the file, told in the scene's extras
 };

@@ -152,9 +152,10 @@ std::string light_text(const Light& light, double candela_per_intensity, size_t 
 }
 
 /// A rectangle of USD has its width along x and its height along y, and shines along -z.
-std::string window_text(const AreaLight& window, size_t number) {
-    const double strongest = std::max({window.radiance.r, window.radiance.g, window.radiance.b});
-    const glm::vec3 color = strongest > 0 ? glm::vec3(window.radiance / strongest) : glm::vec3(1);
+std::string window_text(const AreaLight& window, double luminance_per_radiance, size_t number) {
+    const glm::dvec3 luminance = window.radiance * luminance_per_radiance;
+    const double strongest = std::max({luminance.r, luminance.g, luminance.b});
+    const glm::vec3 color = strongest > 0 ? glm::vec3(luminance / strongest) : glm::vec3(1);
     const double width_m = 2 * glm::length(window.half_u_m), height_m = 2 * glm::length(window.half_v_m);
     const glm::dvec3 back = -normal_of(window), up = glm::normalize(window.half_v_m);
     const glm::dquat turn = glm::quat_cast(glm::dmat3(glm::cross(up, back), up, back));
@@ -176,7 +177,8 @@ std::string usda_text(const SceneParts& scene, const std::vector<std::string>& p
     for (size_t i = 0; i < scene.parts.size(); ++i) text += mesh_text(scene, scene.parts[i], i);
     for (size_t i = 0; i < scene.lights.size(); ++i)
         text += light_text(scene.lights[i], scene.candela_per_intensity, i);
-    for (size_t i = 0; i < scene.windows.size(); ++i) text += window_text(scene.windows[i], i);
+    for (size_t i = 0; i < scene.windows.size(); ++i)
+        text += window_text(scene.windows[i], scene.luminance_per_radiance(), i);
     return text + "}\n";
 }
 

@@ -232,10 +232,13 @@ Image<glm::vec4> Pipeline::far_field() {
     return read_far_field(runner_, *stages_.reflectance);
 }
 
-std::vector<AreaLight> Pipeline::windows() {
+std::vector<AreaLight> Pipeline::windows(std::span<const TimedPose> trajectory, std::span<const Light> lamps) {
     if (!stages_.reflectance || fusion_.frames() == 0) return {};
     wait();
-    return read_windows(runner_, *stages_.reflectance);
+    glm::dvec3 inside_m(0);
+    for (const TimedPose& pose : trajectory)
+        inside_m += glm::dvec3(pose.world_from_camera[3]) / static_cast<double>(trajectory.size());
+    return read_windows(runner_, *stages_.reflectance, inside_m, lamps);
 }
 
 MeshReflectance Pipeline::sample_reflectance(const Mesh& mesh) {

@@ -99,8 +99,9 @@ class Pipeline {
     /// gathered.
     Image<glm::vec4> far_field();
 
-    /// The windows that pictures showed, as rectangles; waits. None where no light is gathered.
-    std::vector<AreaLight> windows();
+    /// The windows that pictures showed beside these lamps, as rectangles, seen by cameras on this trajectory; waits.
+    /// None where no light is gathered.
+    std::vector<AreaLight> windows(std::span<const TimedPose> trajectory, std::span<const Light> lamps);
 
     /// The surface piece by piece, so that memory need not hold it at once: in cells of `cell_m`, with the vertices at
     /// their borders on both sides. A map that fits into one is one piece, the mesh of extract_surface(). `segments`:

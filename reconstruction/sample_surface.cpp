@@ -111,14 +111,15 @@ Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& m
     return far_field_of(sky.as<gpu::FarFieldTexel>(), openings.as<gpu::OpeningTexel>());
 }
 
-std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model) {
+std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model, glm::dvec3 inside_m,
+                                    std::span<const Light> lamps) {
     if (!model.gathers()) return {};
     graph::FrameGraph frame = runner.begin();
     const graph::Readback cells = frame.read_back(model.import_surroundings(frame), kSurroundingsCellsAt,
                                                   gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell));
     runner.submit(std::move(frame));
     runner.wait();
-    return find_windows(cells.as<gpu::SurroundingsCell>());
+    return find_windows(cells.as<gpu::SurroundingsCell>(), inside_m, lamps);
 }
 
 MeshReflectance sample_vertices(graph::Runner& runner, ReflectanceStage& model, const Mesh& mesh,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "engine/graph/runner.h"
@@ -18,8 +19,10 @@ std::vector<SegmentReflectance> read_segments(graph::Runner& runner, Reflectance
 /// is gathered.
 Image<glm::vec4> read_far_field(graph::Runner& runner, const ReflectanceStage& model);
 
-/// The windows that pictures showed (find_windows.h); waits for the device. None where no light is gathered.
-std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model);
+/// The windows that pictures showed beside these lamps (find_windows.h); waits for the device. None where no light is
+/// gathered.
+std::vector<AreaLight> read_windows(graph::Runner& runner, const ReflectanceStage& model, glm::dvec3 inside_m,
+                                    std::span<const Light> lamps);
 
 /// What the vertices of a mesh reflect, without the segments; waits for the device. At most `batch_points` vertices
 /// (above 0) are sampled at once, which changes nothing about the result. Throws Error when memory runs out.

@@ -45,7 +45,7 @@ struct AreaLight {
     glm::dvec3 center_m{0};               ///< world
     glm::dvec3 half_u_m{0}, half_v_m{0};  ///< from the centre to the middles of two sides; it shines to half_u x half_v
     glm::dvec3 radiance{0};               ///< RGB, linear pixel value
-    bool clipped = false;                 ///< pictures show it clipped: its radiance is at least this
+    bool clipped = false;                 ///< pictures show a part of it clipped: its radiance is at least this
 
     bool operator==(const AreaLight&) const = default;
 };

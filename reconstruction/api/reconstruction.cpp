@@ -67,8 +67,8 @@ Scene Reconstruction::finish() {
     scene.reflectance = state_->pipeline.sample_reflectance(scene.mesh);
     scene.far_field = state_->pipeline.far_field();
     scene.lighting = state_->lighting;
-    scene.lighting.windows = state_->pipeline.windows();
     scene.trajectory = state_->trajectory;
+    scene.lighting.windows = state_->pipeline.windows(scene.trajectory, scene.lighting.lights);
     return scene;
 }
 

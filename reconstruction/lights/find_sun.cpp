@@ -1,5 +1,6 @@
 #include "reconstruction/lights/find_sun.h"
 
+#include <algorithm>
 #include <numbers>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -17,10 +18,16 @@ namespace patina {
 namespace {
 
 constexpr double kCell_m = double{gpu::kSurroundingsCellM};
-constexpr double kLeastArea_m2 = 0.02;
-constexpr double kLeastFilled = 0.6;  // of the rectangle
-constexpr double kMostDepth = 0.5;    // of its shorter side: how far its cells lie before and behind its plane
-constexpr int kTurnSteps = 90;        // of a right angle
+constexpr int kKeyCells = 1024;  // along each axis, after which keys begin anew
+constexpr double kLeastArea_m2 = 0.02, kLeastSide_m = 0.1;
+constexpr double kLeastFilled = 0.6;       // of the rectangle
+constexpr double kMostDepth = 0.5;         // of its shorter side: how far its cells lie before and behind its plane
+constexpr double kLeastClipped = 0.1;      // of its cells
+constexpr double kNear_m = 2;              // surfaces that tell which side is inside
+constexpr double kInPlane_m = kCell_m;     // nearer to a window's plane on average, surfaces tell no side
+constexpr double kBesideLamp_m = kCell_m;  // and its radius: what shines there is the lamp
+constexpr size_t kMostWindows = 64;
+constexpr int kTurnSteps = 90;  // of a right angle
 constexpr int kPowerSteps = 32;
 
 using Place = std::array<int, 3>;  // of a cell, which also orders them
@@ -32,9 +39,15 @@ struct Cell {
 };
 using Cells = std::map<Place, Cell>;  // so that their order in the table does not matter
 
-Place place_of(uint32_t key) {
-    const auto signed10 = [](uint32_t bits) { return static_cast<int>((bits & 1023u) ^ 512u) - 512; };
-    return {signed10(key), signed10(key >> 10), signed10(key >> 20)};
+/// The one of a key's places that is nearest to another.
+Place place_near(uint32_t key, glm::dvec3 near_m) {
+    Place place{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int low = static_cast<int>(key >> (10 * axis) & 1023u);
+        place[static_cast<size_t>(axis)] =
+            low + kKeyCells * static_cast<int>(std::lround((near_m[axis] / kCell_m - low) / kKeyCells));
+    }
+    return place;
 }
 
 glm::dvec3 middle_of(const Place& place) { return kCell_m * (glm::dvec3(place[0], place[1], place[2]) + 0.5); }
@@ -130,7 +143,7 @@ double filled_share(std::span<const Cell> openings, glm::dvec3 middle_m, const R
         const glm::ivec2 square = glm::min(glm::ivec2(at / size_m * glm::dvec2(squares)), squares - 1);
         filled.emplace(square.x, square.y);
     }
-    return static_cast<double>(filled.size()) / (double{1} * squares.x * squares.y);
+    return static_cast<double>(filled.size()) / (static_cast<double>(squares.x) * squares.y);
 }
 
 double depth_of(std::span<const Cell> openings, glm::dvec3 middle_m, glm::dvec3 normal) {
@@ -142,58 +155,80 @@ double depth_of(std::span<const Cell> openings, glm::dvec3 middle_m, glm::dvec3 
     return 2 * std::sqrt(squares / static_cast<double>(openings.size()));
 }
 
-/// Their rectangle, with an area of 0 where they fill none.
-AreaLight window_of(std::span<const Cell> openings, glm::dvec3 surface_m) {
-    const glm::dvec3 middle_m = mean_place(openings), normal = normal_through(openings, middle_m);
-    Rectangle box = smallest_box(openings, middle_m, normal);
-    const glm::dvec2 size_m = box.high - box.low + kCell_m / 2;  // on average a border lies in the middle of a cell
-    if (size_m.x * size_m.y < kLeastArea_m2 || filled_share(openings, middle_m, box) < kLeastFilled ||
-        depth_of(openings, middle_m, normal) > kMostDepth * std::min(size_m.x, size_m.y))
-        return {};
-    const glm::dvec2 middle = (box.low + box.high) / 2.0;
-    const double inwards = glm::dot(surface_m - middle_m, normal) < 0 ? -1 : 1;
-    AreaLight window{.center_m = middle_m + middle.x * box.u + middle.y * box.v,
-                     .half_u_m = inwards * size_m.x / 2 * box.u,
-                     .half_v_m = size_m.y / 2 * box.v};
-    size_t clipped = 0;
-    for (const Cell& opening : openings) {
-        window.radiance += opening.radiance / static_cast<double>(openings.size());
-        clipped += opening.clipped ? 1 : 0;
+/// Which way is inside, along a window's normal.
+glm::dvec3 inwards(glm::dvec3 normal, glm::dvec3 middle_m, const Cells& surface, glm::dvec3 inside_m) {
+    double before_m = 0;
+    size_t count = 0;
+    for (const auto& [place, cell] : surface) {
+        const glm::dvec3 off_m = cell.middle_m - middle_m;
+        if (glm::dot(off_m, off_m) > kNear_m * kNear_m) continue;
+        before_m += glm::dot(off_m, normal);
+        ++count;
     }
-    window.clipped = 2 * clipped > openings.size();
+    const bool told = std::abs(before_m) > kInPlane_m * static_cast<double>(count);
+    return (told ? before_m : glm::dot(inside_m - middle_m, normal)) < 0 ? -normal : normal;
+}
+
+/// Their rectangle; nothing where they fill none.
+std::optional<AreaLight> window_of(std::span<const Cell> openings, const Cells& surface, glm::dvec3 inside_m) {
+    const glm::dvec3 middle_m = mean_place(openings);
+    const glm::dvec3 normal = inwards(normal_through(openings, middle_m), middle_m, surface, inside_m);
+    const Rectangle box = smallest_box(openings, middle_m, normal);
+    const glm::dvec2 size_m = box.high - box.low + kCell_m / 2;  // on average a border lies in the middle of a cell
+    const double side_m = std::min(size_m.x, size_m.y);
+    if (size_m.x * size_m.y < kLeastArea_m2 || side_m < kLeastSide_m ||
+        filled_share(openings, middle_m, box) < kLeastFilled ||
+        depth_of(openings, middle_m, normal) > kMostDepth * side_m)
+        return std::nullopt;
+    const glm::dvec2 middle = (box.low + box.high) / 2.0;
+    AreaLight window{.center_m = middle_m + middle.x * box.u + middle.y * box.v,
+                     .half_u_m = size_m.x / 2 * box.u,
+                     .half_v_m = size_m.y / 2 * box.v};
+    const auto count = static_cast<double>(openings.size());
+    double clipped = 0;
+    for (const Cell& opening : openings) {
+        window.radiance += opening.radiance / count;
+        clipped += opening.clipped ? 1 / count : 0;
+    }
+    window.clipped = clipped > kLeastClipped;
     return window;
 }
 
 double area_of(const AreaLight& window) { return 4 * glm::length(glm::cross(window.half_u_m, window.half_v_m)); }
 
+bool is_lamp(const Cell& cell, std::span<const Light> lamps) {
+    return std::ranges::any_of(lamps, [&](const Light& lamp) {
+        return glm::distance(cell.middle_m, lamp.position_m) < lamp.radius_m + kBesideLamp_m;
+    });
+}
+
 }  // namespace
 
-std::vector<AreaLight> find_windows(std::span<const gpu::SurroundingsCell> cells) {
+std::vector<AreaLight> find_windows(std::span<const gpu::SurroundingsCell> cells, glm::dvec3 inside_m,
+                                    std::span<const Light> lamps) {
     Cells surface, openings;
     for (const gpu::SurroundingsCell& cell : cells) {
         const glm::vec4 radiance = cell.key == 0 ? glm::vec4(0) : mean_radiance(cell.light);
         if (radiance.a == 0) continue;
-        const Place place = place_of(cell.key);
+        const Place place = place_near(cell.key, inside_m);
         const bool opens = 2 * cell.openings > cell.light.usual.samples + cell.light.low.samples;
         (opens ? openings : surface)
             .emplace(place, Cell{middle_of(place), glm::dvec3(radiance), is_clipped(cell.light, glm::dvec3(radiance))});
     }
     if (surface.empty()) return {};
-    const auto share = 1 / static_cast<double>(surface.size());
-    glm::dvec3 surface_m(0);
     double usual = 0;
-    for (const auto& [place, cell] : surface) {
-        surface_m += share * cell.middle_m;
-        usual += share * luminance(cell.radiance);
-    }
+    for (const auto& [place, cell] : surface) usual += luminance(cell.radiance) / static_cast<double>(surface.size());
     // A dark gap in the depth is a surface that gave no reading.
-    std::erase_if(openings, [&](const auto& entry) { return luminance(entry.second.radiance) < usual; });
+    std::erase_if(openings, [&](const auto& entry) {
+        return luminance(entry.second.radiance) < usual || is_lamp(entry.second, lamps);
+    });
     std::vector<AreaLight> windows;
     while (!openings.empty()) {
-        const AreaLight window = window_of(take_touching(openings), surface_m);
-        if (area_of(window) > 0) windows.push_back(window);
+        const auto window = window_of(take_touching(openings), surface, inside_m);
+        if (window) windows.push_back(*window);
     }
     std::ranges::stable_sort(windows, std::greater(), area_of);
+    windows.resize(std::min(windows.size(), kMostWindows));
     return windows;
 }
 

@@ -28,7 +28,7 @@ std::vector<float> try_suns(Pipeline& pipeline, std::span<const gpu::LightSample
 /// Centre and radius of what holds all samples, and what stands between them.
 glm::vec4 ball_around(std::span<const gpu::LightSample> samples);
 
-/// Irradiance over pi that lights give the gpu::kLightSamples samples of the surface. At most gpu::kMaxPointLights.
+/// Irradiance over pi that lights give the first gpu::kLightSamples samples, those of the surface.
 std::vector<glm::vec3> received_from(Pipeline& pipeline, std::span<const gpu::LightSample> samples,
                                      std::span<const Light> lights);
 

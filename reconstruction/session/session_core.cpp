@@ -394,7 +394,7 @@ Scene SessionCore::scene() {
     scene.mesh = pipeline_->extract_surface();
     scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
     scene.far_field = pipeline_->far_field();
-    scene.lighting.windows = pipeline_->windows();
+    scene.lighting.windows = pipeline_->windows(scene.trajectory, scene.lighting.lights);
     scene.segment_names = segment_names();
     return scene;
 }

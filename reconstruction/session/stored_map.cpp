@@ -53,7 +53,7 @@ Scene StoredMap::scene() {
     scene.mesh = pipeline_->extract_surface();
     scene.reflectance = pipeline_->sample_reflectance(scene.mesh);
     scene.far_field = pipeline_->far_field();
-    scene.lighting.windows = pipeline_->windows();
+    scene.lighting.windows = pipeline_->windows(scene.trajectory, scene.lighting.lights);
     return scene;
 }
 

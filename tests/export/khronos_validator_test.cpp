@@ -121,6 +121,7 @@ TEST_F(KhronosValidator, AcceptsPagesNormalMapsAndASun) {
         writer.finish({.version = "0.0",
                        .lights = {{{1, 2, 3}, {4, 5, 6}, 0.1}},
                        .suns = {{{0, 0, 10'000}, {4e8, 5e8, 6e8}, 46}},
+                       .windows = {{{1, 2, 3}, {1, 0, 0}, {0, 1, 0}, {4, 5, 6}, false}},
                        .candela_per_intensity = 42});
         expect_valid_file();
         EXPECT_EQ(test::bytes_of(file_).find("\"normalTexture\"") != std::string::npos, detailed);

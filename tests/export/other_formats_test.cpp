@@ -19,6 +19,7 @@
 #include "export/write_ply.h"
 #include "export/write_usdz.h"
 #include "sensor/files/exr_file.h"
+#include "sensor/truth.h"
 #include "tests/export/small_scene.h"
 #include "tests/export/temporary_folder.h"
 #include "tests/export/throws.h"
@@ -294,14 +295,39 @@ TEST(LightMap, EnvironmentShowsTheFarFieldWhereItIsKnown) {
     EXPECT_EQ(environment_of(scene, kYDownToYUp, kSmall).at(7, 9), glm::vec3(0.5));
 }
 
-TEST(LightMap, TheEnvironmentBesideASceneIsTurnedWithIt) {
-    const TemporaryFolder folder;
+/// A triangle.
+Scene small_surface() {
     Scene scene;
     scene.mesh.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     scene.mesh.normals.assign(3, {0, 0, -1});
     scene.mesh.colors.assign(3, glm::vec3(0.5f));
     scene.mesh.triangles = {{0, 2, 1}};
     scene.far_field = Image<glm::vec4>({32, 32}, glm::vec4(0.5, 0.5, 0.5, 1));
+    return scene;
+}
+
+TEST(Windows, AreSavedInTheRecordedWorldAndInTheScene) {
+    const TemporaryFolder folder;
+    Scene scene = small_surface();
+    scene.world_offset_m = {1000, 0, -2000};
+    scene.lighting.windows = {{{0, -1, 2}, {0.5, 0, 0}, {0, 0.25, 0}, {3, 4, 5}, true}};
+    scene.save(folder.path());
+    const std::vector<AreaLight> saved = sensor::read_windows(folder / "lights.json");
+    ASSERT_EQ(saved.size(), 1u);
+    EXPECT_EQ(saved[0].center_m, glm::dvec3(1000, -1, -1998));
+    EXPECT_EQ(saved[0].half_v_m, scene.lighting.windows[0].half_v_m);
+    EXPECT_EQ(saved[0].radiance, scene.lighting.windows[0].radiance);
+    EXPECT_TRUE(saved[0].clipped);
+    const std::vector<AreaLight> windows = read_scene_parts(folder / "scene.glb").windows;
+    ASSERT_EQ(windows.size(), 1u);
+    EXPECT_LT(glm::distance(windows[0].radiance, {3, 4, 5}), 1e-9) << "on the environment's scale and back";
+    scene.save_glb(folder / "alone.glb");
+    EXPECT_TRUE(read_scene_parts(folder / "alone.glb").windows.empty()) << "without lamps and environment, no scale";
+}
+
+TEST(LightMap, TheEnvironmentBesideASceneIsTurnedWithIt) {
+    const TemporaryFolder folder;
+    Scene scene = small_surface();
     for (uint32_t y = 0; y < 8; ++y)  // around the direction (0, -1, 0)
         for (uint32_t x = 8; x < 24; ++x) scene.far_field.at(x, y) = glm::vec4(2, 2, 2, 1);
     scene.gravity = glm::dvec3(0, 1, 0);

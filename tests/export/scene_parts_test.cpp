@@ -61,7 +61,8 @@ TEST(SceneParts, ReadsBackWhatWasWritten) {
     expect_near(scene.windows[0].center_m, {0.5, 1, -2}, 1e-9);
     expect_near(scene.windows[0].half_u_m, {-0.4, 0, 0}, 1e-9);
     expect_near(scene.windows[0].half_v_m, {0, 0.3, 0}, 1e-9);
-    expect_near(scene.windows[0].radiance, {200, 400, 100}, 1e-9);
+    expect_near(scene.windows[0].radiance, test::kSmallWindow.radiance, 1e-9);
+    EXPECT_TRUE(scene.windows[0].clipped);
 }
 
 TEST(SceneParts, AFlatLampReadsBackWithItsAxis) {

@@ -16,7 +16,7 @@ inline Upright lifted() {
 
 inline constexpr double kCandela = 100;
 inline const Light kSmallLamp{{0.5, -2, 1}, {3, 6, 3}, 0.05};
-inline const AreaLight kSmallWindow{{0.5, 0, 2}, {-0.4, 0, 0}, {0, -0.3, 0}, {2, 4, 1}, false};
+inline const AreaLight kSmallWindow{{0.5, 0, 2}, {-0.4, 0, 0}, {0, -0.3, 0}, {2, 4, 1}, true};
 
 /// Writes a scene.glb of two segments: 1 is a unit square at z = 1 in the corner of a page whose texels are `texel`, of
 /// gloss that was observed; 2 is a triangle at z = 2, of gloss that was not. A normal map of half the page's size. The

@@ -191,8 +191,10 @@ TEST_F(HostileFiles, RecordingsOfOpenNi) {
 
 TEST_F(HostileFiles, LightsMaterialsAndScenes) {
     const Light light{{0, -2, 0}, {1, 1, 1}, 0.1};
-    write_lights(folder_ / "lights.json", {&light, 1}, glm::dvec3(0.1));
+    const AreaLight window{{0, 0, 2}, {0.5, 0, 0}, {0, 0.5, 0}, {1, 2, 3}, true};
+    write_lights(folder_ / "lights.json", {&light, 1}, glm::dvec3(0.1), {&window, 1});
     attack("lights.json", 300, [&] {
+        read_windows(folder_ / "lights.json");
         read_lights(folder_ / "lights.json");
         read_ambient(folder_ / "lights.json");
     });

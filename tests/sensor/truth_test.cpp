@@ -69,6 +69,20 @@ TEST(Truth, AnAxisIsReadWithUnitLength) {
     EXPECT_LT(glm::distance(read_lights(folder / "l.json").at(0).axis, {0, 0.6, -0.8}), 1e-12);
 }
 
+TEST(Truth, SaysWhatIsWrongInWindows) {
+    const TemporaryFolder folder;
+    const auto complaint = [&](const char* window) {
+        write_text(folder / "l.json", std::string("{\"lights\": [], \"area\": [") + window + "]}");
+        return error_of([&] { read_windows(folder / "l.json"); });
+    };
+    EXPECT_THAT(complaint("7"), EndsWith("area[0] is 7, must be an object"));
+    EXPECT_THAT(complaint(R"({"center": [0, 0, 1]})"), EndsWith("area[0].half_u is missing"));
+    EXPECT_THAT(complaint(R"({"center": [0, 0, 1], "half_u": [1, 0, 0], "half_v": [0, 1, 0], "radiance": [1, -1, 1]})"),
+                EndsWith("area[0].radiance is [1,-1,1], must not be negative"));
+    EXPECT_THAT(complaint(R"({"center": [0, 0, 1], "half_u": [1, 0, 0], "half_v": [2, 0, 0], "radiance": [1, 1, 1]})"),
+                EndsWith("must have an area: half_u and half_v are 0, or parallel"));
+}
+
 TEST(Truth, SaysWhatIsWrongInLights) {
     const TemporaryFolder folder;
     const auto complaint = [&](const char* content) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <vector>
 
 #include <glm/gtc/constants.hpp>
@@ -86,7 +87,9 @@ class FindWindows : public testing::Test {
         room_.add(2.0 * out + along_m * along, half_m.x * along, {0, 0, half_m.y}, true, usual, low);
     }
 
-    std::vector<AreaLight> found() const { return find_windows(room_.table()); }
+    std::vector<AreaLight> found(std::span<const Light> lamps = {}) const {
+        return find_windows(room_.table(), glm::dvec3(0), lamps);
+    }
 
     Surroundings room_;
 };
@@ -110,6 +113,53 @@ TEST_F(FindWindows, OneIsWhereItIsAndShinesIntoTheRoomWhicheverWayItsWallIsTurne
         EXPECT_LT(glm::distance(window.radiance, {3, 4, 6}), 1e-2) << "as low exposure shows it";
         EXPECT_FALSE(window.clipped);
     }
+}
+
+TEST_F(FindWindows, OneIsWhereCamerasWereHoweverFarFromTheOrigin) {
+    for (const glm::dvec3 middle_m : {glm::dvec3(100, -300, 0), glm::dvec3(24.5, -25.7, 51.2)}) {
+        room_ = Surroundings();
+        room_.add(middle_m - glm::dvec3(0, 0, 1), {2, 0, 0}, {0, 2, 0}, false, glm::dvec3(0.2));
+        room_.add(middle_m + glm::dvec3(2, 0, 0), {0, 0.6, 0}, {0, 0, 0.4}, true, glm::dvec3(0.9), glm::dvec3(3));
+        const std::vector<AreaLight> windows = find_windows(room_.table(), middle_m + glm::dvec3(0.3, -0.5, 0.2));
+        ASSERT_THAT(windows, SizeIs(1));
+        EXPECT_LT(glm::distance(windows[0].center_m, middle_m + glm::dvec3(2, 0, 0)), 0.04);
+        EXPECT_LT(angle_deg(normal_of(windows[0]), {-1, 0, 0}), 4);
+    }
+}
+
+TEST_F(FindWindows, SurfacesNearItTellWhichSideIsInside) {
+    room_.add({8, 0, -1}, {4, 0, 0}, {0, 4, 0}, false, glm::dvec3(0.2));  // a larger room behind its wall
+    add_window(0, 0, {0.5, 0.4}, glm::dvec3(0.9), glm::dvec3(3));
+    room_.add({0, 0, 1}, {2, 0, 0}, {0, 2, 0}, false, glm::dvec3(0.2));
+    ASSERT_THAT(found(), SizeIs(1));
+    EXPECT_LT(normal_of(found().front()).x, -0.95);
+}
+
+TEST_F(FindWindows, InAWallAloneCamerasTellWhichSideIsInside) {
+    room_ = Surroundings();
+    room_.add({2, 1.5, 0}, {0, 0.5, 0}, {0, 0, 1}, false, glm::dvec3(0.2));
+    add_window(0, 0, {0.5, 0.4}, glm::dvec3(0.9), glm::dvec3(3));
+    for (const double x_m : {0.0, 4.0}) {
+        const std::vector<AreaLight> windows = find_windows(room_.table(), {x_m, 0, 0});
+        ASSERT_THAT(windows, SizeIs(1));
+        EXPECT_LT(angle_deg(normal_of(windows[0]), {x_m < 2 ? -1 : 1, 0, 0}), 4);
+    }
+}
+
+TEST_F(FindWindows, ALampIsNone) {
+    add_window(0, 0, {0.2, 0.2}, glm::dvec3(0.95), glm::dvec3(3));
+    EXPECT_THAT(found(), SizeIs(1));
+    const Light lamp{{2, 0, 0}, glm::dvec3(1), 0.3}, other{{-2, 0, 0}, glm::dvec3(1), 0.3};
+    EXPECT_THAT(found({&lamp, 1}), IsEmpty());
+    EXPECT_THAT(found({&other, 1}), SizeIs(1));
+}
+
+TEST_F(FindWindows, OneOfWhichAPartIsClippedIsAtLeastSoBright) {
+    add_window(0, 0, {0.5, 0.4}, glm::dvec3(0.95), glm::dvec3(3));
+    EXPECT_FALSE(found().front().clipped);
+    room_.add({2, 0.65, 0}, {0, 0.15, 0}, {0, 0, 0.4}, true, glm::dvec3(1));  // no low exposure shows this part
+    ASSERT_THAT(found(), SizeIs(1));
+    EXPECT_TRUE(found().front().clipped);
 }
 
 TEST_F(FindWindows, WithoutLowExposureAClippedOneIsAtLeastSoBright) {
@@ -146,6 +196,11 @@ TEST_F(FindWindows, SmallOnesAndWhatFillsNoRectangleAreNone) {
     EXPECT_THAT(found(), IsEmpty());
 }
 
+TEST_F(FindWindows, ANarrowStripIsNone) {
+    add_window(0, 0, {0.02, 0.9}, glm::dvec3(0.9), glm::dvec3(2));
+    EXPECT_THAT(found(), IsEmpty());
+}
+
 TEST_F(FindWindows, WhatIsAsDeepAsWideIsNone) {
     for (int layer = 0; layer < 10; ++layer)
         room_.add({2 + 0.05 * layer, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, true, glm::dvec3(0.9), glm::dvec3(2));
@@ -156,14 +211,14 @@ TEST_F(FindWindows, OrderInTheTableDoesNotMatter) {
     add_window(30, -0.5, {0.3, 0.4}, glm::dvec3(0.9), {2.3, 1.7, 0.9});
     add_window(30, 0.5, {0.5, 0.4}, glm::dvec3(0.9), {5.1, 1.3, 0.7});
     std::vector<gpu::SurroundingsCell> table = room_.table();
-    const std::vector<AreaLight> windows = find_windows(table);
+    const std::vector<AreaLight> windows = find_windows(table, glm::dvec3(0));
     std::ranges::reverse(table);
-    EXPECT_EQ(find_windows(table), windows);
+    EXPECT_EQ(find_windows(table, glm::dvec3(0)), windows);
 }
 
 TEST_F(FindWindows, NothingAroundIsNoWindow) {
-    EXPECT_THAT(find_windows({}), IsEmpty());
-    EXPECT_THAT(find_windows(std::vector<gpu::SurroundingsCell>(8)), IsEmpty());
+    EXPECT_THAT(find_windows({}, glm::dvec3(0)), IsEmpty());
+    EXPECT_THAT(find_windows(std::vector<gpu::SurroundingsCell>(8), glm::dvec3(0)), IsEmpty());
     EXPECT_THAT(found(), IsEmpty());
 }
 

@@ -21,6 +21,7 @@
 #include "export/write_usdz.h"
 #include "sensor/files/text_file.h"
 #include "sensor/output/output_file.h"
+#include "sensor/truth.h"
 #include "tools/program/interrupt.h"
 #include "tools/program/standard_streams.h"
 
@@ -112,7 +113,7 @@ std::string content_of(SceneFormat format, const SceneParts& scene) {
 SceneParts parts_of(const fs::path& glb, const fs::path& scene, bool lit) {
     SceneParts parts = read_scene_parts(glb);
     const fs::path lights = scene.parent_path() / "lights.json";
-    if (path_exists(lights)) parts.ambient = read_lighting(lights).ambient;
+    if (path_exists(lights)) parts.ambient = sensor::read_ambient(lights);
     if (lit) read_environment(parts, scene.parent_path());
     return parts;
 }

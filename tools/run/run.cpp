@@ -223,10 +223,9 @@ class Run {
         try {
             Scene scene = session_.scene_without_surface();
             attempt("what the surface reflects", [&] { session_.add_segments(scene); });
-            attempt("light from afar", [&] {
-                scene.far_field = pipeline_.far_field();
-                scene.lighting.windows = pipeline_.windows();
-            });
+            attempt("light from afar", [&] { scene.far_field = pipeline_.far_field(); });
+            attempt("windows",
+                    [&] { scene.lighting.windows = pipeline_.windows(scene.trajectory, scene.lighting.lights); });
             scene_.emplace(std::move(scene), options_.files);
             attempt("materials.json and lights.json", [&] { scene_->write_lists(folder_); });
             write_surface();
