@@ -165,7 +165,7 @@ std::string window_text(const AreaLight& window, double luminance_per_radiance, 
         "{:.6f})\n quatf xformOp:orient = ({:.6g}, {:.6g}, {:.6g}, {:.6g})\n"
         " uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n}}\n",
         number + 1, tuple(color), strongest, width_m, height_m, window.center_m.x, window.center_m.y, window.center_m.z,
-        turn.w, turn.x, turn.y, turn.z);
+        turn.w, turn.x + 0.0, turn.y + 0.0, turn.z + 0.0);  // no -0
 }
 
 }  // namespace
