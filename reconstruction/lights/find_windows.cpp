@@ -35,7 +35,7 @@ using Place = std::array<int, 3>;  // of a cell, which also orders them
 struct Cell {
     glm::dvec3 middle_m;
     glm::dvec3 radiance;
-    bool clipped;
+    bool clipped, low;  // `low`: low exposure shows it
 };
 using Cells = std::map<Place, Cell>;  // so that their order in the table does not matter
 
@@ -213,14 +213,16 @@ std::vector<AreaLight> find_windows(std::span<const gpu::SurroundingsCell> cells
         const Place place = place_near(cell.key, inside_m);
         const bool opens = 2 * cell.openings > cell.light.usual.samples + cell.light.low.samples;
         (opens ? openings : surface)
-            .emplace(place, Cell{middle_of(place), glm::dvec3(radiance), is_clipped(cell.light, glm::dvec3(radiance))});
+            .emplace(place, Cell{middle_of(place), glm::dvec3(radiance), is_clipped(cell.light, glm::dvec3(radiance)),
+                                 cell.light.low.samples > 0});
     }
     if (surface.empty()) return {};
     double usual = 0;
     for (const auto& [place, cell] : surface) usual += luminance(cell.radiance) / static_cast<double>(surface.size());
-    // A dark gap in the depth is a surface that gave no reading.
+    // Other gaps in the depth are dark or shiny surfaces that gave no reading.
     std::erase_if(openings, [&](const auto& entry) {
-        return luminance(entry.second.radiance) < usual || is_lamp(entry.second, lamps);
+        const Cell& cell = entry.second;
+        return luminance(cell.radiance) < usual || !(cell.low || cell.clipped) || is_lamp(cell, lamps);
     });
     std::vector<AreaLight> windows;
     while (!openings.empty()) {
