@@ -57,7 +57,6 @@ MeshReflectance of_vertices(const MeshReflectance& reflectance, const std::vecto
 TileWriter::TileWriter(Write write, GlbInfo info, const GlbOptions& options)
     : write_(std::move(write)), info_(std::move(info)), options_(options) {
     info_.lights.clear();
-    info_.windows.clear();
     info_.environment.reset();
 }
 

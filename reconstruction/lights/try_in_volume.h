@@ -9,9 +9,9 @@
 
 namespace patina {
 
-/// Tries lamps in the reconstruction's volume. A highlight is not explained by a lamp
-/// that does not reach it. `ruled_out` may be null; a lamp in one of its places gives nothing. Keeps
-/// references to all that it is made with. Waits for the device.
+/// Tries lamps in the reconstruction's volume. A highlight is not explained by a lamp that does not reach it.
+/// `ruled_out` may be null; a lamp in one of its places gives nothing. Keeps references to all that it is made with.
+/// Waits for the device.
 class TryLampsInVolume {
   public:
     TryLampsInVolume(Pipeline& pipeline, std::span<const gpu::LightSample> drawn, const LitSurface& surface,

@@ -149,7 +149,9 @@ size_t triangles_in(const tinygltf::Model& model) {
 
 TEST(WriteTiles, EachCellHasLevelsOfDetail) {
     Tiles tiles;
-    TileWriter writer(tiles.write(), {.version = "1.2.3", .lights = {{{0, 0, 1}, {1, 1, 1}, 0.05}}});
+    TileWriter writer(tiles.write(), {.version = "1.2.3",
+                                      .lights = {{{0, 0, 1}, {1, 1, 1}, 0.05}},
+                                      .windows = {{{0, 0, 2}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, false}}});
     const Mesh first = wavy_sheet(60, 50);
     Mesh second = first;
     for (glm::vec3& position : second.positions_m) position += glm::vec3(1, 2, 3);
@@ -177,6 +179,7 @@ TEST(WriteTiles, EachCellHasLevelsOfDetail) {
             EXPECT_GT(triangles_in(model), triangles);
             triangles = triangles_in(model);
             EXPECT_TRUE(model.lights.empty());
+            EXPECT_FALSE(model.scenes.at(0).extras.Has("windows"));
             ASSERT_EQ(model.materials.size(), 2u);
             EXPECT_TRUE(model.materials[0].extras.Has("ward"));
             if (level == 0) {

@@ -131,8 +131,9 @@ TEST_F(FindWindows, SurfacesNearItTellWhichSideIsInside) {
     room_.add({8, 0, -1}, {4, 0, 0}, {0, 4, 0}, false, glm::dvec3(0.2));  // a larger room behind its wall
     add_window(0, 0, {0.5, 0.4}, glm::dvec3(0.9), glm::dvec3(3));
     room_.add({0, 0, 1}, {2, 0, 0}, {0, 2, 0}, false, glm::dvec3(0.2));
-    ASSERT_THAT(found(), SizeIs(1));
-    EXPECT_LT(normal_of(found().front()).x, -0.95);
+    const std::vector<AreaLight> windows = find_windows(room_.table(), {8, 0, 0});  // most cameras were there, too
+    ASSERT_THAT(windows, SizeIs(1));
+    EXPECT_LT(normal_of(windows[0]).x, -0.95);
 }
 
 TEST_F(FindWindows, InAWallAloneCamerasTellWhichSideIsInside) {
