@@ -33,6 +33,7 @@ void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& sta
     pass.read("depth_m", inputs.depth_m).read("color_linear", inputs.color_linear);
     pass.read("Params", frame.upload<gpu::SurroundingsParams>("surroundings_params", std::span(&params, 1)));
     state.surroundings = pass.modify("Surroundings", state.surroundings);
+    pass.specialise("kLowExposure", inputs.radiance_scale > 0 ? 1u : 0u);
     pass.dispatch_covering({params.visited.x, params.visited.y});
     const gpu::OpeningParams turn{inputs.frame_index % gpu::kOpeningTurns};
     auto find = frame.compute("reflectance.find_nearest_openings", spirv::find_nearest_openings);

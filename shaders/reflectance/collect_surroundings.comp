@@ -9,6 +9,7 @@
 #include "shared/reflectance/far_field.h"
 
 layout(local_size_x = kSurroundingsGroup, local_size_y = kSurroundingsGroup) in;
+layout(constant_id = 0) const uint kLowExposure = 0u;  // 1: of a frame of low exposure
 layout(binding = 0, r32f) uniform readonly image2D depth_m;
 layout(binding = 1, rgba16f) uniform readonly image2D color_linear;
 layout(std140, binding = 2) uniform Params { SurroundingsParams params; };
@@ -65,7 +66,7 @@ bool is_placed(uint place, uint key, ivec3 cell, bool grows) {
 
 void add_to_opening(vec3 direction, uvec3 steps) {
     const uint texel = octahedral_texel(direction, kOpeningEdge);
-    if (params.radiance_scale > 0.0) {
+    if (kLowExposure != 0u) {
         ADD_TO(openings[texel].light.low, steps)
     } else {
         ADD_TO(openings[texel].light.usual, steps)
@@ -79,7 +80,7 @@ void add_to_cell(ivec3 cell, bool opening, uvec3 steps) {
         const uint place = surroundings_place(key, probe);
         if (!is_placed(place, key, cell, grows)) continue;
         if (opening) atomicAdd(surroundings[place].openings, 1u);
-        if (params.radiance_scale > 0.0) {
+        if (kLowExposure != 0u) {
             ADD_TO(surroundings[place].light.low, steps)
         } else {
             ADD_TO(surroundings[place].light.usual, steps)
@@ -104,10 +105,9 @@ void main() {
     const ivec2 seen_by = ivec2(floor(project(params.color_camera, in_color_m) + 0.5));
     if (any(lessThan(seen_by, ivec2(0))) || any(greaterThanEqual(seen_by, ivec2(params.color_camera.extent)))) return;
     const vec4 color = imageLoad(color_linear, seen_by);
-    const bool low = params.radiance_scale > 0.0;
-    const bool lamp = low && luminance(color.rgb) >= params.lamp_luminance;
+    const bool lamp = kLowExposure != 0u && luminance(color.rgb) >= params.lamp_luminance;
     if (color.a == 0.0 || lamp) return;
-    const vec3 rgb = (low ? params.radiance_scale : 1.0) * color.rgb;
+    const vec3 rgb = (kLowExposure != 0u ? params.radiance_scale : 1.0) * color.rgb;
     const uvec3 steps = uvec3(clamp(rgb, 0.0, kSurroundingsRange) * kSurroundingsSteps + 0.5);
     add_to_cell(surroundings_cell(point_m), reading == 0.0, steps);
     if (reading == 0.0) add_to_opening(direction, steps);
