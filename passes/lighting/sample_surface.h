@@ -23,7 +23,7 @@ graph::BufferId add_sample_surface(graph::FrameGraph& frame, const ObservationMa
 struct TrialMap {
     const VoxelMap& map;
     const VoxelMapIds& voxels;
-    graph::BufferId surroundings;  ///< ReflectanceStateIds; add_mark_regions() has marked the voxels' regions
+    graph::BufferId surroundings;  ///< ReflectanceStateIds; add_mark_blocks() has marked the blocks
 };
 
 /// What lamps of intensity 1 at these places (world, m; at most gpu::kTrialLights) give the first `count` samples, a

@@ -5,7 +5,7 @@
 #include "engine/core/error.h"
 #include "passes/reflectance/find_visibility.h"
 #include "passes/reflectance/gather_irradiance.h"
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 #include "passes/reflectance/recolor_surfaces.h"
 #include "passes/reflectance/refine_albedo.h"
 #include "passes/reflectance/smooth_irradiance.h"
@@ -68,7 +68,7 @@ RefinedReflectance add_update(graph::FrameGraph& frame, const ReflectanceModels&
     ReflectanceStateIds state = models.state.import(frame);
     ReflectanceFrame reflectance = make_frame(frame, models, voxels, records, state, access, params, settings);
     DueRecords due = add_find_due_records(frame, reflectance, changed);
-    add_mark_regions(frame, state, models.voxel_map, voxels);
+    add_mark_blocks(frame, state, models.voxel_map, voxels);
     if (settings.albedo && settings.gathered_rays > 0) {
         add_gather_irradiance(frame, reflectance, due.march);
         add_smooth_irradiance(frame, reflectance, due.march);
@@ -119,7 +119,7 @@ void add_relight_reflectance(graph::FrameGraph& frame, const ReflectanceModels& 
     ReflectanceFrame reflectance =
         make_frame(frame, models, before, records, state, access, make_params(models, all, gpu::kWindowSteps, 1), all);
     DueRecords due = add_find_due_records(frame, reflectance, create_record_list(frame, "reflectance.none", 1));
-    add_mark_regions(frame, state, models.voxel_map, voxels);
+    add_mark_blocks(frame, state, models.voxel_map, voxels);
     if (turn.finds_visibility) add_find_visibility(frame, reflectance, due);
     if (turn.gathered_rays > 0) {
         add_gather_irradiance(frame, reflectance, due.march, true);

@@ -28,8 +28,9 @@ struct ReflectanceStateIds {
 // Where parts of ReflectanceStateIds::surroundings begin, bytes.
 constexpr uint64_t kOpeningsAt = gpu::kFarFieldTexels * sizeof(gpu::FarFieldTexel);
 constexpr uint64_t kSurroundingsCountsAt = kOpeningsAt + gpu::kOpeningTexels * sizeof(gpu::OpeningTexel);
-constexpr uint64_t kSurroundingsCellsAt = kSurroundingsCountsAt + sizeof(gpu::SurroundingsCounts) +
-                                          (gpu::kSurroundingsBlockWords + gpu::kMapRegionWords) * sizeof(uint32_t);
+constexpr uint64_t kCellsInUseAt = kSurroundingsCountsAt + sizeof(gpu::SurroundingsCounts);
+constexpr uint64_t kBlocksInUseAt = kCellsInUseAt + sizeof(gpu::Occupancy);
+constexpr uint64_t kSurroundingsCellsAt = kBlocksInUseAt + sizeof(gpu::Occupancy);
 constexpr uint64_t kSurroundingsBytes = kSurroundingsCellsAt + gpu::kSurroundingsCells * sizeof(gpu::SurroundingsCell);
 
 /// What the visibility and the albedo of an observation map's records were computed from, which of them have their turn

@@ -8,7 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/seed.h"
 #include "passes/lighting/sample_surface.h"
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 
 namespace patina {
 
@@ -54,7 +54,7 @@ std::vector<float> run_trials(Pipeline& pipeline, std::span<const gpu::LightSamp
         const VoxelMapIds voxels = map.import(frame);
         ReflectanceStateIds around;
         around.surroundings = pipeline.reflectance()->import_surroundings(frame);
-        add_mark_regions(frame, around, map, voxels);
+        add_mark_blocks(frame, around, map, voxels);
         frame.keep(around.surroundings);
         const TrialMap model{map, voxels, around.surroundings};
         const graph::Readback received =

@@ -171,6 +171,8 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     for (const Light& lamp : sure) together += glm::vec3(lamp.intensity);
     if (mean_of(together) > 0) measured.tint = together / mean_of(together);
 
+    // Most highlights are of lamps that pictures show: no ray is marched for them.
+    for (gpu::LightSample& sample : std::span(drawn).subspan(gpu::kLightSamples)) sample.highlight.w = 0;
     const LitSurface surface(drawn, LightFittingSettings().cell_m);
     const RuledOutPlaces ruled_out(pipeline, pipeline.reflectance()->low_exposure_cameras());
     const TryLampsInVolume try_known(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);

@@ -5,7 +5,7 @@
 #include "passes/observation/reclaim_records.h"
 #include "passes/reflectance/collect_far_field.h"
 #include "passes/reflectance/collect_surroundings.h"
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 #include "passes/reflectance/surface_albedo.h"
 #include "passes/shading/pack_records.h"
 #include "passes/shading/reflect_surroundings.h"
@@ -239,7 +239,7 @@ PredictedView ReflectanceStage::add_predict_mirrors(graph::FrameGraph& graph, co
     mirrored.rgb = view.images.rgb;
     mirrored.glossy = view.images.glossy;
     ReflectanceStateIds state = state_.import(graph);
-    add_mark_regions(graph, state, map_, voxels);
+    add_mark_blocks(graph, state, map_, voxels);
     graph.keep(state.surroundings);
     mirrored.surroundings = state.surroundings;
     mirrored.lights = lights_.upload(graph);

@@ -19,7 +19,7 @@ layout(push_constant) uniform Push { TrialParams params; };
 #define KEYS(bucket) buckets[bucket]
 #define BLOCK(slot) blocks[slot]
 #define VOXEL(C, i) tsdf[C].voxels[i]
-#define MAP_REGIONS(i) map_regions[i]
+#define BLOCKS_IN_USE blocks_in_use
 #include "lib/lighting/march_surroundings.glsl"
 #include "lighting/trial_way.glsl"
 

@@ -5,6 +5,7 @@
 #include "lib/camera/camera.glsl"
 #include "lib/color/luminance.glsl"
 #include "lib/lighting/surroundings.glsl"
+#include "lib/map/occupancy.glsl"
 #include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
@@ -52,8 +53,7 @@ bool is_placed(uint place, uint key, ivec3 cell, bool grows) {
     const uint found = atomicCompSwap(surroundings[place].key, 0u, key);
     if (found == key) return true;
     if (found != 0u) return false;
-    const uint bit = surroundings_bit(surroundings_block(cell));
-    atomicOr(surroundings_blocks[bit >> 5u], 1u << (bit & 31u));
+    MARK_CELL(cells_in_use, cell)
     atomicAdd(surroundings_counts.fresh, 1u);
     return true;
 }

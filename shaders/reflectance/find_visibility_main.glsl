@@ -18,7 +18,7 @@ layout(std430, binding = 5) buffer Refine { uint refine[]; };
 layout(std430, binding = 6) buffer RefineArguments { uint refine_arguments[]; };
 layout(std430, binding = 14) readonly buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { ReflectanceParams params; };
-#define MAP_REGIONS(i) map_regions[i]
+#define BLOCKS_IN_USE blocks_in_use
 #include "lib/lighting/march_surroundings.glsl"
 #include "lib/map/march_map.glsl"
 

@@ -8,7 +8,7 @@
 //   };
 #ifndef PATINA_LIB_INCIDENT_LIGHT_GLSL
 #define PATINA_LIB_INCIDENT_LIGHT_GLSL
-#define MAP_REGIONS(i) map_regions[i]
+#define BLOCKS_IN_USE blocks_in_use
 #include "lib/lighting/far_field.glsl"
 #include "lib/lighting/march_surroundings.glsl"
 #include "lib/map/march_map.glsl"

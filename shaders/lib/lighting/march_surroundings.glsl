@@ -5,11 +5,12 @@
 #ifndef PATINA_LIB_MARCH_SURROUNDINGS_GLSL
 #define PATINA_LIB_MARCH_SURROUNDINGS_GLSL
 #include "lib/lighting/surroundings.glsl"
+#include "lib/map/occupancy.glsl"
 #include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
 
 const float kReachCells = 256.0;     // 12.8 m
-const uint kMostSteps = 160u;        // through cells, and through empty blocks
+const uint kMostSteps = 160u;        // through cells, and through cubes without any
 const float kOwnSurfaceCells = 1.5;  // what is no higher above the surface that a ray leaves is part of it
 
 const uint kNoPlace = 0xffffffffu;
@@ -57,13 +58,8 @@ struct MetSurroundings {
     bool opening;
 };
 
-bool is_empty_block(ivec3 block) {
-    const uint bit = surroundings_bit(block);
-    return (surroundings_blocks[bit >> 5u] & 1u << (bit & 31u)) == 0u;
-}
-
 // The first surface along a ray that leaves a surface with a normal, of those whose brightest channel is `least` or
-// more. Blocks without any cell are crossed in one step.
+// more. Cubes without any cell are crossed in one step.
 MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction, float least) {
     const vec3 start = point_m / kSurroundingsCellM;
     const vec3 way = mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))), inverse = 1.0 / way;
@@ -72,21 +68,21 @@ MetSurroundings march_surroundings(vec3 point_m, vec3 normal, vec3 direction, fl
     ivec3 cell = ivec3(floor(start));
     const float reach = surroundings_counts.total + surroundings_counts.fresh > 0u ? kReachCells : 0.0;
     float along = 0.0;  // the ray, cells
+    int cube = EMPTY_CUBE(cells_in_use, cell);
     SurroundingsColor met = SurroundingsColor(vec4(0.0), false);
     for (uint i = 0u; i < kMostSteps && along < reach && met.mean.a == 0.0; ++i) {
-        const ivec3 block = surroundings_block(cell);
-        const bool empty = is_empty_block(block);
-        const float edge = empty ? float(kSurroundingsBlock) : 1.0;
-        const ivec3 corner = empty ? block * int(kSurroundingsBlock) : cell;
-        // To the border of the cell, or of the block, that the ray meets first.
-        const vec3 borders = (vec3(corner) + edge * ahead - start) * inverse;
+        const int edge = 1 << max(cube, 0);
+        const ivec3 corner = cell & -edge;
+        // To the border of the cell, or of the cube, that the ray meets first.
+        const vec3 borders = (vec3(corner) + float(edge) * ahead - start) * inverse;
         const bvec3 nearest = lessThanEqual(borders, min(borders.yzx, borders.zxy));
         const ivec3 axis = nearest.x ? ivec3(1, 0, 0) : nearest.y ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
         along = max(along, dot(vec3(axis), borders));
-        const ivec3 inside = clamp(ivec3(floor(start + along * way)), corner, corner + int(edge) - 1);
-        const ivec3 beyond = corner + ivec3(edge * ahead) + min(stride, 0);
+        const ivec3 inside = clamp(ivec3(floor(start + along * way)), corner, corner + edge - 1);
+        const ivec3 beyond = corner + edge * ivec3(ahead) + min(stride, 0);
         cell = inside * (1 - axis) + beyond * axis;
-        if (dot(vec3(cell) + 0.5 - start, normal) > kOwnSurfaceCells) met = look_up_surroundings(cell);
+        cube = EMPTY_CUBE(cells_in_use, cell);
+        if (cube < 0 && dot(vec3(cell) + 0.5 - start, normal) > kOwnSurfaceCells) met = look_up_surroundings(cell);
         if (max(max(met.mean.r, met.mean.g), met.mean.b) < least) met.mean = vec4(0.0);
     }
     const vec3 at_m = (vec3(cell) + 0.5) * kSurroundingsCellM;

@@ -12,14 +12,6 @@ uint surroundings_key(ivec3 cell) {
 
 ivec3 surroundings_cell(vec3 point_m) { return ivec3(floor(point_m / kSurroundingsCellM)); }
 
-// The block of a cell, and where its bit is.
-ivec3 surroundings_block(ivec3 cell) { return cell >> 3; }
-
-uint surroundings_bit(ivec3 block) {
-    const uvec3 low = uvec3(block) & 127u;
-    return low.x | low.y << 7 | low.z << 14;
-}
-
 uint surroundings_place(uint key, uint probe) { return (hash_of_key(key) + probe) & (kSurroundingsCells - 1u); }
 
 vec3 mean_of_sums(SurroundingsSums sums) {

@@ -3,13 +3,13 @@
 //   KEYS(bucket)    uvec4, the keys of a bucket
 //   BLOCK(slot)     uint, the block id of a table slot
 //   VOXEL(C, i)     uint, voxel i of the literal chunk C
-// and, so that rays cross what is empty fast, where passes/reflectance/mark_regions.h has marked what is not,
-//   MAP_REGIONS(i)  uint, word i of map_regions (shared/reflectance/surroundings.h)
+// and, so that rays cross what is empty fast, where passes/reflectance/mark_blocks.h has marked what is not,
+//   BLOCKS_IN_USE   an Occupancy (shared/reflectance/occupancy.h), member of a buffer
 // and sets `grid` before it marches.
 #ifndef PATINA_LIB_MARCH_MAP_GLSL
 #define PATINA_LIB_MARCH_MAP_GLSL
 #include "lib/map/block_lookup.glsl"
-#include "lib/map/map_regions.glsl"
+#include "lib/map/occupancy.glsl"
 #include "lib/map/voxel_chunks.glsl"
 
 const uint kMaxSteps = 1024u;
@@ -50,15 +50,25 @@ float to_cube_end(ivec3 cube, float edge, vec3 at, vec3 inverse_direction) {
     return max(min(min(ends.x, ends.y), ends.z), 0.0) + 0.01;
 }
 
-// The same where there is no block: within the region, where that has none either.
-float to_gap_end(ivec3 block, vec3 at, vec3 inverse_direction) {
-#ifdef MAP_REGIONS
-    const ivec3 region = region_of_block(block);
-    const uint bit = bit_of_region(region);
-    if ((MAP_REGIONS(bit >> 5u) & 1u << (bit & 31u)) == 0u)
-        return to_cube_end(region, float(kBlockEdge * kMapRegionBlocks), at, inverse_direction);
+#ifdef BLOCKS_IN_USE
+// Where a ray is once it has crossed the largest empty cube that it is in, if any.
+float cross_gap(vec3 start, vec3 direction, vec3 inverse_direction, float gone) {
+    const vec3 at = start + direction * gone;
+    const ivec3 block = ivec3(floor(at)) >> 3;
+    const int cube = EMPTY_CUBE(BLOCKS_IN_USE, block), n = max(cube, 0);
+    return gone + (cube < 0 ? 0.0 : to_cube_end(block >> n, float(int(kBlockEdge) << n), at, inverse_direction));
+}
 #endif
-    return to_cube_end(block, float(kBlockEdge), at, inverse_direction);
+
+// Twice that: a block costs more to look up than a cube to cross. (A loop to the next block will not do: on lavapipe 22.3
+// the loop around it then ends too soon.)
+float cross_gaps(vec3 start, vec3 direction, vec3 inverse_direction, float gone) {
+#ifdef BLOCKS_IN_USE
+    const float first = cross_gap(start, direction, inverse_direction, gone);
+    return cross_gap(start, direction, inverse_direction, first);
+#else
+    return gone;
+#endif
 }
 
 vec3 inverse_of(vec3 direction) { return 1.0 / mix(direction, vec3(1e-6), lessThan(abs(direction), vec3(1e-6))); }
@@ -78,7 +88,7 @@ Look look_at(vec3 at, vec3 inverse_direction) {
     const bool seen = voxel_weight(found) > 0u;
     const float here = seen ? voxel_sdf(found) * kSdfRangeVox : 1e6;
     const float inside_block = seen ? max(0.9 * here, 1.0) : kUnknownStepVox;
-    return Look(here, have ? inside_block : to_gap_end(voxel >> 3, at, inverse_direction));
+    return Look(here, have ? inside_block : to_cube_end(voxel >> 3, float(kBlockEdge), at, inverse_direction));
 }
 
 struct Passage {
@@ -96,7 +106,7 @@ Passage march(vec3 start, vec3 direction, float gone, float reach, float slope, 
         deepest = min(deepest, look.here_vox);
         // The surface itself is this far.
         grazed = grazed || look.here_vox < min(graze_vox, 0.5 * (lift + gone * slope));
-        gone += look.step_vox;
+        gone = cross_gaps(start, direction, inverse_direction, gone + look.step_vox);
     }
     const bool open = deepest > -kInsideVox;
     return Passage(open, grazed && deepest > -graze_vox);
@@ -109,7 +119,7 @@ float find_hit(vec3 start, vec3 direction, float gone, float reach) {
     for (uint i = 0u; i < kMaxSteps && gone < reach && !met; ++i) {
         const Look look = look_at(start + direction * gone, inverse_direction);
         met = look.here_vox < kMetVox;
-        gone += met ? 0.0 : look.step_vox;
+        gone = met ? gone : cross_gaps(start, direction, inverse_direction, gone + look.step_vox);
     }
     return met ? gone : -1.0;
 }

@@ -4,20 +4,14 @@
 #ifndef PATINA_SHARED_SURROUNDINGS_H
 #define PATINA_SHARED_SURROUNDINGS_H
 #include "shared/input/camera.h"
+#include "shared/reflectance/occupancy.h"
 INTEROP_BEGIN
 
 INTEROP_CONST float kSurroundingsCellM = 0.05f;    // edge of a cell
 INTEROP_CONST uint kSurroundingsCells = 0x80000u;  // of the table, a power of two
 // Cells in use, 330 m^2 of surface: in so empty a table each finds its place, whatever the order of arrival.
 INTEROP_CONST uint kMostSurroundings = 0x20000u;
-// Cells along the side of a block, of which a bit says whether any cell is in use.
-INTEROP_CONST uint kSurroundingsBlock = 8u;
-INTEROP_CONST uint kSurroundingsBlockWords = 0x10000u;  // 128^3 bits: the same 51 m as the keys of cells
-// A bit says whether the voxel map has any block in a region, of so many blocks along each side; regions 128 apart
-// share one. Rays cross an empty one in one step.
-INTEROP_CONST uint kMapRegionBlocks = 8u;
-INTEROP_CONST uint kMapRegionWords = 0x10000u;  // 128^3 bits
-INTEROP_CONST uint kMarkRegionsGroup = 64u;
+INTEROP_CONST uint kMarkBlocksGroup = 64u;
 INTEROP_CONST uint kSurroundingsProbes = 32u;       // places looked at, from the key's own on
 INTEROP_CONST float kSurroundingsSteps = 256.0f;    // of a linear pixel value, in whole numbers
 INTEROP_CONST float kSurroundingsRange = 16.0f;     // the largest of them
@@ -84,14 +78,14 @@ struct OpeningParams {
 INTEROP_END
 
 // The buffer of the surroundings, after what is seen far away (shared/reflectance/far_field.h) and in openings, with
-// what says where the map is empty.
+// which of its cells, and which blocks of the voxel map, are in use.
 #ifndef __cplusplus
-#define SURROUNDINGS_MEMBERS                           \
-    FarFieldTexel far_field[kFarFieldTexels];          \
-    OpeningTexel openings[kOpeningTexels];             \
-    SurroundingsCounts surroundings_counts;            \
-    uint surroundings_blocks[kSurroundingsBlockWords]; \
-    uint map_regions[kMapRegionWords];                 \
+#define SURROUNDINGS_MEMBERS                  \
+    FarFieldTexel far_field[kFarFieldTexels]; \
+    OpeningTexel openings[kOpeningTexels];    \
+    SurroundingsCounts surroundings_counts;   \
+    Occupancy cells_in_use;                   \
+    Occupancy blocks_in_use;                  \
     SurroundingsCell surroundings[];
 #endif
 #endif

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/observation/observation_rig.h"
 #include "tests/gpu/reflectance/surroundings_inputs.h"
@@ -197,7 +197,7 @@ TEST_F(SampleSurface, LampsGiveCosineOverSquaredDistanceUnlessTheModelIsBetween)
     ReflectanceStateIds around;
     around.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
     const VoxelMapIds voxels = map.import(frame);
-    add_mark_regions(frame, around, map, voxels);
+    add_mark_blocks(frame, around, map, voxels);
     const graph::Readback read =
         frame.read_back(add_try_lights(frame, {map, voxels, around.surroundings}, samples, places_m));
     run(std::move(frame));
@@ -235,7 +235,7 @@ TEST_F(SampleSurface, SunsGiveCosinesWhereTheSkyIsOnTheWayAndTheModelIsNotBetwee
         around.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
         add_ceiling(frame, around, [&](double x, double) { return std::abs(x) < 10 * cell_m ? radiance : 0.2f; });
         const VoxelMapIds voxels = map.import(frame);
-        add_mark_regions(frame, around, map, voxels);
+        add_mark_blocks(frame, around, map, voxels);
         const auto samples = frame.upload<gpu::LightSample>("samples", drawn);
         const graph::Readback read =
             frame.read_back(add_try_suns(frame, {map, voxels, around.surroundings}, samples, directions,

@@ -11,6 +11,7 @@
 #include "engine/core/octahedral.h"
 #include "shared/fusion/voxel_map.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/gpu/reflectance/occupancy_bits.h"
 #include "tests/gpu/reflectance/surroundings_inputs.h"
 #include "tests/reference/reflectance/octahedral_texel.h"
 #include "tests/reference/scenes/analytic_scene.h"
@@ -97,9 +98,9 @@ class CollectSurroundingsTest : public GpuTest {
         openings.resize(gpu::kOpeningTexels);
         std::memcpy(openings.data(), bytes.data() + kOpeningsAt, openings.size() * sizeof(openings[0]));
         std::memcpy(&counts, bytes.data() + kSurroundingsCountsAt, sizeof(counts));
-        std::vector<uint32_t> blocks(gpu::kSurroundingsBlockWords);
-        std::memcpy(blocks.data(), bytes.data() + kSurroundingsCountsAt + sizeof(counts),
-                    blocks.size() * sizeof(uint32_t));
+        std::vector<uint32_t> words(sizeof(gpu::Occupancy) / sizeof(uint32_t));
+        std::memcpy(words.data(), bytes.data() + kCellsInUseAt, sizeof(gpu::Occupancy));
+        OccupancyBits in_use;
         std::memcpy(all.data(), bytes.data() + kSurroundingsCellsAt, all.size() * sizeof(all[0]));
         for (const gpu::SurroundingsCell& cell : all) {
             if (cell.key == 0) continue;
@@ -107,9 +108,7 @@ class CollectSurroundingsTest : public GpuTest {
                 const auto low = static_cast<int>(cell.key >> shift & 1023u);
                 return low >= 512 ? low - 1024 : low;
             };
-            const std::array<uint32_t, 3> block{cell.key >> 3 & 127u, cell.key >> 13 & 127u, cell.key >> 23 & 127u};
-            const uint32_t bit = block[0] | block[1] << 7 | block[2] << 14;
-            EXPECT_TRUE(blocks[bit / 32] >> bit % 32 & 1) << "rays would cross its block";
+            in_use.add({coordinate(0), coordinate(10), coordinate(20)});
             Sums& sums = cells[{coordinate(0), coordinate(10), coordinate(20)}];
             EXPECT_EQ(sums.samples, 0u) << "a cell has one place";
             const gpu::SurroundingsSums& taken = radiance_scale > 0 ? cell.light.low : cell.light.usual;
@@ -117,6 +116,9 @@ class CollectSurroundingsTest : public GpuTest {
             of_openings[{coordinate(0), coordinate(10), coordinate(20)}] = cell.openings;
             sums = {taken.samples, glm::dvec3(taken.r, taken.g, taken.b) / double{gpu::kSurroundingsSteps}};
         }
+        const OccupancyBits marked(words);
+        EXPECT_EQ(marked.cubes, in_use.cubes) << "rays would cross cells, or look at cubes without any";
+        EXPECT_EQ(marked.cells, in_use.cells);
         return cells;
     }
 

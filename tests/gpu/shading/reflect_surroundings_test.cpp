@@ -11,7 +11,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "engine/core/shader_camera.h"
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 #include "passes/state/lights.h"
 #include "passes/state/reflectance_state.h"
 #include "shared/shading/reflect_surroundings.h"
@@ -94,7 +94,7 @@ class ReflectSurroundings : public GpuTest {
         inputs.glossy = frame.upload<gpu::GlossyPixel>("glossy", glossy);
         ReflectanceStateIds state;
         state.surroundings = frame.fill(frame.create_buffer("surroundings", kSurroundingsBytes), 0);
-        add_mark_regions(frame, state, rig_.map(), rig_.map().import(frame));
+        add_mark_blocks(frame, state, rig_.map(), rig_.map().import(frame));
         inputs.surroundings = state.surroundings;
         inputs.lights = lights.upload(frame);
         inputs.ball_m = glm::vec4(glm::vec3(kEye), 8);

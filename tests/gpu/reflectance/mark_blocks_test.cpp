@@ -1,45 +1,38 @@
-// Regions of the map that rays cross in one step.
+// Blocks of the map, between which rays cross what is empty in few steps.
 
-#include "passes/reflectance/mark_regions.h"
+#include "passes/reflectance/mark_blocks.h"
 
 #include <cmath>
 #include <set>
+#include <span>
 
+#include "tests/gpu/reflectance/occupancy_bits.h"
 #include "tests/gpu/reflectance/radiant_room.h"
 
-namespace patina::mark_regions_test {
+namespace patina::mark_blocks_test {
 namespace {
 
-using MarkRegions = RadiantRoomTest;
+using MarkBlocks = RadiantRoomTest;
 
-constexpr uint64_t kAt = kSurroundingsCellsAt - gpu::kMapRegionWords * sizeof(uint32_t);
-
-TEST_F(MarkRegions, RegionsWithBlocksAreMarked) {
+TEST_F(MarkBlocks, BlocksAndTheirCubesAreMarked) {
     const auto model = fused(grey, std::array{glm::dvec3(0, 0, 1)});
     model->reflectance.update_all({});
     graph::Readback read;
     model->reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
-        read = frame.read_back(state.surroundings, kAt, gpu::kMapRegionWords * sizeof(uint32_t));
+        read = frame.read_back(state.surroundings, kBlocksInUseAt, sizeof(gpu::Occupancy));
     });
-    std::set<uint32_t> expected, marked;
-    for (const reference::BlockCoordinates& block : model->observations.fusion().allocated()) {
-        uint32_t bit = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int region = static_cast<int>(std::floor(block[axis] / 8.0));
-            bit |= static_cast<uint32_t>((region % 128 + 128) % 128) << 7 * axis;
-        }
-        expected.insert(bit);
-    }
-    const auto words = read.as<uint32_t>();
-    for (uint32_t bit = 0; bit < 32 * gpu::kMapRegionWords; ++bit) {
-        if ((words[bit / 32] >> bit % 32 & 1) != 0) marked.insert(bit);
-    }
-    EXPECT_GT(expected.size(), 3u);
-    EXPECT_EQ(marked, expected);
+    OccupancyBits expected;
+    for (const reference::BlockCoordinates& block : model->observations.fusion().allocated())
+        expected.add({block[0], block[1], block[2]});
+    const OccupancyBits marked(read.as<uint32_t>());
+    EXPECT_GT(expected.cubes.size(), 3u);
+    EXPECT_GT(expected.cells.size(), 50u);
+    EXPECT_EQ(marked.cubes, expected.cubes);
+    EXPECT_EQ(marked.cells, expected.cells);
 }
 
-TEST_F(MarkRegions, RaysFindTheSameAsWhereEveryRegionIsLookedAt) {
-    const std::vector<uint32_t> all(gpu::kMapRegionWords, 0xffffffffu);
+TEST_F(MarkBlocks, RaysFindTheSameAsWhereEveryBlockIsLookedAt) {
+    const std::vector<uint32_t> all(sizeof(gpu::Occupancy) / sizeof(uint32_t), 0xffffffffu);
     ReflectanceSettings settings;
     settings.gathered_rays = 4;
     std::array<std::vector<RefinedRecord>, 2> found;
@@ -47,7 +40,8 @@ TEST_F(MarkRegions, RaysFindTheSameAsWhereEveryRegionIsLookedAt) {
         const auto model = fused(grey, std::array{glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0)});
         if (every == 1) {
             model->reflectance.change([&](graph::FrameGraph& frame, ReflectanceStateIds& state) {
-                state.surroundings = frame.upload_bytes(state.surroundings, kAt, std::as_bytes(std::span(all)), false);
+                state.surroundings =
+                    frame.upload_bytes(state.surroundings, kBlocksInUseAt, std::as_bytes(std::span(all)), false);
             });
         }
         model->reflectance.update_all(settings);
@@ -65,4 +59,4 @@ TEST_F(MarkRegions, RaysFindTheSameAsWhereEveryRegionIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace patina::mark_regions_test
+}  // namespace patina::mark_blocks_test
