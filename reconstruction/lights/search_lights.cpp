@@ -86,14 +86,19 @@ class Search {
   public:
     Search(const LitSurface& surface, const TryLamps& try_lamps, std::span<const glm::vec3> seen_m,
            const LightSearchSettings& settings, const GivenLight& given)
-        : surface_(surface), try_(try_lamps), seen_m_(seen_m), settings_(settings), given_(given) {}
+        : surface_(surface),
+          try_(try_lamps),
+          seen_m_(seen_m),
+          settings_(settings),
+          given_(given),
+          lamps_(given.lamps) {}
 
     std::vector<TrialLamp> run() {
         const std::vector<TrialLamp> places = try_(places_around(surface_, seen_m_), kCoarsePlaces);
+        double least = move_all();
         std::vector<std::vector<TrialLamp>> best{lamps_};  // of each number of lamps
-        double least = handicapped(lamps_);
         const double least_gain = std::min(settings_.least_gain, settings_.expected_gain);
-        while (lamps_.size() < settings_.most_lamps) {
+        while (added() < settings_.most_lamps) {
             const double now = add_one(places);
             // Two more lamps may help where neither does alone: what a lamp must be worth in the end is asked later.
             if (now > (1 - 0.5 * least_gain) * least) break;
@@ -104,12 +109,14 @@ class Search {
         lamps_ = best.back();
         while (remove_one()) {
             const double moved = move_all();
-            if (handicapped(best[lamps_.size()]) < moved) lamps_ = best[lamps_.size()];
+            if (handicapped(best[added()]) < moved) lamps_ = best[added()];
         }
         return lamps_;
     }
 
   private:
+    size_t added() const { return lamps_.size() - given_.lamps.size(); }
+
     double cost(std::span<const TrialLamp> lamps) const { return cost(lamps, kFineSteps, surface_.size()); }
     double cost(std::span<const TrialLamp> lamps, uint32_t steps, size_t count) const {
         std::vector<ReceivedLight> received;
@@ -163,25 +170,41 @@ class Search {
         return is_flat(best) ? as_flat(surface_, all_around, best.axis) : all_around;
     }
 
-    /// Moves each lamp in turn to the best of the places around it, and turns it, by ever shorter moves. Returns the
-    /// cost.
+    /// Moves each added lamp in turn to the best of the places around it, and turns all lamps, by ever shorter moves.
+    /// Returns the cost.
     double move_all() {
         const std::vector<glm::vec3> around = directions();
         double now = handicapped(lamps_);
+        if (lamps_.empty()) return now;
         for (float move_m = kFirstMoveM; move_m > kLastMoveM;) {
             std::vector<glm::vec3> places_m;
-            for (const TrialLamp& lamp : lamps_) {
+            for (const TrialLamp& lamp : std::span(lamps_).subspan(given_.lamps.size())) {
                 places_m.push_back(lamp.place_m);
                 for (const glm::vec3& direction : around) places_m.push_back(lamp.place_m + move_m * direction);
             }
-            const std::vector<TrialLamp> tried = try_(places_m, gpu::kLightSamples);
+            const std::vector<TrialLamp> tried =
+                places_m.empty() ? std::vector<TrialLamp>() : try_(places_m, gpu::kLightSamples);
             const size_t each = around.size() + 1;
             const double before = now;
-            for (size_t l = 0; l < lamps_.size(); ++l)
-                move(l, std::span(tried).subspan(l * each, each), kTurnByMove * move_m, now);
+            for (size_t l = 0; l < given_.lamps.size(); ++l) turn_given(l, kTurnByMove * move_m, now);
+            for (size_t l = 0; l < added(); ++l)
+                move(given_.lamps.size() + l, std::span(tried).subspan(l * each, each), kTurnByMove * move_m, now);
             if (now > kWorthwhile * before) move_m *= kShorter;
         }
         return now;
+    }
+
+    /// Makes a given lamp flat, with the best of all axes, or turns it, or makes it shine all around.
+    void turn_given(size_t lamp, float turn, double& now) {
+        const TrialLamp& all_around = given_.lamps[lamp];
+        const bool flat = is_flat(lamps_[lamp]);
+        const glm::vec3 axis = lamps_[lamp].axis;
+        std::vector<TrialLamp> changed{lamps_[lamp]};
+        for (const glm::vec3& direction : directions())
+            changed.push_back(
+                as_flat(surface_, all_around, flat ? glm::normalize(axis + turn * direction) : direction));
+        changed.push_back(all_around);
+        take_best(lamp, changed, now);
     }
 
     /// The best of these places for a lamp, whose own is the first one; there the best of axes near its own, or none,
@@ -226,7 +249,7 @@ class Search {
         const double now = cost(lamps_);
         size_t least = lamps_.size();
         double least_cost = 1e9;
-        for (size_t l = 0; l < lamps_.size(); ++l) {
+        for (size_t l = given_.lamps.size(); l < lamps_.size(); ++l) {
             std::vector<TrialLamp> others = lamps_;
             others.erase(others.begin() + static_cast<ptrdiff_t>(l));
             const double without = cost(others);
@@ -291,7 +314,7 @@ double unexplained_highlights(const LitSurface& surface, std::span<const TrialLa
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
                                      std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
                                      const GivenLight& given) {
-    if (surface.size() == 0) return {};
+    if (surface.size() == 0) return given.lamps;
     return Search(surface, try_lamps, seen_m, settings, given).run();
 }
 

@@ -39,10 +39,11 @@ using TryLamps = std::function<std::vector<TrialLamp>(std::span<const glm::vec3>
 double unexplained_highlights(const LitSurface& surface, std::span<const TrialLamp> lamps,
                               std::span<const double> intensities);
 
-/// Light of which only the strength is not known: it stays where it is.
+/// Light of which not all is known.
 struct GivenLight {
-    std::vector<ReceivedLight> lights;  ///< one by one
-    ReceivedLight ambient;              ///< null: 1 for all samples
+    std::vector<ReceivedLight> lights;  ///< only the strength is not, one by one
+    ReceivedLight ambient;              ///< the same; null: 1 for all samples
+    std::vector<TrialLamp> lamps;       ///< their places are known; tried as lamps that shine all around
 };
 
 /// Whether two lamps may be the same one, found twice: nearer to each other than a third of the way to the middle of
@@ -51,7 +52,8 @@ bool is_same_place(const LitSurface& surface, glm::vec3 a_m, glm::vec3 b_m);
 
 /// Finds lamps that explain a surface: one after the other from a lattice around it and from `seen_m`, where lamps are
 /// expected, all moved and turned to better places and axes whenever there is a new one; then those that matter too
-/// little are left out. `try_lamps` tries lamps that shine all around.
+/// little are left out. `try_lamps` tries lamps that shine all around. Given lamps come first in what is returned: none
+/// is left out or moved, but each may turn out to be flat.
 std::vector<TrialLamp> search_lights(const LitSurface& surface, const TryLamps& try_lamps,
                                      std::span<const glm::vec3> seen_m, const LightSearchSettings& settings,
                                      const GivenLight& given = {});

@@ -70,14 +70,9 @@ std::vector<float> light_of(const Unmeasured& unmeasured, std::span<const Receiv
     return light;
 }
 
-/// Which of the lamps that were found are where lamps were found before.
-std::vector<TrialLamp> found_again(const std::vector<TrialLamp>& found, std::span<const glm::vec3> before_m,
-                                   const LitSurface& surface) {
-    std::vector<TrialLamp> again;
-    for (const TrialLamp& lamp : found)
-        if (std::ranges::any_of(before_m, [&](glm::vec3 m) { return is_same_place(surface, lamp.place_m, m); }))
-            again.push_back(lamp);
-    return again;
+/// Whether a lamp that was found is where one was found before.
+bool is_where_one_was(const TrialLamp& lamp, std::span<const glm::vec3> before_m, const LitSurface& surface) {
+    return std::ranges::any_of(before_m, [&](glm::vec3 m) { return is_same_place(surface, lamp.place_m, m); });
 }
 
 /// How much is known of what is around, 0 to 1.
@@ -88,7 +83,7 @@ double sureness(const ReceivedLight& unknown) {
 }  // namespace
 
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
-                                     std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
+                                     std::span<const TrialLamp> clipped, std::span<const glm::vec3> before_m,
                                      const TryLamps& try_lamps, uint32_t most_added) {
     UnmeasuredLamps result;
     if (surface.size() == 0) return result;
@@ -98,17 +93,18 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
     };
     const KnownLight known = known_in(LightChannel::kMean);
     const double usual = mean_of(measured.usual);
-    GivenLight given{{known.all}, unknown};
-    given.lights.insert(given.lights.end(), clipped.begin(), clipped.end());
+    const GivenLight given{{known.all}, unknown, {clipped.begin(), clipped.end()}};
     // Most highlights are of lamps that pictures show.
-    const std::vector<TrialLamp> found =
+    const std::vector<TrialLamp> all =
         search_lights(surface, try_lamps, before_m,
                       {.most_lamps = most_added, .highlight_share = 0, .expected_gain = kExpectedGain}, given);
+    const auto of_clipped = std::span(all).first(clipped.size()), found = std::span(all).subspan(clipped.size());
     for (const TrialLamp& lamp : found) result.places_m.push_back(lamp.place_m);
-    const bool knows_enough = sureness(unknown) == 1;
-    const std::vector<TrialLamp> believed = knows_enough ? found : found_again(found, before_m, surface);
-    std::vector<ReceivedLight> lamps(clipped.begin(), clipped.end());
-    for (const TrialLamp& lamp : believed) lamps.push_back(lamp.received);
+    std::vector<TrialLamp> told(of_clipped.begin(), of_clipped.end());
+    for (const TrialLamp& lamp : found)
+        if (sureness(unknown) == 1 || is_where_one_was(lamp, before_m, surface)) told.push_back(lamp);
+    std::vector<ReceivedLight> lamps;
+    for (const TrialLamp& lamp : told) lamps.push_back(lamp.received);
     if (lamps.empty()) return result;
     const double unseen = likely_unseen_light(surface, known, usual, lamps).radiance;
     const ReceivedLight beside = with_unseen(known, unseen);
@@ -137,11 +133,11 @@ UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLi
             intensities[l][c] = scale * std::lerp(measured.tint[c] * fitted.intensities[l], own.intensities[l],
                                                   own.has_scale ? kOwnTint * sure : 0);
     }
-    for (size_t l = 0; l < clipped.size(); ++l) result.clipped.emplace_back(intensities[l]);
-    for (size_t l = 0; l < believed.size(); ++l)
-        result.added.push_back({.position_m = glm::dvec3(believed[l].place_m),
-                                .intensity = intensities[clipped.size() + l],
-                                .axis = glm::dvec3(believed[l].axis)});
+    for (size_t l = 0; l < told.size(); ++l)
+        (l < clipped.size() ? result.clipped : result.added)
+            .push_back({.position_m = glm::dvec3(told[l].place_m),
+                        .intensity = intensities[l],
+                        .axis = glm::dvec3(told[l].axis)});
     return result;
 }
 
@@ -178,8 +174,7 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     const TryLampsInVolume try_known(pipeline, drawn, surface), try_unseen(pipeline, drawn, surface, &ruled_out);
     std::vector<glm::vec3> places_m;
     for (const Light& lamp : clipped) places_m.emplace_back(lamp.position_m);
-    std::vector<ReceivedLight> of_clipped;
-    for (const TrialLamp& lamp : try_known(places_m, gpu::kLightSamples)) of_clipped.push_back(lamp.received);
+    const std::vector<TrialLamp> of_clipped = try_known(places_m, gpu::kLightSamples);
     const auto room =
         static_cast<uint32_t>(gpu::kMaxPointLights - std::min<size_t>(lamps.size(), gpu::kMaxPointLights));
     const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, of_clipped, before_m, try_unseen,
@@ -189,7 +184,8 @@ ToldLamps find_unmeasured_lamps(Pipeline& pipeline, std::vector<gpu::LightSample
     for (FoundLight& lamp : all.lamps) {
         if (!is_clipped(lamp) || told.clipped.empty()) continue;
         lamp.evidence.shown = lamp.light.intensity;
-        lamp.light.intensity = glm::max(lamp.light.intensity, glm::dvec3(told.clipped[next++]));
+        lamp.light.intensity = glm::max(lamp.light.intensity, told.clipped[next].intensity);
+        lamp.light.axis = told.clipped[next++].axis;
     }
     for (const Light& lamp : told.added) all.lamps.push_back({lamp, {.unseen = true}});
     for (FoundLight& lamp : all.lamps) lamp.light = rounded_to_float(lamp.light);
@@ -201,6 +197,7 @@ std::vector<FoundLight> as_measured(std::vector<FoundLight> lamps) {
     for (FoundLight& lamp : lamps) {
         if (lamp.evidence.shown == glm::dvec3(0)) continue;
         lamp.light.intensity = lamp.evidence.shown;
+        lamp.light.axis = glm::dvec3(0);
         lamp.evidence.shown = glm::dvec3(0);
     }
     return lamps;

@@ -21,7 +21,7 @@ struct MeasuredLight {
 };
 
 struct UnmeasuredLamps {
-    std::vector<glm::vec3> clipped;   ///< intensities of the clipped lamps; empty where they are not told
+    std::vector<Light> clipped;       ///< the clipped lamps, which may be flat; empty where they are not told
     std::vector<Light> added;         ///< those that no picture shows
     std::vector<glm::vec3> places_m;  ///< of all lamps that the search found, believed or not
 };
@@ -31,12 +31,12 @@ struct UnmeasuredLamps {
 /// one factor, as where no light is known. While much of what is around is not known this is not sure, and lamps come
 /// out too bright: then their tint is that of measured lamps, and one tenth of the surface keeps three quarters of
 /// `white_albedo` or more; without low exposure it does so however much is known. Where hardly any light is known, it
-/// begins at `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` is
-/// what these lamps give the surface at an intensity of 1. A lamp that no picture shows, which may be flat, is believed
-/// where a search before, of fewer frames, found it, too (`before_m`), or once most of what is around is known. At most
-/// `most_added` are searched for. Nothing is told where the surface stays unexplained.
+/// begins at `white_albedo`. Never has more than a fifth of the surface an albedo an eighth above that. `clipped` are
+/// these lamps, tried as ones that shine all around. A lamp that no picture shows, which may be flat,
+/// is believed where a search before, of fewer frames, found it, too (`before_m`), or once most of what is around is
+/// known. At most `most_added` are searched for. Nothing is told where the surface stays unexplained.
 UnmeasuredLamps fit_unmeasured_lamps(const LitSurface& surface, const MeasuredLight& measured,
-                                     std::span<const ReceivedLight> clipped, std::span<const glm::vec3> before_m,
+                                     std::span<const TrialLamp> clipped, std::span<const glm::vec3> before_m,
                                      const TryLamps& try_lamps, uint32_t most_added = LightSearchSettings().most_lamps);
 
 struct ToldLamps {

@@ -1,6 +1,8 @@
-// The answer for each light: medians over its sightings; without depth, the point nearest to all bearings.
+// The answer for each light: medians over its sightings; without depth, the point nearest to all bearings. A lamp whose
+// size in the pictures goes with the cosine to an axis is flat.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "lib/color/luminance.glsl"
 #include "lib/math/cone.glsl"
 #include "shared/lighting/find_lights.h"
 
@@ -19,7 +21,20 @@ const float kLeastTurn = 0.02;  // of the way to the camera, from which on sight
 const float kImageTurn = 0.4;   // of the half vector, over that
 const float kImageMove = 0.6;   // over what an image's would be
 
+// A flat lamp looks smaller from aside, and its intensity there is less.
+const float kSizeNoise = 0.1;    // of an intensity, relative: a lamp is few pixels wide
+const float kLeastChange = 0.2;  // mean robust cost of sightings of one intensity, from which on it is none
+const float kFlatCost = 0.4;     // that of a flat lamp over that
+const uint kAxisSteps = 6u;      // of reweighting
+const float kRidge = 1e-5;       // of the normal equations, relative: what no sighting tells of an axis is 0
+const float kLeastFacing = 0.1;  // cosine: a flat lamp is hardly seen from farther aside
+// Depth on its disc is that of its middle, where measure_emitters.comp takes it for the front of a sphere.
+const float kCoreBulge = 0.934658;
+
 shared float values[kMaxSightings];
+shared vec3 directions[kMaxSightings];  // to the cameras
+shared float strengths[kMaxSightings];  // intensities over their median
+shared vec4 flat_lamp;                  // xyz: axis, w: intensity over the median; w 0: it is none
 shared float middle;
 shared vec4 triangulated;  // w: 1 when there is a point
 shared uint is_image;
@@ -90,6 +105,40 @@ bool is_image_of(uint light, uint count, uint other) {
     return view_turns > kLeastTurn && middle_turns < kImageTurn * view_turns && moves_m > kImageMove * image_moves_m;
 }
 
+// Geman and McClure's cost of a relative residual, and its weight.
+float cost_of(float residual) {
+    const float squared = residual * residual / (kSizeNoise * kSizeNoise);
+    return squared / (1.0 + squared);
+}
+
+float weight_of(float residual) {
+    const float share = 1.0 - cost_of(residual);
+    return share * share;
+}
+
+// By iteratively reweighted least squares: strength = dot(axis * intensity, direction).
+vec4 fit_flat_lamp(uint count) {
+    vec3 fitted = vec3(0.0);
+    for (uint step = 0u; step < kAxisSteps; ++step) {
+        mat3 normal = mat3(kRidge * float(count));
+        vec3 right = vec3(0.0);
+        for (uint i = 0u; i < count; ++i) {
+            const vec3 d = directions[i];
+            const float weight = step == 0u ? 1.0 : weight_of(strengths[i] - dot(fitted, d));
+            normal += weight * outerProduct(d, d);
+            right += weight * strengths[i] * d;
+        }
+        fitted = inverse(normal) * right;
+    }
+    float of_one = 0.0, of_flat = 0.0;
+    for (uint i = 0u; i < count; ++i) {
+        of_one += cost_of(strengths[i] - 1.0) / float(count);
+        of_flat += cost_of(strengths[i] - max(dot(fitted, directions[i]), 0.0)) / float(count);
+    }
+    const bool is_flat = count > 2u && of_one > kLeastChange && of_flat < kFlatCost * of_one;
+    return is_flat ? vec4(normalize(fitted), length(fitted)) : vec4(0.0);
+}
+
 void main() {
     const uint lane = gl_LocalInvocationIndex, light = gl_WorkGroupID.x;
     const LightTrack track = tracks[light];
@@ -108,15 +157,35 @@ void main() {
         if (is_lamp && is_image_of(light, count, other)) atomicOr(is_image, 1u);
     }
     barrier();
-    const vec3 position_m = has_depth ? median(s.center_radius.xyz, count) : triangulated.xyz;
-    const float distance_m = distance(position_m, s.camera_m.xyz);
-    const vec3 intensity = median(has_depth ? s.intensity.rgb : s.intensity.rgb * distance_m * distance_m, count);
-    const float radius_m = median(has_depth ? s.center_radius.w : distance_m * sine_of_cone(s.bearing.w), count);
+    const vec3 on_sphere_m = has_depth ? median(s.center_radius.xyz, count) : triangulated.xyz;
+    const float range_m = distance(has_depth ? s.center_radius.xyz : on_sphere_m, s.camera_m.xyz);
+    const vec3 intensities = has_depth ? s.intensity.rgb : s.intensity.rgb * range_m * range_m;
+    const float usual = median(luminance(intensities), count);
+    if (lane < count) {
+        directions[lane] = normalize(s.camera_m.xyz - on_sphere_m);
+        strengths[lane] = luminance(intensities) / max(usual, 1e-30);
+    }
+    barrier();
+    // Where pixels are clipped, those of the rim count as much as others, and sizes err.
+    if (lane == 0u) flat_lamp = 2u * track.clipped < track.sightings ? fit_flat_lamp(count) : vec4(0.0);
+    barrier();
+    const bool is_flat = flat_lamp.w > 0.0;
+    // As large and as bright as it looks from straight before it, and where its disc is.
+    const float sphere_m = has_depth ? s.center_radius.w : range_m * sine_of_cone(s.bearing.w);
+    const float nearer = is_flat && has_depth ? 1.0 - kCoreBulge * sphere_m / range_m : 1.0;
+    const vec3 to_viewer = normalize(s.camera_m.xyz - on_sphere_m);
+    const float facing = is_flat ? max(dot(flat_lamp.xyz, to_viewer), kLeastFacing) : 1.0;
+    const vec3 disc_m = s.camera_m.xyz + nearer * (s.center_radius.xyz - s.camera_m.xyz);
+    const vec3 position_m = is_flat && has_depth ? median(disc_m, count) : on_sphere_m;
+    const vec3 intensity = median(intensities * nearer * nearer / facing, count);
+    const float radius_m = median(sphere_m * nearer * inversesqrt(facing), count);
     const vec3 off_m = position_m - s.camera_m.xyz;
     const float miss_m = length(cross(off_m, s.bearing.xyz));
-    const float spread_m = median(has_depth ? distance(s.center_radius.xyz, position_m) : miss_m, count);
+    const float spread_m =
+        median(has_depth ? distance(is_flat ? disc_m : s.center_radius.xyz, position_m) : miss_m, count);
     if (lane != 0u) return;
     const bool found_one = count > 0u && (has_depth || triangulated.w > 0.0) && is_image == 0u;
-    found[light] = FoundLight(PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0), vec4(0.0, 0.0, 0.0, 1.0)),
-                              spread_m, found_one ? track.sightings : 0u, track.has_depth, track.clipped);
+    found[light] = FoundLight(
+        PointLight(vec4(position_m, radius_m), vec4(intensity, 0.0), vec4(flat_lamp.xyz, is_flat ? 0.0 : 1.0)),
+        spread_m, found_one ? track.sightings : 0u, track.has_depth, track.clipped);
 }

@@ -61,13 +61,16 @@ class Balls {
         return row;
     }
 
+    TrialLamp tried(const LitSurface& surface, glm::vec3 place_m) const {
+        return {.place_m = place_m,
+                .received = received_from(surface, place_m),
+                .unexplained = surface.unexplained(place_m)};
+    }
+
     TryLamps try_lamps(const LitSurface& surface) const {
         return [this, &surface](std::span<const glm::vec3> places_m, uint32_t) {
             std::vector<TrialLamp> lamps;
-            for (const glm::vec3& place_m : places_m)
-                lamps.push_back({.place_m = place_m,
-                                 .received = received_from(surface, place_m),
-                                 .unexplained = surface.unexplained(place_m)});
+            for (const glm::vec3& place_m : places_m) lamps.push_back(tried(surface, place_m));
             return lamps;
         };
     }

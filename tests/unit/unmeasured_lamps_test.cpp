@@ -37,14 +37,32 @@ TEST(UnmeasuredLamps, ALampThatNoPictureShowsIsFoundBesideAMeasuredOne) {
 TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
     const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
-    const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
+    const TrialLamp clipped = balls.tried(surface, kTwoLamps[1].place_m);
     MeasuredLight measured = first_lamp(balls, 0.2f);
     measured.usual = glm::vec3(0.5f);
     const UnmeasuredLamps told =
         fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
     EXPECT_TRUE(told.added.empty());
     ASSERT_EQ(told.clipped.size(), 1u);
-    expect_second_lamp(told.clipped[0], 0.05);
+    expect_second_lamp(glm::vec3(told.clipped[0].intensity), 0.05);
+    EXPECT_EQ(told.clipped[0].axis, glm::dvec3(0));
+}
+
+TEST(UnmeasuredLamps, AClippedLampInACeilingShinesDownwardsAlone) {
+    std::vector<Lamp> lamps = kTwoLamps;
+    lamps[1].axis = glm::normalize(glm::vec3(-0.3f, 1, 0.1f));
+    const Balls balls = sparse_balls(lamps, glm::vec3(0.1f), 0.02f);
+    const LitSurface surface(balls.drawn(), 1);
+    const TrialLamp clipped = balls.tried(surface, lamps[1].place_m);
+    MeasuredLight measured = first_lamp(balls, 0.2f);
+    measured.usual = glm::vec3(0.5f);
+    const UnmeasuredLamps told =
+        fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
+    EXPECT_TRUE(told.added.empty());
+    ASSERT_EQ(told.clipped.size(), 1u);
+    expect_second_lamp(glm::vec3(told.clipped[0].intensity), 0.05);
+    EXPECT_GT(glm::dot(glm::vec3(told.clipped[0].axis), lamps[1].axis), 0.98f);
+    EXPECT_EQ(glm::vec3(told.clipped[0].position_m), lamps[1].place_m);
 }
 
 TEST(UnmeasuredLamps, OneThatNoPictureShowsIsBelievedWhenItIsFoundAgainOrMostIsKnown) {
@@ -82,7 +100,7 @@ TEST(UnmeasuredLamps, WhatIsExplainedNeedsNone) {
 TEST(UnmeasuredLamps, NothingIsToldWhereSurfaceIsNotExplained) {
     const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0.2f), 0.6f);
     const LitSurface surface(balls.drawn(), 1);
-    const ReceivedLight clipped = balls.received_from(surface, kTwoLamps[1].place_m);
+    const TrialLamp clipped = balls.tried(surface, kTwoLamps[1].place_m);
     const UnmeasuredLamps told =
         fit_unmeasured_lamps(surface, first_lamp(balls, 0.2f), std::span(&clipped, 1), {}, balls.try_lamps(surface));
     EXPECT_TRUE(told.clipped.empty());
@@ -120,14 +138,15 @@ TEST(UnmeasuredLamps, WhereHardlyAnyLightIsKnownLampsAreAsBrightAsAWhiteSurfaceA
     const LitSurface surface(balls.drawn(), 1);
     MeasuredLight measured{.known = std::vector<glm::vec3>(gpu::kLightSamples, glm::vec3(1e-4f)),
                            .unknown = std::vector<float>(gpu::kLightSamples, 0.1f)};
-    std::vector<ReceivedLight> clipped;
-    for (const Lamp& lamp : kTwoLamps) clipped.push_back(balls.received_from(surface, lamp.place_m));
+    std::vector<TrialLamp> clipped;
+    for (const Lamp& lamp : kTwoLamps) clipped.push_back(balls.tried(surface, lamp.place_m));
     for (const float white : {0.8f, 0.4f}) {
         measured.white_albedo = white;
         const UnmeasuredLamps told = fit_unmeasured_lamps(surface, measured, clipped, {}, balls.try_lamps(surface));
         ASSERT_EQ(told.clipped.size(), 2u);
         for (size_t l = 0; l < 2; ++l)
-            EXPECT_NEAR(told.clipped[l].g, 0.323f / white * kTwoLamps[l].intensity.g, 0.6f) << l << ' ' << white;
+            EXPECT_NEAR(told.clipped[l].intensity.g, 0.323f / white * kTwoLamps[l].intensity.g, 0.6f)
+                << l << ' ' << white;
     }
 }
 

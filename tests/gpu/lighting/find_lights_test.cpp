@@ -25,9 +25,10 @@ struct Lamp {
     glm::dvec3 center_m;
     double radius_m;
     glm::dvec3 intensity;
+    glm::dvec3 axis{0};  ///< of a disc; else it is a sphere
 };
 
-/// A dark box-shaped room around the origin with sphere lamps, seen pixel centre by pixel centre.
+/// A dark box-shaped room around the origin with lamps, seen pixel centre by pixel centre.
 struct Room {
     std::vector<Lamp> lamps;
     double half_size_m = 3;
@@ -43,7 +44,16 @@ struct Pictures {
     Image<float> depth_m;
 };
 
-std::optional<double> hit_sphere(const Lamp& lamp, glm::dvec3 origin_m, glm::dvec3 direction) {
+std::optional<double> hit_disc(const Lamp& lamp, glm::dvec3 origin_m, glm::dvec3 direction) {
+    const double facing = -glm::dot(direction, lamp.axis);
+    if (facing <= 0) return std::nullopt;
+    const double along = glm::dot(origin_m - lamp.center_m, lamp.axis) / facing;
+    if (along <= 0 || glm::distance(origin_m + along * direction, lamp.center_m) > lamp.radius_m) return std::nullopt;
+    return along;
+}
+
+std::optional<double> hit_lamp(const Lamp& lamp, glm::dvec3 origin_m, glm::dvec3 direction) {
+    if (lamp.axis != glm::dvec3(0)) return hit_disc(lamp, origin_m, direction);
     const glm::dvec3 offset = origin_m - lamp.center_m;
     const double b = glm::dot(offset, direction), c = glm::dot(offset, offset) - lamp.radius_m * lamp.radius_m;
     const double discriminant = b * b - c;
@@ -56,7 +66,7 @@ glm::dvec3 radiance_of(const Lamp& lamp) { return lamp.intensity / (std::numbers
 /// What a mirror at the largest z shows where a ray meets it.
 glm::dvec3 mirrored(const Room& room, glm::dvec3 at_m, glm::dvec3 direction) {
     for (const Lamp& lamp : room.lamps)
-        if (hit_sphere(lamp, at_m, direction * glm::dvec3(1, 1, -1))) return radiance_of(lamp);
+        if (hit_lamp(lamp, at_m, direction * glm::dvec3(1, 1, -1))) return radiance_of(lamp);
     return glm::dvec3(0.5);
 }
 
@@ -85,7 +95,7 @@ Pictures look(const Room& room, const Intrinsics& camera, const RigidTransform& 
             bool has_depth = true;
             double flown_m = 0;
             for (const Lamp& lamp : room.lamps) {
-                const auto hit = hit_sphere(lamp, glm::dvec3(world_from_camera[3]), direction);
+                const auto hit = hit_lamp(lamp, glm::dvec3(world_from_camera[3]), direction);
                 if (!hit || *hit > range_m) continue;
                 const glm::dvec3 to_lamp = lamp.center_m - glm::dvec3(world_from_camera[3]);
                 const double across_m = glm::length(glm::cross(direction, to_lamp));
@@ -164,6 +174,10 @@ class FindLights : public GpuTest {
                 EXPECT_NEAR(light.intensity[c], lamp.intensity[c], relative * lamp.intensity[c]);
             EXPECT_NEAR(light.radius_m, lamp.radius_m, 0.1 * lamp.radius_m + within_m / 4);
             EXPECT_GE(evidence.sightings, 5u);
+            ASSERT_EQ(is_flat(light), lamp.axis != glm::dvec3(0));
+            if (lamp.axis != glm::dvec3(0)) {
+                EXPECT_GT(glm::dot(light.axis, lamp.axis), 0.98);
+            }
         }
     }
 };
@@ -202,6 +216,19 @@ TEST_F(FindLights, LargeLampsAreOneEach) {
     expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.04);
     room.lamps_have_depth = false;
     expect_found(find(room, kCamera, kCamera), room.lamps, 0.03, 0.05);
+}
+
+// What they are seen to send goes with the cosine to their axes. From where all look the same, a flat lamp is none.
+TEST_F(FindLights, DiscsShineToOneSideAlone) {
+    Room room;
+    room.lamps = {{{1.0, -0.6, 1.6}, 0.15, {30, 28, 20}, {-1, 0, 0}},
+                  {{-0.6, -0.7, 1.6}, 0.12, {20, 20, 22}, glm::normalize(glm::dvec3(1, 0.4, -0.6))},
+                  {{0.1, -1.0, 1.0}, 0.05, {5, 6, 7}}};
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.08);
+    room.depth_sigma_m = 0.005;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.02, 0.1);
+    room.lamps_have_depth = false;
+    expect_found(find(room, kCamera, kCamera), room.lamps, 0.03, 0.1);
 }
 
 // Readings between lamp and glass fill the gap.
