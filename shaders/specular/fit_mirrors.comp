@@ -21,8 +21,10 @@ const float kGlassKs = 0.1;    // no dielectric reflects more, but for flat view
 const float kMetalKs = 0.25;   // and no metal less
 const float kWhiteKs = 1.2;    // what a perfect mirror may be found to have, as its rays err,
 const float kMostKs = 1.4;     // and none has
-const float kByChance = 0.3, kByMirroring = 0.45;  // correlations
-const float kMirrorStep = 0.04;                    // a change that is worth another look at the albedo
+const float kByChance = 0.3, kByMirroring = 0.45;          // correlations
+const float kDimSurroundings = 0.5, kSureDim = 0.6;        // those that speak for surroundings which are too even,
+const float kMostCorrelation = 1.3, kNoCorrelation = 1.6;  // and those of a square that is but its rays' error
+const float kMirrorStep = 0.04;                            // a change that is worth another look at the albedo
 
 shared int sum_product[4];  // channels, brightness
 shared int sum_square[4];
@@ -59,14 +61,17 @@ vec4 sum_of(int sums[4]) { return vec4(sums[0], sums[1], sums[2], sums[3]) / kSt
 
 // 0: what the segment shows is its own colour; 1: it is sure to be a metal or a mirror, which have no diffuse part.
 // The same voxels come again in each look: `looks` times as many pairs make the error no smaller. Pairs of the same two
-// frames err alike, so that chance is larger than it looks; but a mirror's colours change by what it mirrors, not by
-// more, and by little else.
+// frames err alike, so that chance is larger than it looks; but a mirror's colours change by what it mirrors, and by
+// little else. They change by more only where what is known of its surroundings is too even, as of a sky that was seen
+// near the horizon alone; then they change with it all the same.
 float mirror_of(MirrorFit fit, float looks) {
     if (fit.square.w <= 0.0) return 0.0;
     const float sure = fit.product.w - kErrors * sqrt(fit.product2 * looks);
     const float correlation = max(fit.product.w, 0.0) * inversesqrt(max(fit.square.w * fit.color2, 1e-12));
+    const float too_much = smoothstep(kWhiteKs, kMostKs, fit.product.w / fit.square.w) *
+                           (1.0 - smoothstep(kDimSurroundings, kSureDim, correlation));
     return smoothstep(kGlassKs, kMetalKs, sure / fit.square.w) * smoothstep(kByChance, kByMirroring, correlation) *
-           (1.0 - smoothstep(kWhiteKs, kMostKs, fit.product.w / fit.square.w));
+           (1.0 - smoothstep(kMostCorrelation, kNoCorrelation, correlation)) * (1.0 - too_much);
 }
 
 void main() {
