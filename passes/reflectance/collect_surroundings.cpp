@@ -36,7 +36,7 @@ void add_collect_surroundings(graph::FrameGraph& frame, ReflectanceStateIds& sta
     pass.specialise("kLowExposure", inputs.radiance_scale > 0 ? 1u : 0u);
     pass.dispatch_covering({params.visited.x, params.visited.y});
     const gpu::OpeningParams turn{inputs.frame_index % gpu::kOpeningTurns};
-    auto find = frame.compute("reflectance.find_nearest_openings", spirv::find_nearest_openings);
+    auto find = frame.compute("reflectance.fill_openings", spirv::fill_openings);
     state.surroundings = find.modify("Surroundings", state.surroundings);
     find.push(turn).dispatch(gpu::kOpeningTexels / gpu::kOpeningTurns / gpu::kOpeningGroup);
 }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Finds for a part of all directions the nearest one, 45 degrees off at most, that an opening showed something in.
+// Finds for a part of all directions what openings show in them: what was seen, or the mean of what was seen around, 45
+// degrees off at most, by the inverse fourth power of the angle. One direction alone may be a window's bar, or noise.
 #include "lib/lighting/surroundings.glsl"
 #include "lib/math/octahedral.glsl"
 #include "shared/reflectance/far_field.h"
@@ -26,24 +27,31 @@ uint index_of(ivec2 texel) { return uint(texel.y) * kOpeningEdge + uint(texel.x)
 
 vec3 direction_of(ivec2 texel) { return from_octahedral((vec2(texel) + 0.5) / float(kEdge) * 2.0 - 1.0); }
 
-bool is_seen(ivec2 texel) { return samples_of(openings[index_of(texel)].light) >= kLeastSurroundingsSamples; }
+const uint kMostCounted = 16u;  // samples of a direction, from which on more do not tell more
+
+uint samples_in(ivec2 texel) { return samples_of(openings[index_of(texel)].light); }
 
 void main() {
     const uint index = gl_GlobalInvocationID.x * kOpeningTurns + params.turn;
     const ivec2 own = ivec2(index % kOpeningEdge, index / kOpeningEdge);
     const vec3 direction = direction_of(own);
-    float best = kLeastCosine;
-    uint nearest = 0u;
-    const int reach = is_seen(own) ? 0 : kReachTexels;
+    const bool is_seen = samples_in(own) >= kLeastSurroundingsSamples;
+    vec4 sum = is_seen ? vec4(mean_radiance(openings[index].light), 1.0) : vec4(0.0);
+    const int reach = is_seen ? -1 : kReachTexels;
     for (int y = -reach; y <= reach; ++y) {
         for (int x = -reach; x <= reach; ++x) {
             const ivec2 texel = wrapped(own + ivec2(x, y));
-            if (!is_seen(texel)) continue;
+            const uint samples = samples_in(texel);
             const float cosine = dot(direction, direction_of(texel));
-            if (cosine <= best) continue;
-            best = cosine;
-            nearest = index_of(texel) + 1u;
+            if (samples < kLeastSurroundingsSamples || cosine < kLeastCosine) continue;
+            const float chord2 = max(2.0 - 2.0 * cosine, 1e-6);
+            const float weight = float(min(samples, kMostCounted)) / (chord2 * chord2);
+            sum += weight * vec4(mean_radiance(openings[index_of(texel)].light), 1.0);
         }
     }
-    openings[index].nearest = nearest;
+    const vec3 shown = sum.rgb / max(sum.a, 1e-30);
+    openings[index].known = sum.a > 0.0 ? 1u : 0u;
+    openings[index].r = shown.r;
+    openings[index].g = shown.g;
+    openings[index].b = shown.b;
 }

@@ -41,15 +41,16 @@ SurroundingsColor look_up_surroundings(ivec3 cell) {
     return SurroundingsColor(mean, 2u * surroundings[place].openings > samples);
 }
 
-const float kLeastSky = 0.5;  // radiance; where pictures are exposed for a room, its sky is clipped, or nearly
+const float kLeastSky = 0.5;       // radiance; where pictures are exposed for a room, its sky is clipped, or nearly
+const float kLeastOpening = 0.15;  // radiance; darker ones are black or shiny things that the depth camera does not see
 
 // What arrives from a cell in a direction. A window shows what is far behind it, so that it is not the same from
-// everywhere: what windows showed in this direction, or beside it, tells more than what this cell showed. Dark openings
-// are black or shiny things that the depth camera does not see.
+// everywhere: what windows showed in this direction, or beside it, tells more than what this cell showed.
 vec3 radiance_towards(SurroundingsColor met, vec3 direction) {
-    if (!met.opening || max(max(met.mean.r, met.mean.g), met.mean.b) < kLeastSky) return met.mean.rgb;
-    const uint nearest = openings[octahedral_texel(direction, kOpeningEdge)].nearest;
-    return nearest == 0u ? met.mean.rgb : mean_radiance(openings[nearest - 1u].light);
+    if (!met.opening || max(max(met.mean.r, met.mean.g), met.mean.b) < kLeastOpening) return met.mean.rgb;
+    const uint texel = octahedral_texel(direction, kOpeningEdge);
+    if (openings[texel].known == 0u) return met.mean.rgb;
+    return vec3(openings[texel].r, openings[texel].g, openings[texel].b);
 }
 
 struct MetSurroundings {

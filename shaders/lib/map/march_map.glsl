@@ -60,8 +60,8 @@ float cross_gap(vec3 start, vec3 direction, vec3 inverse_direction, float gone) 
 }
 #endif
 
-// Twice that: a block costs more to look up than a cube to cross. (A loop to the next block will not do: on lavapipe 22.3
-// the loop around it then ends too soon.)
+// Twice that: a block costs more to look up than a cube to cross. (A loop to the next block will not do: on
+// lavapipe 22.3 the loop around it then ends too soon.)
 float cross_gaps(vec3 start, vec3 direction, vec3 inverse_direction, float gone) {
 #ifdef BLOCKS_IN_USE
     const float first = cross_gap(start, direction, inverse_direction, gone);

@@ -21,7 +21,7 @@ INTEROP_CONST uint kSurroundingsGroup = 8u;
 INTEROP_CONST uint kOpeningEdge = 64u;      // texels of what openings show along each side: 3 degrees each
 INTEROP_CONST uint kOpeningTexels = 4096u;  // of the whole octahedral map
 INTEROP_CONST uint kOpeningGroup = 64u;
-INTEROP_CONST uint kOpeningTurns = 16u;  // frames after which each direction has looked for the nearest known one
+INTEROP_CONST uint kOpeningTurns = 16u;  // frames after which each direction has looked at the known ones around
 
 // Of pixels. Whole numbers, so that the order of arrival does not matter.
 struct SurroundingsSums {
@@ -45,10 +45,10 @@ struct SurroundingsCell {
 // What openings show in a direction.
 struct OpeningTexel {
     SurroundingsLight light;
-    uint nearest;  // texel that was seen, itself or one around, and 1; 0: there is none
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    uint known;  // 1: what openings show in this direction, or would by those around, is
+    float r;
+    float g;
+    float b;
 };
 
 // How many cells are in use. A frame sees the count before it, so that all its pixels find the same.

@@ -214,8 +214,8 @@ TEST_F(CollectSurroundingsTest, WhatAWindowShowsIsKeptByDirection) {
     }
 }
 
-// Rays into directions that no window showed take the nearest, up to 45 degrees off.
-TEST_F(CollectSurroundingsTest, EachDirectionKnowsTheNearestThatAWindowShowed) {
+// Rays into directions that no window showed take the mean of those around, up to 45 degrees off.
+TEST_F(CollectSurroundingsTest, EachDirectionKnowsWhatWindowsShowedAroundIt) {
     // The map's rim, where it is folded, lies around -z.
     for (const glm::dvec3 forward : {glm::dvec3(0.4, 0.1, 1), glm::dvec3(0.1, 0.05, -1), glm::dvec3(1, 0.1, -0.3)}) {
         Room room;
@@ -223,31 +223,46 @@ TEST_F(CollectSurroundingsTest, EachDirectionKnowsTheNearestThatAWindowShowed) {
         room.open(30, 70, 20, 60);
         collect(room, 0, {}, true);
         const auto seen = [&](size_t i) { return openings[i].light.usual.samples >= gpu::kLeastSurroundingsSamples; };
-        std::vector<glm::dvec3> directions;
+        std::vector<glm::dvec3> directions, colors;
         for (size_t i = 0; i < openings.size(); ++i) {
+            const gpu::SurroundingsSums& sums = openings[i].light.usual;
+            colors.push_back(glm::dvec3(sums.r, sums.g, sums.b) /
+                             (gpu::kSurroundingsSteps * std::max(1.0, 1.0 * sums.samples)));
             const glm::dvec2 at(i % gpu::kOpeningEdge + 0.5, i / gpu::kOpeningEdge + 0.5);
             directions.push_back(direction_of_octahedral(at * (2.0 / gpu::kOpeningEdge) - 1.0));
         }
         uint32_t filled = 0, known = 0;
+        double from_nearest = 0;
         for (size_t i = 0; i < openings.size(); ++i) {
-            double best = -2;
-            for (size_t k = 0; k < openings.size(); ++k)
-                if (seen(k)) best = std::max(best, glm::dot(directions[i], directions[k]));
-            const uint32_t nearest = openings[i].nearest;
+            double best = -2, weights = 0;
+            glm::dvec3 mean(0), of_nearest(0);
+            for (size_t k = 0; k < openings.size(); ++k) {
+                if (!seen(k)) continue;
+                const double cosine = glm::dot(directions[i], directions[k]);
+                if (cosine > best) of_nearest = colors[k];
+                best = std::max(best, cosine);
+                if (k == i || cosine < std::sqrt(0.5)) continue;
+                const double weight = std::min(openings[k].light.usual.samples, 16u) /
+                                      std::pow(glm::distance(directions[i], directions[k]), 4);
+                mean += weight * colors[k];
+                weights += weight;
+            }
+            const glm::dvec3 shown(openings[i].r, openings[i].g, openings[i].b);
             if (seen(i)) {
-                EXPECT_EQ(nearest, i + 1);
+                EXPECT_EQ(openings[i].known, 1u);
+                EXPECT_LT(glm::distance(shown, colors[i]), 1e-5);
                 ++known;
             } else if (best > std::cos(glm::radians(44.9))) {
-                ASSERT_GT(nearest, 0u) << i;
-                EXPECT_TRUE(seen(nearest - 1));
+                ASSERT_EQ(openings[i].known, 1u) << i;
                 // A square of the map is no circle of directions where its faces meet.
-                const double found = glm::dot(directions[i], directions[nearest - 1]);
-                EXPECT_LT(std::acos(found), std::acos(best) + glm::radians(3.0)) << i;
+                EXPECT_LT(glm::distance(shown, mean / weights), 0.05) << i;
+                from_nearest = std::max(from_nearest, glm::distance(shown, of_nearest));
                 ++filled;
             } else if (best < std::cos(glm::radians(45.1))) {
-                EXPECT_EQ(nearest, 0u) << i;
+                EXPECT_EQ(openings[i].known, 0u) << i;
             }
         }
+        EXPECT_GT(from_nearest, 0.1) << "one direction alone would show something else";
         EXPECT_GT(known, 80u);
         EXPECT_GT(filled, 100u);
     }
