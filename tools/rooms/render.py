@@ -3,8 +3,9 @@
   blender --background --factory-startup --python-exit-code 1 --python tools/rooms/render.py -- ROOM OUT
           [--sky FILE.hdr] [--frames N] [--extent WxH] [--samples N] [--truth-every N] [--seed N]
 
-ROOM is kitchen, bedroom or bedroom_sun. Cycles shares no code with Patina: lamps with an extent, a sky behind a window,
-four bounces, gloss that mirrors the room. Every other frame is also in OUT/lighting, at a 64th of the exposure.
+ROOM is kitchen, bedroom, bedroom_sun or living_room. Cycles shares no code with Patina: lamps with an extent, a sky
+behind a window, four bounces, gloss that mirrors the room. Every other frame is also in OUT/lighting, at a 64th of the
+exposure.
 Needs Debian's packages blender, python3-numpy and python3-opencv.
 """
 import argparse
@@ -35,7 +36,7 @@ DATA = {"depth": "Depth", "normal": "Normal", "label": "IndexOB"}
 
 def parse_arguments():
     parser = argparse.ArgumentParser(prog="tools/rooms/render.py")
-    parser.add_argument("room", choices=("kitchen", "bedroom", "bedroom_sun"))
+    parser.add_argument("room", choices=("kitchen", "bedroom", "bedroom_sun", "living_room"))
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--sky", type=pathlib.Path, help="picture of a sky, equirectangular, Radiance HDR")
     parser.add_argument("--frames", type=int, default=80)
