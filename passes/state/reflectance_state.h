@@ -21,8 +21,9 @@ struct ReflectanceStateIds {
     graph::BufferId gathered;      ///< gpu::RecordSurroundings per record
     graph::BufferId windows;       ///< gpu::RefreshWindow[gpu::kWindows]
     graph::BufferId surroundings;  ///< gpu::FarFieldTexel[gpu::kFarFieldTexels],
-                                   ///< gpu::OpeningTexel[gpu::kOpeningTexels], gpu::SurroundingsCounts, u32 of blocks
-                                   ///< and of the map's regions, and gpu::SurroundingsCell[gpu::kSurroundingsCells]
+                                   ///< gpu::OpeningTexel[gpu::kOpeningTexels], gpu::SurroundingsCounts, two
+                                   ///< gpu::Occupancy, of the cells and of the map's blocks, and
+                                   ///< gpu::SurroundingsCell[gpu::kSurroundingsCells]
 };
 
 // Where parts of ReflectanceStateIds::surroundings begin, bytes.

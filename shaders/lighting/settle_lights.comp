@@ -26,7 +26,9 @@ const float kSizeNoise = 0.1;    // of an intensity, relative: a lamp is few pix
 const float kLeastChange = 0.2;  // mean robust cost of sightings of one intensity, from which on it is none
 const float kFlatCost = 0.4;     // that of a flat lamp over that
 const uint kAxisSteps = 6u;      // of reweighting
-const float kRidge = 1e-5;       // of the normal equations, relative: what no sighting tells of an axis is 0
+const float kRidge = 0.0025;     // of the normal equations: what no sighting tells of an axis is 0
+const uint kLeastOfFlat = 6u;    // sightings, as an axis has three unknowns
+const float kMostOfFlat = 5.0;   // intensity along the axis, over what is seen: a trend of errors would ask for more
 const float kLeastFacing = 0.1;  // cosine: a flat lamp is hardly seen from farther aside
 // Depth on its disc is that of its middle, where measure_emitters.comp takes it for the front of a sphere.
 const float kCoreBulge = 0.934658;
@@ -120,7 +122,7 @@ float weight_of(float residual) {
 vec4 fit_flat_lamp(uint count) {
     vec3 fitted = vec3(0.0);
     for (uint step = 0u; step < kAxisSteps; ++step) {
-        mat3 normal = mat3(kRidge * float(count));
+        mat3 normal = mat3(kRidge);
         vec3 right = vec3(0.0);
         for (uint i = 0u; i < count; ++i) {
             const vec3 d = directions[i];
@@ -135,8 +137,10 @@ vec4 fit_flat_lamp(uint count) {
         of_one += cost_of(strengths[i] - 1.0) / float(count);
         of_flat += cost_of(strengths[i] - max(dot(fitted, directions[i]), 0.0)) / float(count);
     }
-    const bool is_flat = count > 2u && of_one > kLeastChange && of_flat < kFlatCost * of_one;
-    return is_flat ? vec4(normalize(fitted), length(fitted)) : vec4(0.0);
+    const float free = float(count) / max(float(count) - 3.0, 1.0), strength = length(fitted);
+    const bool is_flat = count >= kLeastOfFlat && strength > 0.0 && strength < kMostOfFlat && of_one > kLeastChange &&
+                         free * of_flat < kFlatCost * of_one;
+    return is_flat ? vec4(fitted / strength, strength) : vec4(0.0);
 }
 
 void main() {

@@ -40,10 +40,13 @@ void main() {
     const int reach = is_seen ? -1 : kReachTexels;
     for (int y = -reach; y <= reach; ++y) {
         for (int x = -reach; x <= reach; ++x) {
-            const ivec2 texel = wrapped(own + ivec2(x, y));
+            const ivec2 at = own + ivec2(x, y), texel = wrapped(at);
+            // What lies beyond a side of the map may be on its other half, which is looked at anyway.
+            if (texel != at && all(lessThanEqual(abs(texel - own), ivec2(reach)))) continue;
             const uint samples = samples_in(texel);
+            if (samples < kLeastSurroundingsSamples) continue;
             const float cosine = dot(direction, direction_of(texel));
-            if (samples < kLeastSurroundingsSamples || cosine < kLeastCosine) continue;
+            if (cosine < kLeastCosine) continue;
             const float chord2 = max(2.0 - 2.0 * cosine, 1e-6);
             const float weight = float(min(samples, kMostCounted)) / (chord2 * chord2);
             sum += weight * vec4(mean_radiance(openings[index_of(texel)].light), 1.0);

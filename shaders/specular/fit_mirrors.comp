@@ -20,7 +20,7 @@ const float kErrors = 2.0;     // from the estimate down to what is sure
 const float kGlassKs = 0.1;    // no dielectric reflects more, but for flat views,
 const float kMetalKs = 0.25;   // and no metal less
 const float kWhiteKs = 1.2;    // what a perfect mirror may be found to have, as its rays err,
-const float kMostKs = 1.4;     // and none has
+const float kMostKs = 1.4;     // and none has whose surroundings are known
 const float kByChance = 0.3, kByMirroring = 0.45;          // correlations
 const float kDimSurroundings = 0.5, kSureDim = 0.6;        // those that speak for surroundings which are too even,
 const float kMostCorrelation = 1.3, kNoCorrelation = 1.6;  // and those of a square that is but its rays' error

@@ -45,7 +45,7 @@ struct SurroundingsCell {
 // What openings show in a direction.
 struct OpeningTexel {
     SurroundingsLight light;
-    uint known;  // 1: what openings show in this direction, or would by those around, is
+    uint known;  // 1: r, g, b are what openings show in this direction, or those around tell; kOpeningTurns frames old
     float r;
     float g;
     float b;

@@ -218,7 +218,7 @@ TEST_F(FindLights, LargeLampsAreOneEach) {
     expect_found(find(room, kCamera, kCamera), room.lamps, 0.03, 0.05);
 }
 
-// What they are seen to send goes with the cosine to their axes. From where all look the same, a flat lamp is none.
+// What they are seen to send goes with the cosine to their axes.
 TEST_F(FindLights, DiscsShineToOneSideAlone) {
     Room room;
     room.lamps = {{{1.0, -0.6, 1.6}, 0.15, {30, 28, 20}, {-1, 0, 0}},

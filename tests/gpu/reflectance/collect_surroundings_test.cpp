@@ -255,7 +255,7 @@ TEST_F(CollectSurroundingsTest, EachDirectionKnowsWhatWindowsShowedAroundIt) {
             } else if (best > std::cos(glm::radians(44.9))) {
                 ASSERT_EQ(openings[i].known, 1u) << i;
                 // A square of the map is no circle of directions where its faces meet.
-                EXPECT_LT(glm::distance(shown, mean / weights), 0.05) << i;
+                EXPECT_LT(glm::distance(shown, mean / weights), 0.02) << i;
                 from_nearest = std::max(from_nearest, glm::distance(shown, of_nearest));
                 ++filled;
             } else if (best < std::cos(glm::radians(45.1))) {
