@@ -1,6 +1,7 @@
 // Measures a candidate: where its centre is, how large it appears, how bright it is.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "core_bulge.glsl"
 #include "lib/camera/camera.glsl"
 #include "lib/color/luminance.glsl"
 #include "lib/math/cone.glsl"
@@ -13,12 +14,6 @@ layout(std430, binding = 1) readonly buffer Places { uint places[]; };
 layout(std430, binding = 2) readonly buffer Emitters { Emitter emitters[]; };
 layout(std430, binding = 3) readonly buffer Candidates { EmitterMode candidates[]; };
 layout(std430, binding = 4) writeonly buffer Sightings { LightSighting sightings[]; };
-
-// The part of a lamp's disc, in radii, on which its distance is measured: at its rim depth readings mix with what is
-// behind.
-const float kCore = 0.5;
-// Mean distance of a sphere's surface before its centre over that part, in radii: (2/3) (1 - (1 - f^2)^1.5) / f^2.
-const float kCoreBulge = 0.934658;
 
 shared uint flags_of_group;
 

@@ -2,6 +2,7 @@
 // size in the pictures goes with the cosine to an axis is flat.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "core_bulge.glsl"
 #include "lib/color/luminance.glsl"
 #include "lib/math/cone.glsl"
 #include "shared/lighting/find_lights.h"
@@ -30,8 +31,6 @@ const float kRidge = 0.0025;     // of the normal equations: what no sighting te
 const uint kLeastOfFlat = 6u;    // sightings, as an axis has three unknowns
 const float kMostOfFlat = 5.0;   // intensity along the axis, over what is seen: a trend of errors would ask for more
 const float kLeastFacing = 0.1;  // cosine: a flat lamp is hardly seen from farther aside
-// Depth on its disc is that of its middle, where measure_emitters.comp takes it for the front of a sphere.
-const float kCoreBulge = 0.934658;
 
 shared float values[kMaxSightings];
 shared vec3 directions[kMaxSightings];  // to the cameras
@@ -176,6 +175,7 @@ void main() {
     const bool is_flat = flat_lamp.w > 0.0;
     // As large and as bright as it looks from straight before it, and where its disc is.
     const float sphere_m = has_depth ? s.center_radius.w : range_m * sine_of_cone(s.bearing.w);
+    // Depth on it is that of its middle, which measure_emitters.comp takes for the front of a sphere.
     const float nearer = is_flat && has_depth ? 1.0 - kCoreBulge * sphere_m / range_m : 1.0;
     const vec3 to_viewer = normalize(s.camera_m.xyz - on_sphere_m);
     const float facing = is_flat ? max(dot(flat_lamp.xyz, to_viewer), kLeastFacing) : 1.0;

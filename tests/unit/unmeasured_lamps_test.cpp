@@ -34,14 +34,18 @@ TEST(UnmeasuredLamps, ALampThatNoPictureShowsIsFoundBesideAMeasuredOne) {
     expect_second_lamp(glm::vec3(told.added[0].intensity), 0.1);
 }
 
-TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
-    const Balls balls = sparse_balls(kTwoLamps, glm::vec3(0.1f), 0.02f);
+/// What is told of the second of two lamps, which is clipped, beside the first.
+UnmeasuredLamps told_of_clipped(const std::vector<Lamp>& lamps) {
+    const Balls balls = sparse_balls(lamps, glm::vec3(0.1f), 0.02f);
     const LitSurface surface(balls.drawn(), 1);
-    const TrialLamp clipped = balls.tried(surface, kTwoLamps[1].place_m);
+    const TrialLamp clipped = balls.tried(surface, lamps[1].place_m);
     MeasuredLight measured = first_lamp(balls, 0.2f);
     measured.usual = glm::vec3(0.5f);
-    const UnmeasuredLamps told =
-        fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
+    return fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
+}
+
+TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
+    const UnmeasuredLamps told = told_of_clipped(kTwoLamps);
     EXPECT_TRUE(told.added.empty());
     ASSERT_EQ(told.clipped.size(), 1u);
     expect_second_lamp(glm::vec3(told.clipped[0].intensity), 0.05);
@@ -51,13 +55,7 @@ TEST(UnmeasuredLamps, AClippedLampIsAsBrightAsWhatItLightsTells) {
 TEST(UnmeasuredLamps, AClippedLampInACeilingShinesDownwardsAlone) {
     std::vector<Lamp> lamps = kTwoLamps;
     lamps[1].axis = glm::normalize(glm::vec3(-0.3f, 1, 0.1f));
-    const Balls balls = sparse_balls(lamps, glm::vec3(0.1f), 0.02f);
-    const LitSurface surface(balls.drawn(), 1);
-    const TrialLamp clipped = balls.tried(surface, lamps[1].place_m);
-    MeasuredLight measured = first_lamp(balls, 0.2f);
-    measured.usual = glm::vec3(0.5f);
-    const UnmeasuredLamps told =
-        fit_unmeasured_lamps(surface, measured, std::span(&clipped, 1), {}, balls.try_lamps(surface));
+    const UnmeasuredLamps told = told_of_clipped(lamps);
     EXPECT_TRUE(told.added.empty());
     ASSERT_EQ(told.clipped.size(), 1u);
     expect_second_lamp(glm::vec3(told.clipped[0].intensity), 0.05);
