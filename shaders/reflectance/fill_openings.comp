@@ -10,51 +10,44 @@ layout(local_size_x = kOpeningGroup) in;
 layout(std430, binding = 0) buffer Surroundings{SURROUNDINGS_MEMBERS};
 layout(push_constant) uniform Push { OpeningParams params; };
 
-const int kReachTexels = 26;        // 45 degrees around an axis of the octahedron, more elsewhere
 const float kLeastCosine = 0.7071;  // of 45 degrees
-const int kEdge = int(kOpeningEdge);
+const uint kMostCounted = 16u;      // samples of a direction, from which on more do not tell more
+const uint kWords = kOpeningTexels / 32u;
 
-// Beyond a side of the map lies what is beside it, turned around the side's middle.
-ivec2 wrapped(ivec2 texel) {
-    if (texel.x < 0 || texel.x >= kEdge)
-        texel = ivec2(texel.x < 0 ? -1 - texel.x : 2 * kEdge - 1 - texel.x, kEdge - 1 - texel.y);
-    if (texel.y < 0 || texel.y >= kEdge)
-        texel = ivec2(kEdge - 1 - texel.x, texel.y < 0 ? -1 - texel.y : 2 * kEdge - 1 - texel.y);
-    return texel;
+shared uint seen[kWords];  // a bit for each direction that was
+
+vec3 direction_of(uint texel) {
+    const vec2 at = vec2(texel % kOpeningEdge, texel / kOpeningEdge);
+    return from_octahedral((at + 0.5) / float(kOpeningEdge) * 2.0 - 1.0);
 }
 
-uint index_of(ivec2 texel) { return uint(texel.y) * kOpeningEdge + uint(texel.x); }
-
-vec3 direction_of(ivec2 texel) { return from_octahedral((vec2(texel) + 0.5) / float(kEdge) * 2.0 - 1.0); }
-
-const uint kMostCounted = 16u;  // samples of a direction, from which on more do not tell more
-
-uint samples_in(ivec2 texel) { return samples_of(openings[index_of(texel)].light); }
+uint samples_in(uint texel) { return samples_of(openings[texel].light); }
 
 void main() {
-    const uint index = gl_GlobalInvocationID.x * kOpeningTurns + params.turn;
-    const ivec2 own = ivec2(index % kOpeningEdge, index / kOpeningEdge);
+    for (uint word = gl_LocalInvocationID.x; word < kWords; word += kOpeningGroup) {
+        uint bits = 0u;
+        for (uint bit = 0u; bit < 32u; ++bit)
+            bits |= uint(samples_in(32u * word + bit) >= kLeastSurroundingsSamples) << bit;
+        seen[word] = bits;
+    }
+    barrier();
+    const uint own = gl_GlobalInvocationID.x * kOpeningTurns + params.turn;
     const vec3 direction = direction_of(own);
-    const bool is_seen = samples_in(own) >= kLeastSurroundingsSamples;
-    vec4 sum = is_seen ? vec4(mean_radiance(openings[index].light), 1.0) : vec4(0.0);
-    const int reach = is_seen ? -1 : kReachTexels;
-    for (int y = -reach; y <= reach; ++y) {
-        for (int x = -reach; x <= reach; ++x) {
-            const ivec2 at = own + ivec2(x, y), texel = wrapped(at);
-            // What lies beyond a side of the map may be on its other half, which is looked at anyway.
-            if (texel != at && all(lessThanEqual(abs(texel - own), ivec2(reach)))) continue;
-            const uint samples = samples_in(texel);
-            if (samples < kLeastSurroundingsSamples) continue;
+    const bool is_seen = (seen[own / 32u] >> own % 32u & 1u) != 0u;
+    vec4 around = vec4(0.0);
+    for (uint word = 0u; word < kWords; ++word) {
+        for (uint bits = seen[word]; bits != 0u; bits &= bits - 1u) {
+            const uint texel = 32u * word + uint(findLSB(bits));
             const float cosine = dot(direction, direction_of(texel));
-            if (cosine < kLeastCosine) continue;
             const float chord2 = max(2.0 - 2.0 * cosine, 1e-6);
-            const float weight = float(min(samples, kMostCounted)) / (chord2 * chord2);
-            sum += weight * vec4(mean_radiance(openings[index_of(texel)].light), 1.0);
+            const float weight = float(min(samples_in(texel), kMostCounted)) / (chord2 * chord2);
+            around += cosine < kLeastCosine ? vec4(0.0) : weight * vec4(mean_radiance(openings[texel].light), 1.0);
         }
     }
+    const vec4 sum = is_seen ? vec4(mean_radiance(openings[own].light), 1.0) : around;
     const vec3 shown = sum.rgb / max(sum.a, 1e-30);
-    openings[index].known = sum.a > 0.0 ? 1u : 0u;
-    openings[index].r = shown.r;
-    openings[index].g = shown.g;
-    openings[index].b = shown.b;
+    openings[own].known = sum.a > 0.0 ? 1u : 0u;
+    openings[own].r = shown.r;
+    openings[own].g = shown.g;
+    openings[own].b = shown.b;
 }
